@@ -1,0 +1,37 @@
+// Every option of Understudy, once: `understudy run` shows this table as its help and hands the values on as
+// environment variables; a process started with plain LD_PRELOAD reads the same variables.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace understudy::spu {
+
+struct Options {
+  int nodes = 0;              ///< 0: embedded
+  std::string connect;        ///< Unix socket of a running `understudy serve`; empty: none
+  std::string report;         ///< JSON file; empty: none
+  int verify = 0;             ///< every K frames; 0: the first frame of every volume only; -1: never
+  bool explain = false;
+  bool disable = false;
+  bool debug_tint = false;
+  std::string save_frames;    ///< folder for PFM files; empty: none
+  std::string chain = "track volume driver";
+  std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
+  double verify_psnr = 30.0;  ///< below this the volume goes back to the application
+};
+
+struct OptionText {
+  const char* flag;         ///< "--verify"; empty: environment only
+  const char* environment;  ///< "UNDERSTUDY_VERIFY"
+  const char* value;        ///< "K", "FILE"; empty: a switch
+  const char* fallback;     ///< the default, as text
+  const char* help;
+};
+
+std::span<const OptionText> option_table();
+
+/// Reads the variables of the table. A value that cannot be read is reported once on stderr and its default taken.
+Options options_from_environment();
+
+}  // namespace understudy::spu

@@ -1,0 +1,67 @@
+// What a process under Understudy counts, kept in memory that outlives it.
+//
+// The structure is mapped from a file (RUN_DIR/PID.counters, the folder belongs to the launcher), so a viewer that is
+// killed still leaves its figures: no destructor, no atexit needed. One writer process, many threads; the launcher
+// reads it after the end. Plain data, fixed size, no pointers.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+constexpr std::uint32_t counters_magic = 0x55444331;  // "UDC1"
+constexpr int max_counted_volumes = 32;
+constexpr int max_counted_reasons = 8;
+constexpr int max_counted_threads = 64;
+constexpr int max_frame_records = 4096;
+
+struct ReasonCount {
+  char reason[120];
+  std::atomic<std::uint64_t> count;
+};
+
+struct VolumeCounters {
+  std::uint64_t texture;  ///< the application's texture name
+  std::int32_t size[3];
+  char texture_format[32];
+  std::atomic<std::uint64_t> draws_substituted;
+  std::atomic<std::uint64_t> draws_left;
+  ReasonCount left_because[max_counted_reasons];
+  std::atomic<std::uint64_t> verified_frames;
+  double verify_max;      ///< worst over the verified frames
+  double verify_sum_sq;   ///< sum over verified frames of the mean squared error: RMS = sqrt(sum / frames)
+  char explanation[512];  ///< what was recognised, in plain words
+};
+
+struct FrameRecord {
+  double time_ms;        ///< from the last frame end to this one
+  double render_ms;      ///< waiting for the render service
+  std::uint32_t substituted;
+  std::uint32_t left;
+  double error_rms;      ///< against the application's own drawing; negative: not measured
+  volume::FrameCounts counts;
+};
+
+struct ProcessCounters {
+  std::uint32_t magic;
+  std::int32_t pid;
+  char program[256];
+  std::atomic<std::uint64_t> frames;
+  std::int32_t nodes;  ///< 0: embedded
+  std::atomic<std::uint32_t> threads;
+  std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
+  std::atomic<std::uint32_t> volumes;
+  VolumeCounters volume[max_counted_volumes];
+  FrameRecord frame[max_frame_records];  ///< ring: frame f is at f % max_frame_records
+};
+
+/// This process's counters: mapped from UNDERSTUDY_RUN_DIR when the launcher gave one, else private memory. Never null.
+ProcessCounters& process_counters();
+
+/// The slot of the calling thread's call count.
+std::uint64_t* thread_call_counter();
+
+}  // namespace understudy::spu

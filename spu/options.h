@@ -4,34 +4,42 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace understudy::spu {
 
+constexpr int max_nodes = 256;  ///< ranks of one node group
+
 struct Options {
-  int nodes = 0;              ///< 0: embedded
-  std::string connect;        ///< Unix socket of a running `understudy serve`; empty: none
-  std::string report;         ///< JSON file; empty: none
-  int verify = 0;             ///< every K frames; 0: the first frame of every volume only; -1: never
+  int nodes = 0;        ///< 0: embedded
+  std::string connect;  ///< Unix socket of a running `understudy serve`; empty: none
+  std::string report;   ///< JSON file; empty: none
+  int verify = 0;       ///< every K frames; 0: the first frame of every volume only; -1: never
   bool explain = false;
   bool disable = false;
   bool debug_tint = false;
-  std::string save_frames;    ///< folder for PFM files; empty: none
+  std::string save_frames;  ///< folder for PFM files; empty: none
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application
 };
 
 struct OptionText {
-  const char* flag;         ///< "--verify"; empty: environment only
+  const char* flag;         ///< "--verify"; "-n,--nodes" where a short form exists; empty: environment only
   const char* environment;  ///< "UNDERSTUDY_VERIFY"
-  const char* value;        ///< "K", "FILE"; empty: a switch
+  const char* value;        ///< "K", "FILE"; "[K]" where the value may be left out; empty: a switch
   const char* fallback;     ///< the default, as text
   const char* help;
 };
 
 std::span<const OptionText> option_table();
 
-/// Reads the variables of the table. A value that cannot be read is reported once on stderr and its default taken.
+/// Sets the option that `environment` names. False, with `options` unchanged, when there is no such option or
+/// `text` is not a value it can take.
+bool set_option(Options& options, std::string_view environment, const std::string& text);
+
+/// Reads the variables of the table. A value that cannot be read is reported once on stderr and its default
+/// taken.
 Options options_from_environment();
 
 }  // namespace understudy::spu

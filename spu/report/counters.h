@@ -1,8 +1,9 @@
 // What a process under Understudy counts, kept in memory that outlives it.
 //
-// The structure is mapped from a file (RUN_DIR/PID.counters, the folder belongs to the launcher), so a viewer that is
-// killed still leaves its figures: no destructor, no atexit needed. One writer process, many threads; the launcher
-// reads it after the end. Plain data, fixed size, no pointers.
+// The structure is mapped from a file (RUN_DIR/PID.counters, the folder belongs to the launcher), so a viewer
+// that is killed still leaves its figures: no destructor, no atexit needed. One writer process, many threads;
+// the launcher reads it after the end. Plain data, fixed size, no pointers, and all-zero bytes mean "nothing
+// happened yet".
 #pragma once
 
 #include <atomic>
@@ -37,11 +38,11 @@ struct VolumeCounters {
 };
 
 struct FrameRecord {
-  double time_ms;        ///< from the last frame end to this one
-  double render_ms;      ///< waiting for the render service
+  double time_ms;    ///< from the last frame end to this one
+  double render_ms;  ///< waiting for the render service
   std::uint32_t substituted;
   std::uint32_t left;
-  double error_rms;      ///< against the application's own drawing; negative: not measured
+  double error_rms;  ///< against the application's own drawing; negative: not measured
   volume::FrameCounts counts;
 };
 
@@ -50,7 +51,10 @@ struct ProcessCounters {
   std::int32_t pid;
   char program[256];
   std::atomic<std::uint64_t> frames;
-  std::int32_t nodes;  ///< 0: embedded
+  std::atomic<std::uint64_t> frames_substituted;  ///< with at least one substituted run of slices
+  std::atomic<std::uint64_t> frames_left;         ///< with at least one run of slices left to the application
+  volume::FrameCounts total;                      ///< over all frames; the ring below forgets
+  std::int32_t nodes;                             ///< 0: embedded
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   std::atomic<std::uint32_t> volumes;
@@ -58,10 +62,15 @@ struct ProcessCounters {
   FrameRecord frame[max_frame_records];  ///< ring: frame f is at f % max_frame_records
 };
 
-/// This process's counters: mapped from UNDERSTUDY_RUN_DIR when the launcher gave one, else private memory. Never null.
+/// This process's counters: mapped from UNDERSTUDY_RUN_DIR when the launcher gave one, else private memory.
+/// Never fails, and the address stays the same for the life of the process; a child after fork() counts for
+/// itself.
 ProcessCounters& process_counters();
 
-/// The slot of the calling thread's call count.
+/// Counts one finished frame: its ring slot, and the totals.
+void count_frame(const FrameRecord& frame);
+
+/// The slot of the calling thread's call count. Threads beyond max_counted_threads share the last slot.
 std::uint64_t* thread_call_counter();
 
 }  // namespace understudy::spu

@@ -1,0 +1,112 @@
+#include "spu/options.h"
+
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+
+namespace understudy::spu {
+namespace {
+
+template <typename Number>
+std::optional<Number> number_in(const std::string& text, Number low, Number high) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !(number >= low && number <= high)) return {};
+  return number;
+}
+
+template <auto member, int low, int high>
+bool set_number(Options& options, const std::string& text) {
+  using Number = std::remove_reference_t<decltype(options.*member)>;
+  const std::optional<Number> number = number_in<Number>(text, Number{low}, Number{high});
+  if (number) options.*member = *number;
+  return number.has_value();
+}
+
+template <auto member>
+bool set_text(Options& options, const std::string& text) {
+  options.*member = text;
+  return true;
+}
+
+template <auto member>
+bool set_switch(Options& options, const std::string& text) {
+  const bool on = text == "1" || text == "on" || text == "yes" || text == "true";
+  const bool off = text.empty() || text == "0" || text == "off" || text == "no" || text == "false";
+  if (on || off) options.*member = on;
+  return on || off;
+}
+
+struct Row {
+  OptionText text;
+  bool (*set)(Options&, const std::string&);
+};
+
+constexpr std::array rows{
+    Row{{"-n,--nodes", "UNDERSTUDY_NODES", "N", "0",
+         "render on N MPI ranks of this machine; 0: inside the viewer, on threads"},
+        set_number<&Options::nodes, 0, max_nodes>},
+    Row{{"--connect", "UNDERSTUDY_CONNECT", "PATH", "",
+         "render on the node group behind this socket of `understudy serve`"},
+        set_text<&Options::connect>},
+    Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
+         "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
+         "of "
+         "every volume; -1: never)"},
+        set_number<&Options::verify, -1, 1'000'000>},
+    Row{{"", "UNDERSTUDY_VERIFY_PSNR", "DB", "30",
+         "a verified frame below this PSNR gives the volume back to the viewer"},
+        set_number<&Options::verify_psnr, 0, 200>},
+    Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
+        set_text<&Options::report>},
+    Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
+         "say for every volume what was recognised, and why draws were left to the viewer"},
+        set_switch<&Options::explain>},
+    Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
+         "save the composited float pictures: frame_0001.pfm and frame_0001_alpha.pfm, …"},
+        set_text<&Options::save_frames>},
+    Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "colour the pixels that Understudy drew"},
+        set_switch<&Options::debug_tint>},
+    Row{{"", "UNDERSTUDY_DISABLE", "", "off", "leave every call to the real OpenGL"},
+        set_switch<&Options::disable>},
+    Row{{"", "UNDERSTUDY_CHAIN", "NAMES", "track volume driver", "the stream processing units, first to last"},
+        set_text<&Options::chain>},
+    Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
+        set_text<&Options::run_dir>},
+};
+
+constexpr auto texts = [] {
+  std::array<OptionText, rows.size()> only_texts{};
+  for (std::size_t i = 0; i < rows.size(); ++i) only_texts[i] = rows[i].text;
+  return only_texts;
+}();
+
+}  // namespace
+
+std::span<const OptionText> option_table() {
+  return texts;
+}
+
+bool set_option(Options& options, std::string_view environment, const std::string& text) {
+  for (const Row& row : rows) {
+    if (environment == row.text.environment) return row.set(options, text);
+  }
+  return false;
+}
+
+Options options_from_environment() {
+  Options options;
+  for (const Row& row : rows) {
+    const char* text = std::getenv(row.text.environment);
+    if (text == nullptr || row.set(options, text)) continue;
+    std::fprintf(stderr, "understudy: %s=%s is not a value this option takes (%s); using %s\n",
+                 row.text.environment, text, row.text.help,
+                 *row.text.fallback == '\0' ? "none" : row.text.fallback);
+  }
+  return options;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,57 @@
+// The names in the JSON report, once. They are a promise to whoever reads reports: keys are added, never
+// renamed.
+#pragma once
+
+namespace understudy::spu::report_key {
+
+// The run, summed over its processes.
+constexpr const char* frames = "frames";
+constexpr const char* frames_substituted = "frames_substituted";
+constexpr const char* frames_left = "frames_left";
+constexpr const char* nodes = "nodes";
+constexpr const char* remote = "remote";  ///< whether the viewer's whole stream was drawn elsewhere
+constexpr const char* processes = "processes";
+constexpr const char* time_ms = "time_ms";
+constexpr const char* left_out = "left_out";  ///< {what: amount}
+constexpr const char* frames_detail = "frames_detail";
+constexpr const char* volumes = "volumes";
+
+// processes[]
+constexpr const char* pid = "pid";
+constexpr const char* program = "program";
+constexpr const char* calls = "calls";
+
+// time_ms: medians over all frames, those with a substituted volume, and those whose volume the application
+// drew.
+constexpr const char* frame_median = "frame_median";
+constexpr const char* substituted_median = "substituted_median";
+constexpr const char* application_median = "application_median";
+
+// left_out
+constexpr const char* samples_skipped = "samples_skipped";
+constexpr const char* rays_ended_early = "rays_ended_early";
+constexpr const char* blocks_empty = "blocks_empty";
+constexpr const char* nodes_idle = "nodes_idle";
+
+// frames_detail[]
+constexpr const char* frame = "frame";
+constexpr const char* time = "time_ms";
+constexpr const char* render_time = "render_ms";
+constexpr const char* setting = "setting";
+constexpr const char* error_rms = "error_rms";  ///< null where not measured
+
+// volumes[]
+constexpr const char* texture = "texture";
+constexpr const char* size = "size";
+constexpr const char* texture_format = "texture_format";
+constexpr const char* draws = "draws";
+constexpr const char* substituted = "substituted";
+constexpr const char* left = "left";
+constexpr const char* left_because = "left_because";  ///< {reason: count}
+constexpr const char* explanation = "explanation";
+constexpr const char* verify = "verify";
+constexpr const char* max = "max";
+constexpr const char* rms = "rms";
+constexpr const char* psnr = "psnr";  ///< dB; null when nothing was verified or the pictures are equal
+
+}  // namespace understudy::spu::report_key

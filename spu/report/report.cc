@@ -1,0 +1,342 @@
+#include "spu/report/report.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <system_error>
+
+#include "spu/report/keys.h"
+
+namespace understudy::spu {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using ReasonCounts = std::map<std::string, std::uint64_t>;
+
+/// A fixed field that a dying process may have left without its closing zero.
+template <std::size_t size>
+std::string text_in(const char (&field)[size]) {
+  return {field, strnlen(field, size)};
+}
+
+std::span<const VolumeCounters> volumes_of(const ProcessCounters& process) {
+  const auto count = std::min<std::uint32_t>(process.volumes.load(), max_counted_volumes);
+  return {process.volume, count};
+}
+
+/// Oldest first; the ring holds the last max_frame_records frames.
+template <typename Visit>
+void for_each_kept_frame(const ProcessCounters& process, Visit visit) {
+  const std::uint64_t frames = process.frames.load();
+  const std::uint64_t first = frames > max_frame_records ? frames - max_frame_records : 0;
+  for (std::uint64_t number = first; number < frames; ++number) {
+    visit(number, process.frame[number % max_frame_records]);
+  }
+}
+
+std::uint64_t calls_of(const ProcessCounters& process) {
+  std::uint64_t calls = 0;
+  for (const std::uint64_t& slot : process.calls) calls += slot;
+  return calls;
+}
+
+bool did_something(const ProcessCounters& process) {
+  return process.frames.load() > 0 || process.volumes.load() > 0 || calls_of(process) > 0;
+}
+
+ReasonCounts reasons_of(const VolumeCounters& volume) {
+  ReasonCounts reasons;
+  for (const ReasonCount& reason : volume.left_because) {
+    if (const std::uint64_t count = reason.count.load(); count > 0) reasons[text_in(reason.reason)] += count;
+  }
+  return reasons;
+}
+
+Json median(std::vector<double> values) {
+  if (values.empty()) return nullptr;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+Json median_times(Processes processes) {
+  std::vector<double> all;
+  std::vector<double> substituted;
+  std::vector<double> application;
+  for (const ProcessCounters* process : processes) {
+    for_each_kept_frame(*process, [&](std::uint64_t, const FrameRecord& frame) {
+      all.push_back(frame.time_ms);
+      if (frame.substituted > 0) substituted.push_back(frame.time_ms);
+      if (frame.substituted == 0 && frame.left > 0) application.push_back(frame.time_ms);
+    });
+  }
+  return {{report_key::frame_median, median(std::move(all))},
+          {report_key::substituted_median, median(std::move(substituted))},
+          {report_key::application_median, median(std::move(application))}};
+}
+
+volume::FrameCounts operator+(volume::FrameCounts sum, const volume::FrameCounts& more) {
+  sum.samples += more.samples;
+  sum.samples_taken += more.samples_taken;
+  sum.rays_terminated += more.rays_terminated;
+  sum.blocks_empty += more.blocks_empty;
+  sum.nodes_idle += more.nodes_idle;
+  return sum;
+}
+
+Json left_out(const volume::FrameCounts& counts) {
+  return {{report_key::samples_skipped, counts.samples - std::min(counts.samples, counts.samples_taken)},
+          {report_key::rays_ended_early, counts.rays_terminated},
+          {report_key::blocks_empty, counts.blocks_empty},
+          {report_key::nodes_idle, counts.nodes_idle}};
+}
+
+Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame) {
+  Json detail{{report_key::frame, number},
+              {report_key::pid, pid},
+              {report_key::time, frame.time_ms},
+              {report_key::render_time, frame.render_ms},
+              {report_key::setting, frame.substituted > 0 ? "the application's planes" : "the application"},
+              {report_key::substituted, frame.substituted},
+              {report_key::left, frame.left},
+              {report_key::error_rms, nullptr},
+              {report_key::left_out, left_out(frame.counts)}};
+  if (frame.error_rms >= 0) detail[report_key::error_rms] = frame.error_rms;
+  return detail;
+}
+
+double verified_rms(const VolumeCounters& volume) {
+  const auto frames = static_cast<double>(volume.verified_frames.load());
+  return frames > 0 ? std::sqrt(volume.verify_sum_sq / frames) : 0;
+}
+
+Json verified(const VolumeCounters& volume) {
+  const std::uint64_t frames = volume.verified_frames.load();
+  if (frames == 0) {
+    return {{report_key::frames, 0},
+            {report_key::max, nullptr},
+            {report_key::rms, nullptr},
+            {report_key::psnr, nullptr}};
+  }
+  const double rms = verified_rms(volume);
+  return {{report_key::frames, frames},
+          {report_key::max, volume.verify_max},
+          {report_key::rms, rms},
+          {report_key::psnr, rms > 0 ? Json(-20 * std::log10(rms)) : Json(nullptr)}};
+}
+
+Json report_of(const VolumeCounters& volume, std::int32_t pid) {
+  Json because = Json::object();
+  for (const auto& [reason, count] : reasons_of(volume)) because[reason] = count;
+  return {{report_key::pid, pid},
+          {report_key::texture, volume.texture},
+          {report_key::size, volume.size},
+          {report_key::texture_format, text_in(volume.texture_format)},
+          {report_key::draws,
+           {{report_key::substituted, volume.draws_substituted.load()},
+            {report_key::left, volume.draws_left.load()}}},
+          {report_key::left_because, because},
+          {report_key::verify, verified(volume)},
+          {report_key::explanation, text_in(volume.explanation)}};
+}
+
+struct Totals {
+  std::uint64_t frames = 0;
+  std::uint64_t frames_substituted = 0;
+  std::uint64_t frames_left = 0;
+  std::int32_t nodes = 0;
+  std::size_t volumes = 0;
+  volume::FrameCounts counts;
+  ReasonCounts reasons;
+};
+
+Totals totals_of(Processes processes) {
+  Totals totals;
+  for (const ProcessCounters* process : processes) {
+    totals.frames += process->frames.load();
+    totals.frames_substituted += process->frames_substituted.load();
+    totals.frames_left += process->frames_left.load();
+    // Not a sum: all processes of a run share one node group.
+    totals.nodes = std::max(totals.nodes, process->nodes);
+    totals.counts = totals.counts + process->total;
+    for (const VolumeCounters& volume : volumes_of(*process)) {
+      ++totals.volumes;
+      for (const auto& [reason, count] : reasons_of(volume)) totals.reasons[reason] += count;
+    }
+  }
+  return totals;
+}
+
+std::string counted(std::uint64_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string listed(const ReasonCounts& reasons) {
+  std::string list;
+  for (const auto& [reason, count] : reasons) {
+    list +=
+        fmt::format("{}{}{}", list.empty() ? "" : "; ", reason, count > 1 ? fmt::format(" ({}x)", count) : "");
+  }
+  return list;
+}
+
+}  // namespace
+
+void UnmapCounters::operator()(const ProcessCounters* counters) const {
+  munmap(const_cast<ProcessCounters*>(counters), sizeof(ProcessCounters));
+}
+
+std::vector<MappedCounters> read_counters(const std::filesystem::path& folder) {
+  std::vector<MappedCounters> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() != ".counters" || found.size() >= max_counted_processes) continue;
+    const int file = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0) continue;
+    struct stat status {};
+    void* mapped = MAP_FAILED;
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
+        status.st_size >= static_cast<off_t>(sizeof(ProcessCounters))) {
+      mapped = mmap(nullptr, sizeof(ProcessCounters), PROT_READ, MAP_SHARED, file, 0);
+    }
+    close(file);
+    if (mapped == MAP_FAILED) continue;
+    MappedCounters counters(static_cast<const ProcessCounters*>(mapped));
+    if (counters->magic == counters_magic) found.push_back(std::move(counters));
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a->pid < b->pid; });
+  return found;
+}
+
+std::string report_json(Processes processes) {
+  const Totals totals = totals_of(processes);
+  Json report{{report_key::frames, totals.frames},
+              {report_key::frames_substituted, totals.frames_substituted},
+              {report_key::frames_left, totals.frames_left},
+              {report_key::nodes, totals.nodes},
+              {report_key::remote, false},
+              {report_key::processes, Json::array()},
+              {report_key::time_ms, median_times(processes)},
+              {report_key::left_out, left_out(totals.counts)},
+              {report_key::volumes, Json::array()},
+              {report_key::frames_detail, Json::array()}};
+  for (const ProcessCounters* process : processes) {
+    if (!did_something(*process)) continue;
+    report[report_key::processes].push_back({{report_key::pid, process->pid},
+                                             {report_key::program, text_in(process->program)},
+                                             {report_key::calls, calls_of(*process)}});
+    for (const VolumeCounters& volume : volumes_of(*process)) {
+      report[report_key::volumes].push_back(report_of(volume, process->pid));
+    }
+    for_each_kept_frame(*process, [&](std::uint64_t number, const FrameRecord& frame) {
+      report[report_key::frames_detail].push_back(detail_of(number, process->pid, frame));
+    });
+  }
+  // Names come from other programs' memory: bytes that are no UTF-8 are replaced, never thrown at.
+  return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_line(Processes processes) {
+  const Totals totals = totals_of(processes);
+  const std::string where =
+      totals.nodes > 0 ? counted(static_cast<std::uint64_t>(totals.nodes), "node") : "embedded";
+  std::string line = fmt::format("understudy: {} seen, {}: {} substituted ({}), {} left to the application",
+                                 counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
+                                 totals.frames_substituted, where, totals.frames_left);
+  if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);
+  return line;
+}
+
+std::string explanation_text(Processes processes) {
+  std::string text;
+  for (const ProcessCounters* process : processes) {
+    if (!did_something(*process)) continue;
+    text += fmt::format("understudy: process {} ({}): {}, {}\n", process->pid, text_in(process->program),
+                        counted(calls_of(*process), "OpenGL call"), counted(process->frames.load(), "frame"));
+    for (const VolumeCounters& volume : volumes_of(*process)) {
+      text += fmt::format("understudy:   texture {}, {} x {} x {} {}: {} of slices substituted, {} left\n",
+                          volume.texture, volume.size[0], volume.size[1], volume.size[2],
+                          text_in(volume.texture_format), counted(volume.draws_substituted.load(), "run"),
+                          volume.draws_left.load());
+      if (volume.explanation[0] != '\0') {
+        text += fmt::format("understudy:     recognised: {}\n", text_in(volume.explanation));
+      }
+      for (const auto& [reason, count] : reasons_of(volume)) {
+        text += fmt::format("understudy:     left to the application {}x: {}\n", count, reason);
+      }
+      if (const std::uint64_t frames = volume.verified_frames.load(); frames > 0) {
+        text += fmt::format("understudy:     verified on {}: max {:.4g}, RMS {:.4g}\n",
+                            counted(frames, "frame"), volume.verify_max, verified_rms(volume));
+      }
+    }
+  }
+  const volume::FrameCounts all = totals_of(processes).counts;
+  if (all.samples > 0) {
+    text += fmt::format("understudy: left out: {} of {} samples, {} ended early, {} empty\n",
+                        all.samples - std::min(all.samples, all.samples_taken), all.samples,
+                        counted(all.rays_terminated, "ray"), counted(all.blocks_empty, "block"));
+  }
+  return text;
+}
+
+void replace_file(const std::filesystem::path& path, const std::string& text) {
+  const auto fail = [&](const char* what) {
+    throw std::runtime_error(
+        fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
+  };
+  const std::string beside = fmt::format("{}.{}.part", path.string(), getpid());
+  std::FILE* file = std::fopen(beside.c_str(), "we");
+  if (file == nullptr) fail("write");
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const bool closed = std::fclose(file) == 0;
+  if (!written || !closed || std::rename(beside.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    std::remove(beside.c_str());
+    errno = reason;
+    fail("finish");
+  }
+}
+
+bool write_report_now(const std::string& path) noexcept {
+  static std::atomic<bool> complained = false;
+  try {
+    const ProcessCounters* const self = &process_counters();
+    replace_file(path, report_json(Processes(&self, 1)));
+    return true;
+  } catch (const std::exception& error) {
+    if (!complained.exchange(true)) std::fprintf(stderr, "understudy: %s\n", error.what());
+    return false;
+  }
+}
+
+void write_report_when_due(const std::string& path) noexcept {
+  using Clock = std::chrono::steady_clock;
+  constexpr int share = 50;  // one part writing in 50 parts of run time
+  constexpr std::chrono::milliseconds soonest(500);
+  static std::atomic<Clock::rep> due = 0;
+  const Clock::time_point start = Clock::now();
+  Clock::rep expected = due.load();
+  if (start.time_since_epoch().count() < expected) return;
+  // One thread writes; the others pass.
+  if (!due.compare_exchange_strong(expected, (start + std::chrono::hours(1)).time_since_epoch().count()))
+    return;
+  write_report_now(path);
+  const Clock::duration cost = Clock::now() - start;
+  due = (Clock::now() + std::max<Clock::duration>(soonest, share * cost)).time_since_epoch().count();
+}
+
+}  // namespace understudy::spu

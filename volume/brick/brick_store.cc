@@ -1,0 +1,278 @@
+#include "volume/brick/brick_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+namespace understudy::volume {
+
+namespace {
+
+constexpr int block_cells = BrickStore::block_cells;
+constexpr int block_row = BrickStore::block_row;
+constexpr int block_texels = BrickStore::block_texels;
+
+constexpr std::size_t blocks_per_chunk = 256;
+
+float as_value(std::uint8_t v) {
+  return v;
+}
+float as_value(std::uint16_t v) {
+  return v;
+}
+float as_value(float v) {
+  return v;
+}
+
+float sane(float v) {
+  return std::clamp(v, -BrickStore::largest_value, BrickStore::largest_value);
+}  // keeps NaN
+
+/// The bits of one texel, which name a constant block.
+template <typename Texel>
+std::uint32_t bits(Texel texel) {
+  if constexpr (sizeof(Texel) == 4)
+    return std::bit_cast<std::uint32_t>(texel);
+  else
+    return texel;
+}
+
+}  // namespace
+
+BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells)
+    : volume_(volume), lattice_(cell_lattice(volume)), owned_(owned_cells) {
+  channels_ = volume.type == TexelType::rgba8 ? 4 : 1;
+  block_bytes_ = (block_texels * bytes_per_texel(volume.type) + 15) / 16 * 16;
+
+  const float unit = volume.type == TexelType::f32 ? 1.0F : volume.type == TexelType::u16 ? 65535.0F : 255.0F;
+  for (int k = 0; k < 4; ++k) {
+    const float b = volume.border[k];
+    border_[k] = volume.type == TexelType::f32 ? (std::isnan(b) ? 0.0F : sane(b))
+                                               : (b > 0 ? std::min(b, 1.0F) * unit : 0.0F);
+  }
+
+  bool any = true;
+  const TexelBox all = lattice_.box();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (owned_.low[axis] < all.low[axis] || owned_.high[axis] > all.high[axis] ||
+        owned_.low[axis] > owned_.high[axis])
+      throw std::invalid_argument(
+          fmt::format("volume {}: cells {} to {} along axis {} are outside the volume's {} to {}", volume.id,
+                      owned_.low[axis], owned_.high[axis], axis, all.low[axis], all.high[axis]));
+    any = any && owned_.low[axis] < owned_.high[axis];
+  }
+  slice_seen_.resize(std::size_t(volume.stored.high[2] - volume.stored.low[2]));
+  if (!any) return;
+  std::size_t count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    first_block_[axis] = (owned_.low[axis] - all.low[axis]) / block_cells;
+    const int end = (owned_.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
+    block_counts_[axis] = end - first_block_[axis];
+    count *= std::size_t(block_counts_[axis]);
+  }
+  blocks_.resize(count);
+  ranges_.resize(count * channels_);
+  layers_.resize(std::size_t(block_counts_[2]));
+}
+
+void BrickStore::add_slices(int first_slice, int slices, std::span<const std::byte> texels) {
+  const TexelBox& stored = volume_.stored;
+  if (slices < 1 || first_slice < stored.low[2] || slices > stored.high[2] - first_slice)
+    throw std::invalid_argument(
+        fmt::format("volume {}: slab of {} slices from {} is outside the stored slices {} to {}", volume_.id,
+                    slices, first_slice, stored.low[2], stored.high[2]));
+  const std::size_t slice_bytes = std::size_t(stored.high[0] - stored.low[0]) *
+                                  std::size_t(stored.high[1] - stored.low[1]) * bytes_per_texel(volume_.type);
+  if (texels.size() != slice_bytes * std::size_t(slices))
+    throw std::invalid_argument(fmt::format("volume {}: slab of {} slices holds {} bytes instead of {}",
+                                            volume_.id, slices, texels.size(),
+                                            slice_bytes * std::size_t(slices)));
+  for (int s = 0; s < slices; ++s) {
+    const auto index = std::size_t(first_slice - stored.low[2] + s);
+    if (slice_seen_[index])
+      throw std::invalid_argument(fmt::format("volume {}: slice {} came twice", volume_.id, first_slice + s));
+    slice_seen_[index] = true;
+    if (blocks_.empty()) continue;
+    const std::byte* slice = texels.data() + std::size_t(s) * slice_bytes;
+    // Wrapped and clamped axes show one slice at several points of the lattice.
+    const int first = first_block_[2] * block_cells, last = first + block_counts_[2] * block_cells;
+    for (int z = first; z <= last; ++z)
+      if (lattice_texel(volume_, lattice_, 2, std::min(z, lattice_.cells[2])) == first_slice + s)
+        place_slice(z, slice);
+  }
+}
+
+void BrickStore::place_slice(int lattice_z, const std::byte* slice) {
+  // A block face belongs to both neighbours.
+  for (int layer = (lattice_z - 1) / block_cells; layer <= lattice_z / block_cells; ++layer) {
+    const int index = layer - first_block_[2];
+    if (index < 0 || index >= block_counts_[2] || lattice_z < layer * block_cells) continue;
+    Layer& target = layers_[std::size_t(index)];
+    if (target.texels.empty())
+      target.texels.resize(std::size_t(block_counts_[0]) * std::size_t(block_counts_[1]) * block_texels *
+                           bytes_per_texel(volume_.type));
+    const int z_in_block = lattice_z - layer * block_cells;
+    switch (volume_.type) {
+      case TexelType::u8:
+        fill_layer_slice<std::uint8_t>(target, z_in_block, slice);
+        break;
+      case TexelType::u16:
+        fill_layer_slice<std::uint16_t>(target, z_in_block, slice);
+        break;
+      case TexelType::f32:
+        fill_layer_slice<float>(target, z_in_block, slice);
+        break;
+      case TexelType::rgba8:
+        fill_layer_slice<std::uint32_t>(target, z_in_block, slice);
+        break;
+    }
+    if (--target.slices_missing == 0) complete_layer(index);
+  }
+}
+
+template <typename Texel>
+void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const std::byte* slice) {
+  const int row_texels = volume_.stored.high[0] - volume_.stored.low[0];
+  // Where each lattice point of the layer finds its texel in the slice.
+  const auto sources = [&](int axis) {
+    std::vector<int> source;
+    for (int block = 0; block < block_counts_[axis]; ++block)
+      for (int k = 0; k < block_row; ++k) {
+        const int point = std::min((first_block_[axis] + block) * block_cells + k, lattice_.cells[axis]);
+        source.push_back(lattice_texel(volume_, lattice_, axis, point) - volume_.stored.low[axis]);
+      }
+    return source;
+  };
+  const std::vector<int> columns = sources(0), rows = sources(1);
+  std::vector<Texel> row(static_cast<std::size_t>(row_texels));
+  for (int by = 0; by < block_counts_[1]; ++by)
+    for (int y = 0; y < block_row; ++y) {
+      std::memcpy(row.data(), slice + std::size_t(rows[by * block_row + y]) * row.size() * sizeof(Texel),
+                  row.size() * sizeof(Texel));
+      if constexpr (std::is_same_v<Texel, float>)
+        for (float& v : row) v = sane(v);
+      for (int bx = 0; bx < block_counts_[0]; ++bx) {
+        std::array<Texel, block_row> piece;
+        for (int x = 0; x < block_row; ++x) piece[x] = row[std::size_t(columns[bx * block_row + x])];
+        const std::size_t block = std::size_t(by) * block_counts_[0] + bx;
+        std::memcpy(
+            layer.texels.data() +
+                (block * block_texels + std::size_t(z_in_block * block_slice + y * block_row)) * sizeof(Texel),
+            piece.data(), sizeof piece);
+      }
+    }
+}
+
+void BrickStore::complete_layer(int layer_index) {
+  switch (volume_.type) {
+    case TexelType::u8:
+      compact_layer<std::uint8_t>(layer_index);
+      break;
+    case TexelType::u16:
+      compact_layer<std::uint16_t>(layer_index);
+      break;
+    case TexelType::f32:
+      compact_layer<float>(layer_index);
+      break;
+    case TexelType::rgba8:
+      compact_layer<std::uint32_t>(layer_index);
+      break;
+  }
+  layers_[std::size_t(layer_index)].texels = std::vector<std::byte>();
+}
+
+template <typename Texel>
+void BrickStore::compact_layer(int layer_index) {
+  const std::size_t in_layer = std::size_t(block_counts_[0]) * std::size_t(block_counts_[1]);
+  const std::byte* source = layers_[std::size_t(layer_index)].texels.data();
+  std::array<Texel, block_texels> texels;
+  for (std::size_t b = 0; b < in_layer; ++b, source += sizeof texels) {
+    std::memcpy(texels.data(), source, sizeof texels);
+    const std::size_t block = std::size_t(layer_index) * in_layer + b;
+    add_ranges(block, texels.data());
+    const auto value = bits(texels[0]);
+    const bool constant = std::all_of(texels.begin(), texels.end(), [&](Texel t) { return bits(t) == value; });
+    if (constant) {
+      if (const auto known = constant_blocks_.find(value); known != constant_blocks_.end()) {
+        blocks_[block] = known->second;
+        continue;
+      }
+    }
+    std::byte* place = allocate_block();
+    std::memcpy(place, texels.data(), sizeof texels);
+    blocks_[block] = place;
+    if (constant) constant_blocks_.emplace(value, place);
+  }
+}
+
+template <typename Texel>
+void BrickStore::add_ranges(std::size_t block, const Texel* texels) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Range* ranges = ranges_.data() + block * channels_;
+  if constexpr (std::is_same_v<Texel, std::uint32_t>) {
+    std::array<std::uint8_t, 4> low{255, 255, 255, 255}, high{};
+    for (int i = 0; i < block_texels; ++i) {
+      const auto rgba = std::bit_cast<std::array<std::uint8_t, 4>>(texels[i]);
+      for (int k = 0; k < 4; ++k) {
+        low[k] = std::min(low[k], rgba[k]);
+        high[k] = std::max(high[k], rgba[k]);
+      }
+    }
+    for (int k = 0; k < 4; ++k) ranges[k] = {float(low[k]), float(high[k])};
+  } else {
+    float low = infinity, high = -infinity;
+    for (int i = 0; i < block_texels; ++i) {
+      const float v = as_value(texels[i]);
+      low = v < low ? v : low;  // written so that NaN changes nothing
+      high = v > high ? v : high;
+    }
+    *ranges = {low, high};
+  }
+
+  const std::size_t nx = std::size_t(block_counts_[0]), ny = std::size_t(block_counts_[1]);
+  const std::array<int, 3> position{int(block % nx), int(block / nx % ny), int(block / (nx * ny))};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (volume_.wrap[axis] != Wrap::border) continue;
+    const int index = first_block_[axis] + position[axis];
+    const bool at_low = index == 0, at_high = (index + 1) * block_cells >= lattice_.cells[axis];
+    if (!at_low && !at_high) continue;
+    for (std::size_t k = 0; k < channels_; ++k) {
+      ranges[k].low = std::min(ranges[k].low, border_[k]);
+      ranges[k].high = std::max(ranges[k].high, border_[k]);
+    }
+  }
+}
+
+std::byte* BrickStore::allocate_block() {
+  if (chunks_.empty() || chunk_used_ == blocks_per_chunk) {
+    chunks_.push_back(std::make_unique<std::byte[]>(blocks_per_chunk * block_bytes_));
+    chunk_used_ = 0;
+  }
+  return chunks_.back().get() + chunk_used_++ * block_bytes_;
+}
+
+void BrickStore::finish() {
+  for (std::size_t i = 0; i < slice_seen_.size(); ++i)
+    if (!slice_seen_[i])
+      throw std::invalid_argument(
+          fmt::format("volume {}: slice {} never came", volume_.id, int(i) + volume_.stored.low[2]));
+  constant_blocks_.clear();
+  layers_.clear();
+  finished_ = true;
+}
+
+std::size_t BrickStore::bytes() const {
+  std::size_t sum = sizeof *this + chunks_.size() * blocks_per_chunk * block_bytes_ +
+                    blocks_.capacity() * sizeof(blocks_[0]) + ranges_.capacity() * sizeof(Range);
+  for (const Layer& layer : layers_) sum += layer.texels.capacity();
+  return sum;
+}
+
+}  // namespace understudy::volume

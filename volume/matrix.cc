@@ -1,0 +1,108 @@
+#include "volume/matrix.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace understudy::volume {
+
+double length(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+
+Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
+  Matrix4 product{};
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      for (int k = 0; k < 4; ++k) product[4 * row + column] += a[4 * row + k] * b[4 * k + column];
+  return product;
+}
+
+Vec4 transform(const Matrix4& m, const Vec4& v) {
+  Vec4 image{};
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k < 4; ++k) image[row] += m[4 * row + k] * v[k];
+  return image;
+}
+
+std::optional<Matrix4> inverse(const Matrix4& m) {
+  // Scale by powers of two, which is free of rounding: m = R a C with rows and columns of `a` near one.
+  std::array<double, 4> row_scale{1, 1, 1, 1}, column_scale{1, 1, 1, 1};
+  Matrix4 a = m;
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    for (int i = 0; i < 4; ++i) {
+      double largest = 0;
+      for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[4 * i + k]));
+      if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+      const double s = std::exp2(-std::ilogb(largest));
+      if (!std::isfinite(s) || s == 0) return std::nullopt;
+      row_scale[i] *= s;
+      for (int k = 0; k < 4; ++k) a[4 * i + k] *= s;
+    }
+    for (int i = 0; i < 4; ++i) {
+      double largest = 0;
+      for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[4 * k + i]));
+      if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+      const double s = std::exp2(-std::ilogb(largest));
+      if (!std::isfinite(s) || s == 0) return std::nullopt;
+      column_scale[i] *= s;
+      for (int k = 0; k < 4; ++k) a[4 * k + i] *= s;
+    }
+  }
+
+  // Gauss-Jordan with full pivoting on [a | I].
+  constexpr double smallest_pivot = 1e-14;
+  Matrix4 right = identity();
+  std::array<int, 4> pivot_column{};
+  std::array<bool, 4> used{};
+  for (int step = 0; step < 4; ++step) {
+    int row = step, column = -1;
+    double best = 0;
+    for (int i = step; i < 4; ++i)
+      for (int k = 0; k < 4; ++k)
+        if (!used[k] && std::abs(a[4 * i + k]) > best) {
+          best = std::abs(a[4 * i + k]);
+          row = i;
+          column = k;
+        }
+    if (!(best > smallest_pivot)) return std::nullopt;
+    used[column] = true;
+    pivot_column[step] = column;
+    for (int k = 0; k < 4; ++k) {
+      std::swap(a[4 * row + k], a[4 * step + k]);
+      std::swap(right[4 * row + k], right[4 * step + k]);
+    }
+    const double pivot = a[4 * step + column];
+    for (int k = 0; k < 4; ++k) {
+      a[4 * step + k] /= pivot;
+      right[4 * step + k] /= pivot;
+    }
+    for (int i = 0; i < 4; ++i) {
+      const double factor = a[4 * i + column];
+      if (i == step || factor == 0) continue;
+      for (int k = 0; k < 4; ++k) {
+        a[4 * i + k] -= factor * a[4 * step + k];
+        right[4 * i + k] -= factor * right[4 * step + k];
+      }
+    }
+  }
+
+  Matrix4 result{};
+  for (int step = 0; step < 4; ++step)
+    for (int k = 0; k < 4; ++k) {
+      const int row = pivot_column[step];
+      result[4 * row + k] = right[4 * step + k] * column_scale[row] * row_scale[k];
+      if (!std::isfinite(result[4 * row + k])) return std::nullopt;
+    }
+  return result;
+}
+
+HalfSpace transform_half_space(const Matrix4& inverse_of_forward, const HalfSpace& plane) {
+  const Vec4 row{plane.normal[0], plane.normal[1], plane.normal[2], plane.offset};
+  Vec4 image{};
+  for (int column = 0; column < 4; ++column)
+    for (int k = 0; k < 4; ++k) image[column] += row[k] * inverse_of_forward[4 * k + column];
+  return {{image[0], image[1], image[2]}, image[3]};
+}
+
+}  // namespace understudy::volume

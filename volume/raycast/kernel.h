@@ -1,0 +1,43 @@
+// What the kernels share: a strip of rays goes in, premultiplied pixels come out. The generic kernel takes
+// every texel type, filter and operator and says plainly what is meant; the others are faster on one
+// combination and must give the same picture.
+#pragma once
+
+#include <cstdint>
+
+#include "volume/brick/brick_store.h"
+#include "volume/raycast/ray_setup.h"
+#include "volume/raycast/skip_map.h"
+#include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+/// Everything a kernel reads beside its rays. Either `table` or `map` is set.
+struct Scene {
+  const BrickStore* store = nullptr;
+  const SkipMap* skip = nullptr;
+  const TransferTable* table = nullptr;
+  const LinearMap* map = nullptr;
+  Operator op = Operator::over;
+  Filter filter = Filter::linear;
+  float termination = 0;
+  std::array<float, 3> top{};        ///< positions are clamped to [0, top]
+  std::array<float, 3> rounding{};   ///< of positions, bounded
+  std::array<bool, 3> has_border{};  ///< axes on which the border colour shows beyond [0, cells]
+};
+
+/// Early termination is tested once per so many samples: addresses then do not wait for opacities.
+constexpr int samples_between_tests = 8;
+
+struct KernelCounts {
+  std::uint64_t samples_taken = 0;
+  std::uint64_t rays_terminated = 0;
+};
+
+/// Writes the pixel of ray r to rgba + 4 r.
+using Kernel = void (*)(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+
+void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+
+}  // namespace understudy::volume

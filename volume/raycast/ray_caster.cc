@@ -1,0 +1,238 @@
+#include "volume/raycast/ray_caster.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <variant>
+
+#include "volume/matrix.h"
+#include "volume/raycast/kernel.h"
+#include "volume/raycast/ray_setup.h"
+#include "volume/raycast/skip_map.h"
+#include "volume/raycast/transfer_table.h"
+
+namespace understudy::volume {
+
+namespace {
+
+constexpr std::size_t max_clip_planes = 64;
+constexpr int max_window = 65536;
+
+template <typename... Args>
+[[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
+  throw std::invalid_argument(fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <typename Range>
+bool all_finite(const Range& values) {
+  return std::all_of(values.begin(), values.end(), [](auto v) { return std::isfinite(v); });
+}
+
+bool believable(const Rect& rect) {
+  const auto in = [](int v) { return v >= -max_window && v <= max_window; };
+  return in(rect.x) && in(rect.y) && in(rect.width) && in(rect.height);
+}
+
+void validate_classification(const VolumeDescription& volume, const Classification& classification) {
+  if (const auto* function = std::get_if<TransferFunction>(&classification)) {
+    if (volume.type == TexelType::rgba8)
+      refuse("a volume of colours needs a linear map, not a transfer function");
+    if (function->entries.size() < 2 || function->entries.size() > max_table_entries)
+      refuse("the transfer function has {} entries (2 to {} are possible)", function->entries.size(),
+             max_table_entries);
+    if (!std::isfinite(function->low) || !std::isfinite(function->high) || !(function->low < function->high))
+      refuse("the transfer function spans values {} to {}", function->low, function->high);
+    for (const Rgba& entry : function->entries)
+      if (!all_finite(entry)) refuse("the transfer function holds a value that is not finite");
+  } else {
+    const LinearMap& map = std::get<LinearMap>(classification);
+    if (volume.type != TexelType::rgba8)
+      refuse("a scalar field needs a transfer function, not a linear map of colours");
+    if (!all_finite(map.matrix) || std::isnan(map.alpha_above))
+      refuse("the map of colours holds a value that is not finite");
+  }
+}
+
+/// Whether a block of colours can show anything: bounds of the mapped components over the block's ranges.
+bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels) {
+  std::array<float, 4> highest{};
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const float m = map.matrix[4 * row + k] / 255.0F;
+      highest[row] += std::max(m * texels[k].low, m * texels[k].high);
+    }
+  constexpr float rounding = 1e-5F;  // of the map, so that no fragment above the threshold is lost
+  if (map.alpha_above >= 0 && highest[3] + rounding <= map.alpha_above) return false;
+  if (map.multiply_by_alpha) return highest[3] > 0;
+  return std::any_of(highest.begin(), highest.end(), [](float v) { return v > 0; });
+}
+
+}  // namespace
+
+void validate(const VolumeDescription& volume, const RenderRequest& request) {
+  if (!all_finite(request.texture_to_clip))
+    refuse("the matrix from texture to clip space holds a value that is not finite");
+  if (!inverse(request.texture_to_clip)) refuse("the matrix from texture to clip space is singular");
+  if (!believable(request.viewport) || !believable(request.window) || request.viewport.empty())
+    refuse("viewport of {} x {} pixels at ({}, {})", request.viewport.width, request.viewport.height,
+           request.viewport.x, request.viewport.y);
+  const SlicePlanes& planes = request.planes;
+  if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
+    refuse("the slice planes hold a value that is not finite");
+  if (!(length(planes.normal) > 0)) refuse("the slice planes have no direction");
+  if (planes.count < 0 || planes.count > max_planes)
+    refuse("{} slice planes (0 to {} are possible)", planes.count, max_planes);
+  if (!all_finite(request.region.low) || !all_finite(request.region.high))
+    refuse("the region of the slices holds a value that is not finite");
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr double slack = 1e-6;
+    if (volume.wrap[axis] == Wrap::repeat &&
+        (request.region.low[axis] < -slack || request.region.high[axis] > 1 + slack))
+      refuse("slices reach beyond a repeating texture along axis {} ({} to {})", axis, request.region.low[axis],
+             request.region.high[axis]);
+  }
+  if (request.clip_planes.size() > max_clip_planes)
+    refuse("{} clip planes (at most {} are possible)", request.clip_planes.size(), max_clip_planes);
+  for (const HalfSpace& plane : request.clip_planes)
+    if (!all_finite(plane.normal) || !std::isfinite(plane.offset))
+      refuse("a clip plane holds a value that is not finite");
+  if (!all_finite(request.depth_range)) refuse("the depth range holds a value that is not finite");
+  if (!(request.termination >= 0 && request.termination < 1))
+    refuse("termination threshold {} is outside [0, 1)", request.termination);
+  if (request.depth &&
+      (!believable(request.depth->rect) || request.depth->depth.size() != request.depth->rect.pixels()))
+    refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
+           request.depth->rect.width, request.depth->rect.height);
+  validate_classification(volume, request.classification);
+}
+
+/// What depends on the classification alone (and on whether the operator is `min`, to which clear samples
+/// matter).
+struct RayCaster::Prepared {
+  Classification classification;
+  bool keeps_clear_samples = false;
+  std::optional<TransferTable> table;
+  SkipMap skip;
+
+  static SkipMap skip_map(const BrickStore& store, const Classification& classification,
+                          bool keeps_clear_samples, const std::optional<TransferTable>& table) {
+    std::vector<bool> visible(store.blocks());
+    for (std::size_t b = 0; b < visible.size(); ++b) {
+      const auto ranges = store.ranges(b);
+      if (keeps_clear_samples)
+        visible[b] = ranges[0].low <= ranges[0].high;
+      else if (table)
+        visible[b] = table->shows(ranges[0]);
+      else
+        visible[b] = shows(std::get<LinearMap>(classification), ranges);
+    }
+    return SkipMap(store.block_counts(), std::move(visible));
+  }
+
+  static std::optional<TransferTable> make_table(const BrickStore& store,
+                                                 const Classification& classification) {
+    const auto* function = std::get_if<TransferFunction>(&classification);
+    if (!function) return std::nullopt;
+    return TransferTable(*function, store.description().type);
+  }
+
+  Prepared(const BrickStore& store, const Classification& from, bool keeps_clear)
+      : classification(from),
+        keeps_clear_samples(keeps_clear),
+        table(make_table(store, classification)),
+        skip(skip_map(store, classification, keeps_clear, table)) {}
+};
+
+RayCaster::RayCaster(const BrickStore& store) : store_(&store) {}
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts) {
+  const BrickStore& store = *store_;
+  if (!store.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
+  validate(store.description(), request);
+  if (out.rgba.size() != 4 * out.rect.pixels())
+    refuse("an image of {} x {} pixels with {} values", out.rect.width, out.rect.height, out.rgba.size());
+  std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
+  if (store.empty()) return;
+
+  const bool keeps_clear_samples = request.op == Operator::min;
+  if (!prepared_ || prepared_->keeps_clear_samples != keeps_clear_samples ||
+      prepared_->classification != request.classification)
+    prepared_ = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+  counts.blocks += store.blocks();
+  counts.blocks_empty += prepared_->skip.empty_blocks();
+
+  const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
+  if (pixels.empty() || request.planes.count == 0) return;
+
+  const RaySetup setup(request, store);
+  Scene scene;
+  scene.store = &store;
+  scene.skip = &prepared_->skip;
+  scene.table = prepared_->table ? &*prepared_->table : nullptr;
+  scene.map = std::get_if<LinearMap>(&prepared_->classification);
+  scene.op = request.op;
+  scene.filter = request.filter;
+  scene.termination = request.termination;
+  scene.top = setup.top;
+  scene.rounding = setup.rounding;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
+  const Kernel kernel = generic_kernel;
+
+  tbb::combinable<FrameCounts> partial;
+  const auto render_tile = [&](int x, int y, int width, int height) {
+    FrameCounts& mine = partial.local();
+    RayStrip strip;
+    alignas(64) std::array<float, 4 * strip_rays> rgba;
+    for (int row = 0; row < height; row += strip_height) {
+      const int rows = std::min(strip_height, height - row);
+      if (!set_up_strip(setup, request, x, y + row, width, rows, strip)) continue;
+      for (std::size_t r = 0; r < strip_rays; ++r)
+        if (strip.first[r] <= strip.last[r]) {
+          ++mine.rays;
+          mine.samples += std::uint64_t(strip.last[r] - strip.first[r] + 1);
+        }
+      KernelCounts done;
+      kernel(scene, strip, rgba.data(), done);
+      mine.samples_taken += done.samples_taken;
+      mine.rays_terminated += done.rays_terminated;
+      for (int r = 0; r < rows; ++r)
+        std::copy_n(rgba.data() + 4 * r * tile_width, 4 * width, out.at(x, y + row + r));
+    }
+  };
+
+  constexpr int tile_height = 32;
+  const int columns = (pixels.width + tile_width - 1) / tile_width,
+            rows = (pixels.height + tile_height - 1) / tile_height;
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 1, 0, columns, 1),
+                    [&](const tbb::blocked_range2d<int>& range) {
+                      for (int row = range.rows().begin(); row < range.rows().end(); ++row)
+                        for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
+                          const int x = column * tile_width, y = row * tile_height;
+                          render_tile(pixels.x + x, pixels.y + y, std::min(tile_width, pixels.width - x),
+                                      std::min(tile_height, pixels.height - y));
+                        }
+                    });
+  partial.combine_each([&](const FrameCounts& c) {
+    counts.rays += c.rays;
+    counts.rays_terminated += c.rays_terminated;
+    counts.samples += c.samples;
+    counts.samples_taken += c.samples_taken;
+  });
+}
+
+void raycast(const BrickStore& store, const RenderRequest& request, Image& out, FrameCounts& counts) {
+  RayCaster(store).render(request, out, counts);
+}
+
+}  // namespace understudy::volume

@@ -1,0 +1,263 @@
+#include "volume/raycast/ray_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volume/raycast/ray_setup.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace understudy::volume {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Products and sums stay unfused here: every node must round alike, whatever its instruction set.
+
+/// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or is
+/// null.
+void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
+                std::array<double, 2> depth_range, int x, int y, int width, std::size_t offset,
+                RayStrip& strip) {
+  const hn::ScalableTag<double> d;
+  const hn::Rebind<float, decltype(d)> d_float;
+  const hn::Rebind<std::int32_t, decltype(d)> d_int;
+  using V = hn::Vec<decltype(d)>;
+  const std::size_t lanes = hn::Lanes(d);
+
+  const double ndc_y = setup.first_y + y * setup.pixel_to_y;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  for (std::size_t column = 0; column < tile_width; column += lanes) {
+    const V pixel = hn::Add(hn::Iota(d, double(column)), hn::Set(d, double(x)));
+    const V X = hn::Add(hn::Set(d, setup.first_x), hn::Mul(pixel, hn::Set(d, setup.pixel_to_x)));
+    const auto evaluate = [&](const LinearInPixel& l) HWY_ATTR {
+      return hn::Add(hn::Set(d, l.c + ndc_y * l.y), hn::Mul(X, hn::Set(d, l.x)));
+    };
+    const V det = evaluate(setup.det), sign = hn::CopySign(one, det);
+    V low = zero, high = hn::Set(d, double(setup.last_plane));
+    auto meets = hn::And(hn::Gt(hn::Abs(det), hn::Set(d, setup.smallest_det)),
+                         hn::Lt(hn::Iota(d, double(column)), hn::Set(d, double(width))));
+
+    // value + i slope >= 0 after both took the sign of det.
+    const auto limit = [&](V value, V slope, bool strict) HWY_ATTR {
+      value = hn::Mul(sign, value);
+      slope = hn::Mul(sign, slope);
+      const auto rising = hn::Gt(slope, zero), falling = hn::Lt(slope, zero);
+      const V crossing = hn::Div(hn::Neg(value), slope);
+      const V from = strict ? hn::Add(hn::Floor(crossing), one) : crossing;
+      const V to = strict ? hn::Sub(hn::Ceil(crossing), one) : crossing;
+      low = hn::IfThenElse(rising, hn::Max(low, from), low);
+      high = hn::IfThenElse(falling, hn::Min(high, to), high);
+      const auto holds = strict ? hn::Gt(value, zero) : hn::Ge(value, zero);
+      meets = hn::And(meets, hn::Or(holds, hn::Or(rising, falling)));
+    };
+    for (const IndexBound& bound : setup.bounds) limit(evaluate(bound.value), evaluate(bound.slope), false);
+    if (depth) {
+      // Window depth z / w * half + middle < D, times w > 0.
+      const V half = hn::Set(d, (depth_range[1] - depth_range[0]) / 2);
+      const V room = hn::Sub(hn::LoadU(d, depth + column), hn::Set(d, (depth_range[1] + depth_range[0]) / 2));
+      limit(hn::Sub(hn::Mul(evaluate(setup.clip_w.value), room), hn::Mul(evaluate(setup.clip_z.value), half)),
+            hn::Sub(hn::Mul(evaluate(setup.clip_w.slope), room), hn::Mul(evaluate(setup.clip_z.slope), half)),
+            !depth_or_equal);
+    }
+    low = hn::Ceil(low);
+    high = hn::Floor(high);
+    meets = hn::And(meets, hn::Le(low, high));
+
+    const V inverse = hn::Div(one, det);
+    low = hn::IfThenElseZero(meets, low);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const V slope = evaluate(setup.position[axis].slope);
+      const V at_first = hn::Mul(hn::Add(evaluate(setup.position[axis].value), hn::Mul(low, slope)), inverse);
+      const V rest = hn::Set(d, setup.resting_place[axis]);
+      const V step = hn::IfThenElseZero(meets, hn::Mul(slope, inverse));
+      hn::Store(hn::DemoteTo(d_float, hn::IfThenElse(meets, at_first, rest)), d_float,
+                strip.start[axis].data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, step), d_float, strip.step[axis].data() + offset + column);
+    }
+    const V last = hn::IfThenElse(meets, hn::Sub(high, low), hn::Set(d, -1.0));
+    hn::Store(hn::Zero(d_int), d_int, strip.first.data() + offset + column);
+    hn::Store(hn::DemoteTo(d_int, last), d_int, strip.last.data() + offset + column);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace understudy::volume
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "volume/matrix.h"
+
+namespace understudy::volume {
+
+HWY_EXPORT(set_up_row);
+
+namespace {
+
+/// A vector that is linear in the pixel.
+struct LinearVector {
+  Vec3 c, x, y;
+};
+
+LinearInPixel project(const Vec3& normal, const LinearVector& v) {
+  return {dot(normal, v.c), dot(normal, v.x), dot(normal, v.y)};
+}
+
+LinearInPixel sum(const LinearInPixel& a, const LinearInPixel& b) {
+  return {a.c + b.c, a.x + b.x, a.y + b.y};
+}
+LinearInPixel times(double factor, const LinearInPixel& a) {
+  return {factor * a.c, factor * a.x, factor * a.y};
+}
+
+/// Smallest k in [0, count] from which on `reached` holds (count: never), for a condition that stays once it
+/// holds.
+template <typename Reached>
+int first_reached(int count, double guess, Reached reached) {
+  const auto at = [&](int k) { return k >= count || (k >= 0 && reached(k)); };
+  const int near = guess > 0 ? int(std::min(guess, double(count))) : 0;  // NaN becomes 0
+  for (const int k : {near, near + 1, near - 1})
+    if (k <= count && at(k) && !at(k - 1)) return k;
+  int low = 0, high = count;
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    if (reached(middle))
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+/// Narrows the samples of ray `r` to those in the owned cells. Positions are monotone in k on every axis, in
+/// float arithmetic too, so these are one interval; it is found with the very arithmetic that samples.
+void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
+  int first = strip.first[r], last = strip.last[r];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float start = strip.start[axis][r], step = strip.step[axis][r];
+    const auto narrow = [&](float bound, bool keep_above) {
+      if (first > last) return;
+      if (step == 0) {
+        if ((start >= bound) != keep_above) last = first - 1;
+        return;
+      }
+      const auto above = [&](int k) { return float(k) * step + start >= bound; };
+      const bool rising = step > 0;
+      const int crossing = first_reached(last + 1, std::ceil((double(bound) - double(start)) / double(step)),
+                                         [&](int k) { return above(k) == rising; });
+      if (rising == keep_above)
+        first = std::max(first, crossing);
+      else
+        last = std::min(last, crossing - 1);
+    };
+    if (setup.low_is_bound[axis]) narrow(setup.owned_low[axis], true);
+    if (setup.high_is_bound[axis]) narrow(setup.owned_high[axis], false);
+  }
+  strip.first[r] = first;
+  strip.last[r] = last;
+  if (first > last)  // samples of other ranks may lie in blocks that are not held
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      strip.start[axis][r] = setup.resting_place[axis];
+      strip.step[axis][r] = 0;
+    }
+}
+
+}  // namespace
+
+RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
+  const Matrix4& m = request.texture_to_clip;
+  const auto row = [&](int r) { return Vec3{m[4 * r], m[4 * r + 1], m[4 * r + 2]}; };
+  const Vec3 a0 = row(0), a1 = row(1), a3 = row(3);
+  const double w0 = m[3], w1 = m[7], w3 = m[15];
+  const Vec3& n = request.planes.normal;
+
+  // The ray's direction, and where it meets the plane through the origin: both times det.
+  const LinearVector direction{cross(a0, a1), cross(a1, a3), cross(a3, a0)};
+  const LinearVector origin{cross(n, subtract(scale(a1, w0), scale(a0, w1))),
+                            cross(n, subtract(scale(a3, w1), scale(a1, w3))),
+                            cross(n, subtract(scale(a0, w3), scale(a3, w0)))};
+  det = project(n, direction);
+  constexpr double parallel = 1e-12;
+  smallest_det =
+      parallel * length(n) * std::max({length(direction.c), length(direction.x), length(direction.y)});
+
+  /// normal . t + offset at sample i, times det.
+  const auto at_sample = [&](const Vec3& normal, double offset) {
+    const LinearInPixel along = project(normal, direction);
+    return IndexBound{sum(sum(project(normal, origin), times(request.planes.first, along)), times(offset, det)),
+                      times(request.planes.spacing, along)};
+  };
+  const auto negated = [](const IndexBound& b) { return IndexBound{times(-1, b.value), times(-1, b.slope)}; };
+
+  const CellLattice& lattice = store.lattice();
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 unit{};
+    unit[axis] = 1;
+    bounds.push_back(at_sample(unit, -request.region.low[axis]));
+    bounds.push_back(negated(at_sample(unit, -request.region.high[axis])));
+
+    Vec3 texels{};
+    texels[axis] = store.description().size[axis];
+    position[axis] = at_sample(texels, -0.5 - lattice.origin[axis]);
+
+    const TexelBox& owned = store.owned_cells();
+    const int low = owned.low[axis] - lattice.origin[axis], high = owned.high[axis] - lattice.origin[axis];
+    owned_low[axis] = float(low);
+    owned_high[axis] = float(high);
+    low_is_bound[axis] = low > 0;
+    high_is_bound[axis] = high < lattice.cells[axis];
+    resting_place[axis] = float(low) + 0.5F;
+    top[axis] = std::nextafter(float(lattice.cells[axis]), 0.0F);
+    const double reach = std::max(std::abs(request.region.low[axis]), std::abs(request.region.high[axis]));
+    rounding[axis] = float(4e-7 * (store.description().size[axis] * (reach + 1) + lattice.cells[axis]));
+  }
+  clip_z = at_sample(row(2), m[11]);
+  clip_w = at_sample(a3, w3);
+  const auto plus = [](const IndexBound& a, const IndexBound& b) {
+    return IndexBound{sum(a.value, b.value), sum(a.slope, b.slope)};
+  };
+  bounds.push_back(plus(clip_w, clip_z));           // near plane
+  bounds.push_back(plus(clip_w, negated(clip_z)));  // far plane; both together imply w >= 0
+  for (const HalfSpace& plane : request.clip_planes) bounds.push_back(at_sample(plane.normal, plane.offset));
+
+  pixel_to_x = 2.0 / request.viewport.width;
+  first_x = (0.5 - request.viewport.x) * pixel_to_x - 1;
+  pixel_to_y = 2.0 / request.viewport.height;
+  first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
+  last_plane = request.planes.count - 1;
+}
+
+bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
+                  RayStrip& strip) {
+  constexpr double beyond_every_depth = 2;
+  std::array<double, tile_width> depth;
+  for (int row = 0; row < strip_height; ++row) {
+    const bool inside = row < height;
+    if (inside && request.depth) {
+      const DepthImage& image = *request.depth;
+      const int v = y + row - image.rect.y;
+      for (int column = 0; column < tile_width; ++column) {
+        const int u = x + column - image.rect.x;
+        const bool known = u >= 0 && v >= 0 && u < image.rect.width && v < image.rect.height;
+        depth[column] = known ? double(image.depth[std::size_t(v) * image.rect.width + u]) : beyond_every_depth;
+      }
+    }
+    HWY_DYNAMIC_DISPATCH(set_up_row)
+    (setup, request.depth ? depth.data() : nullptr, request.depth && request.depth->or_equal,
+     request.depth_range, x, y + row, inside ? width : 0, std::size_t(row) * tile_width, strip);
+  }
+  bool any_bound = false;
+  for (int axis = 0; axis < 3; ++axis)
+    any_bound = any_bound || setup.low_is_bound[axis] || setup.high_is_bound[axis];
+  bool any = false;
+  for (std::size_t r = 0; r < strip_rays; ++r) {
+    if (any_bound && strip.first[r] <= strip.last[r]) keep_owned(setup, strip, r);
+    any = any || strip.first[r] <= strip.last[r];
+  }
+  return any;
+}
+
+}  // namespace understudy::volume
+#endif  // HWY_ONCE

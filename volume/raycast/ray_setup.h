@@ -1,0 +1,74 @@
+// From pixels to rays. In clip space the pixel (X, Y) is the line x = X w, y = Y w; with A's rows A0 .. A3 it
+// meets plane s at the point t of texture space that solves
+//
+//     (A0 - X A3) . (t, 1) = 0,   (A1 - Y A3) . (t, 1) = 0,   normal . t = s.
+//
+// Cramer's rule gives t = (h + s c) / det with h, c and det = normal . c linear in X and Y (the products X Y
+// cancel, since A3 x A3 = 0). So are all quantities a ray needs, and every bound on the sample index i (region,
+// near, far and clip planes) has the form (value + i slope) / det >= 0 with value and slope linear in X and Y.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "volume/brick/brick_store.h"
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+/// c + x X + y Y over normalised device coordinates.
+struct LinearInPixel {
+  double c = 0;
+  double x = 0;
+  double y = 0;
+};
+
+/// Keeps the sample indices i with (value + i slope) / det >= 0.
+struct IndexBound {
+  LinearInPixel value;
+  LinearInPixel slope;
+};
+
+struct RaySetup {
+  RaySetup(const RenderRequest& request, const BrickStore& store);
+
+  LinearInPixel det;
+  double smallest_det = 0;             ///< rays with |det| under this run parallel to the planes
+  std::array<IndexBound, 3> position;  ///< sample position in lattice coordinates, times det
+  std::vector<IndexBound> bounds;
+  IndexBound clip_z, clip_w;           ///< clip coordinates of sample i, times det
+  double pixel_to_x = 0, first_x = 0;  ///< X of the centre of pixel x: first_x + x pixel_to_x
+  double pixel_to_y = 0, first_y = 0;
+  int last_plane = 0;
+
+  /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that say
+  /// so.
+  std::array<float, 3> owned_low{}, owned_high{};
+  std::array<bool, 3> low_is_bound{}, high_is_bound{};
+  std::array<float, 3> resting_place{};  ///< inside the lowest owned cell
+  /// Positions are clamped to [0, top].
+  std::array<float, 3> top{};
+  /// Bound of the rounding of positions, in cells.
+  std::array<float, 3> rounding{};
+};
+
+constexpr int tile_width = 32;
+constexpr int strip_height = 4;
+constexpr int strip_rays = tile_width * strip_height;
+
+/// A strip of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float after
+/// each of the two operations), lattice coordinates; first <= k <= last are its samples in the owned cells.
+struct RayStrip {
+  alignas(64) std::array<std::array<float, strip_rays>, 3> start;
+  alignas(64) std::array<std::array<float, strip_rays>, 3> step;
+  alignas(64) std::array<int, strip_rays> first;
+  alignas(64) std::array<int, strip_rays> last;
+};
+
+/// Sets up the rays of the pixels (x .. x + width, y .. y + height); the rest of the strip gets rays without
+/// samples. Rays without samples stand still at the lowest owned cell, where it is safe to sample. Returns
+/// whether any ray has a sample.
+bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
+                  RayStrip& strip);
+
+}  // namespace understudy::volume

@@ -1,0 +1,28 @@
+// Which blocks can be left out, and how far: per block the Chebyshev distance to the next block that shows
+// something, 0 for those that do. From a sample in a block of distance d, all blocks fewer than d steps away
+// are empty. (Cohen, Sheffer 1994, proximity clouds; Deakin, Knackstedt 2020 for Chebyshev distance.)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace understudy::volume {
+
+class SkipMap {
+ public:
+  /// `shows` has one value per block of a box of `counts` blocks, x fastest; what lies outside the box is
+  /// empty.
+  SkipMap(const std::array<int, 3>& counts, std::vector<bool> shows);
+
+  /// Distances, saturated at 255, and three bytes that may be read after the last.
+  const std::uint8_t* distances() const { return distances_.data(); }
+  std::size_t empty_blocks() const { return empty_blocks_; }
+  bool all_empty() const { return empty_blocks_ + 3 == distances_.size(); }
+
+ private:
+  std::vector<std::uint8_t> distances_;
+  std::size_t empty_blocks_ = 0;
+};
+
+}  // namespace understudy::volume

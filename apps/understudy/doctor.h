@@ -1,0 +1,11 @@
+// `understudy doctor`: what works on this machine, one line each, with the fix where it does not.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+void add_doctor(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,68 @@
+#include "apps/understudy/environment.h"
+
+#include <unistd.h>
+
+#include <sstream>
+
+#include "spu/options.h"
+
+namespace understudy::launcher {
+
+Environment current_environment() {
+  Environment environment;
+  for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    if (const auto equals = text.find('='); equals != std::string::npos) {
+      environment[text.substr(0, equals)] = text.substr(equals + 1);
+    }
+  }
+  return environment;
+}
+
+DoorSettings settings_of(Door door, const Installation& installation) {
+  switch (door) {
+    case Door::audit:
+      return {"LD_AUDIT", installation.auditor()};
+    case Door::preload:
+      return {"LD_PRELOAD", installation.shim()};
+    case Door::folder:
+      return {"LD_LIBRARY_PATH", installation.door_folder()};
+  }
+  return {};
+}
+
+void put_in_front(Environment& environment, const std::string& variable, const std::string& entry) {
+  std::string& list = environment[variable];
+  list = list.empty() ? entry : entry + ":" + list;
+}
+
+Environment node_environment(Environment environment, const Installation& installation) {
+  environment.erase("LD_AUDIT");
+  environment.erase("LD_PRELOAD");
+  for (const spu::OptionText& option : spu::option_table()) environment.erase(option.environment);
+  if (const auto found = environment.find("LD_LIBRARY_PATH"); found != environment.end()) {
+    std::string kept;
+    std::istringstream folders(found->second);
+    for (std::string folder; std::getline(folders, folder, ':');) {
+      if (std::filesystem::path(folder).lexically_normal() == installation.door_folder()) continue;
+      kept += (kept.empty() ? "" : ":") + folder;
+    }
+    found->second = kept;
+    if (kept.empty()) environment.erase(found);
+  }
+  // mpirun refuses to work for root unless told twice; in containers there is often nobody else.
+  if (geteuid() == 0) {
+    environment["OMPI_ALLOW_RUN_AS_ROOT"] = "1";
+    environment["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1";
+  }
+  return environment;
+}
+
+std::vector<std::string> as_strings(const Environment& environment) {
+  std::vector<std::string> strings;
+  strings.reserve(environment.size());
+  for (const auto& [name, value] : environment) strings.push_back(name + "=" + value);
+  return strings;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,26 @@
+// Where the parts of Understudy lie: beside this program, as built (build/bin and build/lib) or installed.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace understudy::launcher {
+
+struct Installation {
+  std::filesystem::path programs;   ///< …/bin
+  std::filesystem::path libraries;  ///< …/lib
+
+  std::filesystem::path node() const { return programs / "understudy-node"; }
+  std::filesystem::path shim() const { return libraries / "libunderstudy.so"; }
+  std::filesystem::path auditor() const { return libraries / "libunderstudy-audit.so"; }
+  std::filesystem::path door_folder() const { return libraries / "door"; }
+};
+
+/// Found from /proc/self/exe, so that a moved build folder works. Throws std::runtime_error without /proc.
+Installation this_installation();
+
+/// The program `name` on PATH; empty when there is none.
+std::optional<std::filesystem::path> program_on_path(const std::string& name);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,151 @@
+#include "apps/understudy/node_group.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "apps/understudy/environment.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr std::chrono::milliseconds housekeeping{
+    1000};  ///< the broker drops silent strangers at such intervals
+constexpr int patience_with_mpirun_ms = 5000;
+constexpr std::uintmax_t max_log_read = 65536;
+
+void say(const std::string& line) {
+  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+}
+
+std::filesystem::path log_of(const NodeGroupPlan& plan) {
+  return plan.folder / "nodes.log";
+}
+
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code none_yet;
+  const std::uintmax_t size = std::filesystem::file_size(path, none_yet);
+  return none_yet ? 0 : size;
+}
+
+/// The one line that tells most: what a node said itself, else mpirun's verdict; empty when there is neither.
+std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
+  constexpr std::string_view from_node = "understudy-node: ";
+  constexpr std::string_view from_mpirun = "mpirun noticed that ";
+  std::ifstream file(log);
+  const std::uintmax_t size = size_of(log);
+  file.seekg(static_cast<std::streamoff>(size > from + max_log_read ? size - max_log_read : from));
+  std::string verdict;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(from_node)) return line.substr(from_node.size());
+    if (line.starts_with(from_mpirun)) verdict = line.substr(from_mpirun.size());
+  }
+  while (verdict.ends_with('.') || verdict.ends_with(' ')) verdict.pop_back();
+  return verdict;
+}
+
+Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan) {
+  Command command;
+  command.arguments = {"mpirun", "-n", std::to_string(plan.nodes),
+                       // More ranks than cores are usual here, and each rank uses all the cores it finds.
+                       "--oversubscribe", "--bind-to", "none",
+                       // Ranks that wait must not keep the others from their cores.
+                       "--mca", "mpi_yield_when_idle", "1",
+                       // One machine: no remote shell is looked for, no network device is needed.
+                       "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
+                       // Its session files go when the run's folder goes, whatever happens to it.
+                       "--mca", "orte_tmpdir_base", plan.folder.string(), installation.node().string(),
+                       plan.socket.string()};
+  command.environment = node_environment(current_environment(), installation);
+  command.output = log_of(plan);
+  command.own_group = true;
+  return command;
+}
+
+}  // namespace
+
+std::string obstacle_to_nodes(const Installation& installation) {
+  if (!program_on_path("mpirun")) {
+    return "no MPI here (mpirun is not on PATH; apt install openmpi-bin libopenmpi-dev, then ./run build)";
+  }
+  if (!std::filesystem::exists(installation.node())) {
+    return fmt::format("{} was not built (apt install libopenmpi-dev, then ./run build)",
+                       installation.node().string());
+  }
+  return {};
+}
+
+NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan)
+    : installation_(installation), plan_(plan), broker_(plan.socket, [this](const std::string& line) {
+        // The loss of the group is told once, with its reason, when mpirun has ended.
+        if (!broker_.lost()) say(line);
+      }) {
+  start();
+}
+
+NodeGroup::~NodeGroup() {
+  broker_.dismiss_node_group();
+  if (mpirun_) mpirun_->end(patience_with_mpirun_ms);
+}
+
+void NodeGroup::start() {
+  log_start_ = size_of(log_of(plan_));
+  mpirun_.emplace(mpirun_command(installation_, plan_));
+}
+
+void NodeGroup::start_when_due() {
+  if (!next_start_ || Clock::now() < *next_start_) return;
+  next_start_.reset();
+  try {
+    start();
+  } catch (const std::exception& error) {
+    broker_.turn_away(error.what());
+    say(fmt::format("{}; the viewer goes on by itself", error.what()));
+  }
+}
+
+void NodeGroup::wait_and_serve(int other) {
+  std::vector<pollfd> descriptors{{other, POLLIN, 0}};
+  broker_.poll_fds(descriptors);
+  std::chrono::milliseconds wait = housekeeping;
+  if (next_start_) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(*next_start_ - Clock::now());
+    wait = std::clamp(left, std::chrono::milliseconds(0), wait);
+  }
+  poll(descriptors.data(), descriptors.size(), static_cast<int>(wait.count()));
+  const bool lost_before = broker_.lost();
+  broker_.step(std::chrono::milliseconds(0));
+  // Without its rank 0 the rest of the group is of no use; its end comes as a signal (look_after_children).
+  if (broker_.lost() && !lost_before && mpirun_) mpirun_->signal(SIGTERM);
+  start_when_due();
+}
+
+void NodeGroup::look_after_children() {
+  if (!mpirun_) return;
+  const std::optional<Ending> ending = mpirun_->poll_ending();
+  if (!ending) return;
+  mpirun_.reset();
+  broker_.dismiss_node_group();
+  const std::string words = last_words(log_of(plan_), log_start_);
+  const std::string what =
+      fmt::format("the render nodes are gone ({})", words.empty() ? "mpirun " + ending->text() : words);
+  if (restarts_ == max_restarts) {
+    broker_.turn_away(what);
+    say(fmt::format("{}; no more attempts after {} restarts, the viewer goes on by itself", what, restarts_));
+    return;
+  }
+  next_start_ = Clock::now() + first_pause * (1 << restarts_);
+  ++restarts_;
+  say(fmt::format("{}; starting {} again ({} of {}), the viewer draws by itself meanwhile", what, plan_.nodes,
+                  restarts_, max_restarts));
+}
+
+}  // namespace understudy::launcher

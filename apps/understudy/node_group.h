@@ -1,0 +1,63 @@
+// The render nodes of this machine: a broker that owns the socket, and mpirun with N ranks behind it.
+//
+// OpenMPI ends a whole job when one rank dies. The socket is therefore the broker's, not the nodes': a lost
+// group is replaced by a new one (a bounded number of times, with growing pauses), and viewers find it at the
+// same address.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/understudy/child_process.h"
+#include "apps/understudy/installation.h"
+#include "compositor/service/broker.h"
+
+namespace understudy::launcher {
+
+constexpr int max_restarts = 5;
+constexpr std::chrono::milliseconds first_pause{200};  ///< before a restart; doubles each time
+
+struct NodeGroupPlan {
+  int nodes = 1;
+  std::filesystem::path socket;
+  std::filesystem::path folder;  ///< for the nodes' log and mpirun's own files; must exist
+};
+
+/// Why no nodes can be started here, with the fix, in one line; empty when they can.
+std::string obstacle_to_nodes(const Installation& installation);
+
+class NodeGroup {
+ public:
+  /// Takes the socket and starts mpirun; returns without waiting for the ranks. Throws std::runtime_error
+  /// (socket taken, mpirun cannot be executed).
+  NodeGroup(const Installation& installation, const NodeGroupPlan& plan);
+  NodeGroup(const NodeGroup&) = delete;
+  NodeGroup& operator=(const NodeGroup&) = delete;
+  ~NodeGroup();
+
+  bool ready() const { return broker_.node_group_ready(); }
+
+  /// Waits until something happens on the broker's sockets or on `other`, or a restart is due, and serves it.
+  void wait_and_serve(int other);
+
+  /// Call when a child of this process may have ended: a lost group is said in one line and planned anew.
+  void look_after_children();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void start();
+  void start_when_due();
+
+  Installation installation_;
+  NodeGroupPlan plan_;
+  compositor::Broker broker_;
+  std::optional<ChildProcess> mpirun_;
+  std::uintmax_t log_start_ = 0;  ///< where the present group's lines begin
+  int restarts_ = 0;
+  std::optional<Clock::time_point> next_start_;
+};
+
+}  // namespace understudy::launcher

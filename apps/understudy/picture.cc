@@ -1,0 +1,156 @@
+#include "apps/understudy/picture.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace understudy::launcher {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+  throw std::runtime_error(fmt::format("{}: {}", path.string(), what));
+}
+
+void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
+  if (width >= 1 && height >= 1 && width <= max_picture_side && height <= max_picture_side &&
+      width * height <= max_picture_pixels) {
+    return;
+  }
+  fail(path, fmt::format("{} x {} pixels; this program reads 1 to {} a side, {} in all", width, height,
+                         max_picture_side, max_picture_pixels));
+}
+
+Picture empty_picture(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
+  check_size(path, width, height);
+  Picture picture;
+  picture.width = static_cast<int>(width);
+  picture.height = static_cast<int>(height);
+  picture.rgba.assign(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1.0F);
+  return picture;
+}
+
+/// libpng's description of one picture, freed on every way out.
+struct PngImage {
+  png_image image{};
+  PngImage() { image.version = PNG_IMAGE_VERSION; }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
+  ~PngImage() { png_image_free(&image); }
+};
+
+Picture read_png(const std::filesystem::path& path) {
+  PngImage png;
+  if (png_image_begin_read_from_file(&png.image, path.c_str()) == 0) fail(path, png.image.message);
+  Picture picture = empty_picture(path, png.image.width, png.image.height);
+  picture.has_alpha = (png.image.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+  png.image.format = PNG_FORMAT_RGBA;
+  std::vector<std::uint8_t> bytes(picture.rgba.size());
+  if (png_image_finish_read(&png.image, nullptr, bytes.data(), 0, nullptr) == 0) fail(path, png.image.message);
+  std::transform(bytes.begin(), bytes.end(), picture.rgba.begin(),
+                 [](std::uint8_t value) { return static_cast<float>(value) / 255.0F; });
+  return picture;
+}
+
+/// One PFM file: `PF` with three channels or `Pf` with one, rows bottom up, a negative scale for little endian.
+struct FloatMap {
+  int channels = 0;
+  int width = 0;
+  int height = 0;
+  std::vector<float> values;
+};
+
+FloatMap read_float_map(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, std::strerror(errno));
+  std::string kind;
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  double scale = 0;
+  file >> kind >> width >> height >> scale;
+  if (!file || (kind != "PF" && kind != "Pf") || scale == 0 || file.get() != '\n')
+    fail(path, "not a PFM picture");
+  FloatMap map;
+  map.channels = kind == "PF" ? 3 : 1;
+  check_size(path, width, height);
+  map.width = static_cast<int>(width);
+  map.height = static_cast<int>(height);
+  const std::int64_t count = width * height * map.channels;
+  const auto bytes = static_cast<std::streamsize>(count * static_cast<std::int64_t>(sizeof(float)));
+  const std::streamoff start = file.tellg();
+  const std::streamoff held = file.seekg(0, std::ios::end).tellg() - std::streampos(start);
+  if (held < bytes) fail(path, fmt::format("ends after {} of {} bytes of pixels", held, bytes));
+  file.seekg(start);
+  map.values.resize(static_cast<std::size_t>(count));
+  file.read(reinterpret_cast<char*>(map.values.data()), bytes);
+  if (!file) fail(path, std::strerror(errno));
+  const bool little = scale < 0;
+  if (little != (std::endian::native == std::endian::little)) {
+    for (float& value : map.values)
+      value = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+  }
+  return map;
+}
+
+Picture read_pfm(const std::filesystem::path& path) {
+  const FloatMap colour = read_float_map(path);
+  Picture picture = empty_picture(path, colour.width, colour.height);
+  const auto value_of = [&](const FloatMap& map, int x, int y, int channel) {
+    const std::size_t row = static_cast<std::size_t>(map.height) - 1 - static_cast<std::size_t>(y);
+    return map.values[(row * map.width + x) * map.channels + std::min(channel, map.channels - 1)];
+  };
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      for (int channel = 0; channel < 3; ++channel)
+        picture.pixel(x, y)[channel] = value_of(colour, x, y, channel);
+    }
+  }
+  std::filesystem::path beside = path;
+  beside.replace_filename(path.stem().string() + "_alpha.pfm");
+  if (!std::filesystem::exists(beside)) return picture;
+  const FloatMap alpha = read_float_map(beside);
+  if (alpha.width != colour.width || alpha.height != colour.height)
+    fail(beside, "has another size than its colours");
+  picture.has_alpha = true;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) picture.pixel(x, y)[3] = value_of(alpha, x, y, 0);
+  }
+  return picture;
+}
+
+}  // namespace
+
+Picture read_picture(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, std::strerror(errno));
+  std::array<char, 8> start{};
+  file.read(start.data(), start.size());
+  if (file.gcount() == 8 && png_sig_cmp(reinterpret_cast<png_bytep>(start.data()), 0, 8) == 0)
+    return read_png(path);
+  if (file.gcount() >= 3 && start[0] == 'P' && (start[1] == 'F' || start[1] == 'f')) return read_pfm(path);
+  fail(path, "neither a PNG nor a PFM picture");
+}
+
+void write_png(const std::filesystem::path& path, const Picture& picture) {
+  PngImage png;
+  png.image.width = static_cast<png_uint_32>(picture.width);
+  png.image.height = static_cast<png_uint_32>(picture.height);
+  png.image.format = PNG_FORMAT_RGBA;
+  std::vector<std::uint8_t> bytes(picture.rgba.size());
+  std::transform(picture.rgba.begin(), picture.rgba.end(), bytes.begin(), [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  });
+  if (png_image_write_to_file(&png.image, path.c_str(), 0, bytes.data(), 0, nullptr) == 0)
+    fail(path, png.image.message);
+}
+
+}  // namespace understudy::launcher

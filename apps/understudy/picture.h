@@ -1,0 +1,30 @@
+// Pictures in files: PNG, and PFM (Debevec's portable float map) for composited frames before they are rounded.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace understudy::launcher {
+
+constexpr int max_picture_side = 16384;
+constexpr int max_picture_pixels = 64 << 20;  ///< 1 GiB as float RGBA
+
+/// RGBA, rows top down, 1 is full intensity. PNG colours as they stand in the file (no gamma), PFM as saved.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  bool has_alpha = false;   ///< false: alpha is 1 everywhere
+  std::vector<float> rgba;  ///< 4 * width * height
+
+  float* pixel(int x, int y) { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
+  const float* pixel(int x, int y) const { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
+};
+
+/// Reads a PNG or a PFM by its first bytes. Beside `frame.pfm`, `frame_alpha.pfm` is its alpha when it exists.
+/// Throws std::runtime_error with the path and what is wrong.
+Picture read_picture(const std::filesystem::path& path);
+
+/// Values outside 0 to 1 are clamped. Throws std::runtime_error.
+void write_png(const std::filesystem::path& path, const Picture& picture);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,214 @@
+#include "apps/understudy/run.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "apps/understudy/child_process.h"
+#include "apps/understudy/environment.h"
+#include "apps/understudy/installation.h"
+#include "apps/understudy/node_group.h"
+#include "apps/understudy/run_folder.h"
+#include "apps/understudy/signal_inbox.h"
+#include "spu/options.h"
+#include "spu/report/report.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr int not_executable = 126;
+
+struct RunArguments {
+  std::map<std::string, std::string> settings;  ///< environment variable → value, as given on the command line
+  Door door = Door::audit;
+};
+
+void say(const std::string& line) {
+  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+}
+
+/// The options of this run: the environment's, and over them the command line's.
+spu::Options options_of(const RunArguments& arguments) {
+  spu::Options options = spu::options_from_environment();
+  for (const auto& [environment, value] : arguments.settings) spu::set_option(options, environment, value);
+  return options;
+}
+
+/// The viewer may change its folder: paths are told to it absolutely.
+std::string absolute_or_empty(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).string();
+}
+
+Environment viewer_environment(const RunArguments& arguments, const spu::Options& options,
+                               const Installation& installation, const RunFolder& folder,
+                               const std::optional<NodeGroupPlan>& nodes) {
+  Environment environment = current_environment();
+  for (const auto& [name, value] : arguments.settings) environment[name] = value;
+  environment["UNDERSTUDY_RUN_DIR"] = folder.path();
+  // The report is the launcher's to write, from all processes of the run.
+  environment.erase("UNDERSTUDY_REPORT");
+  if (!options.save_frames.empty())
+    environment["UNDERSTUDY_SAVE_FRAMES"] = absolute_or_empty(options.save_frames);
+  if (nodes) {
+    environment["UNDERSTUDY_NODES"] = std::to_string(nodes->nodes);
+    environment["UNDERSTUDY_CONNECT"] = nodes->socket;
+  } else {
+    environment.erase("UNDERSTUDY_NODES");
+    environment.erase("UNDERSTUDY_CONNECT");
+    if (!options.connect.empty()) environment["UNDERSTUDY_CONNECT"] = absolute_or_empty(options.connect);
+  }
+  const DoorSettings door = settings_of(arguments.door, installation);
+  if (std::filesystem::exists(door.value)) {
+    put_in_front(environment, door.variable, door.value);
+  } else {
+    say(fmt::format("{} is missing, so the viewer runs without Understudy; build it with ./run build",
+                    door.value.string()));
+  }
+  return environment;
+}
+
+/// Nodes are a help, never a condition: whatever keeps them from starting, the viewer runs.
+std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::optional<NodeGroupPlan>& plan) {
+  if (!plan) return nullptr;
+  std::string obstacle = obstacle_to_nodes(installation);
+  if (obstacle.empty()) {
+    try {
+      return std::make_unique<NodeGroup>(installation, *plan);
+    } catch (const std::exception& error) {
+      obstacle = error.what();
+    }
+  }
+  say(obstacle + "; rendering inside the viewer instead");
+  plan.reset();
+  return nullptr;
+}
+
+Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
+  for (;;) {
+    while (const std::optional<ReceivedSignal> received = inbox.next()) {
+      if (received->number == SIGCHLD) {
+        if (nodes != nullptr) nodes->look_after_children();
+      } else if (!received->from_terminal) {
+        viewer.signal(received->number);
+      }
+    }
+    if (const std::optional<Ending> ending = viewer.poll_ending()) return *ending;
+    if (nodes != nullptr) {
+      nodes->wait_and_serve(inbox.descriptor());
+    } else {
+      pollfd waiting{inbox.descriptor(), POLLIN, 0};
+      poll(&waiting, 1, -1);
+    }
+  }
+}
+
+void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
+  const std::vector<spu::MappedCounters> counters = spu::read_counters(folder.path());
+  std::vector<const spu::ProcessCounters*> processes;
+  processes.reserve(counters.size());
+  for (const spu::MappedCounters& process : counters) processes.push_back(process.get());
+  if (options.explain) std::fputs(spu::explanation_text(processes).c_str(), stderr);
+  std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
+  if (options.report.empty()) return;
+  try {
+    spu::replace_file(options.report, spu::report_json(processes));
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+}
+
+int run(const RunArguments& arguments, const std::vector<std::string>& command) {
+  if (command.empty()) {
+    say("which viewer? Put -- before its command: understudy run [options] -- viewer args…");
+    return usage_error;
+  }
+  const spu::Options options = options_of(arguments);
+  if (!options.save_frames.empty()) std::filesystem::create_directories(options.save_frames);
+
+  const Installation installation = this_installation();
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
+  const RunFolder folder;
+  std::optional<NodeGroupPlan> plan;
+  if (options.nodes > 0 && options.connect.empty() && !options.disable) {
+    plan = NodeGroupPlan{options.nodes, folder.path() / "nodes.sock", folder.path()};
+  }
+  std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
+  std::optional<ChildProcess> viewer;
+  try {
+    viewer.emplace(Command{.arguments = command,
+                           .environment = viewer_environment(arguments, options, installation, folder, plan)});
+  } catch (const std::system_error& error) {
+    say(error.what());
+    return error.code() == std::errc::permission_denied ? not_executable : cannot_start_viewer;
+  }
+  const Ending ending = wait_for(*viewer, nodes.get(), inbox);
+  nodes.reset();
+  tell_what_happened(options, folder);
+  return ending.exit_status();
+}
+
+/// One command-line option for every row of the option table that has a flag.
+void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments) {
+  for (const spu::OptionText& option : spu::option_table()) {
+    const std::string flag = option.flag;
+    const std::string variable = option.environment;
+    const std::string value = option.value;
+    if (flag.empty()) continue;
+    const auto take = [arguments, variable, flag](const std::string& text) {
+      spu::Options scratch;
+      if (!spu::set_option(scratch, variable, text)) {
+        throw CLI::ValidationError(flag, fmt::format("'{}' is not a value this option takes", text));
+      }
+      arguments->settings[variable] = text;
+    };
+    const std::string help = fmt::format("{} [{}]", option.help, variable);
+    if (value.empty()) {
+      subcommand.add_flag_callback(
+          flag, [take] { take("1"); }, help);
+    } else if (value.front() == '[') {
+      subcommand
+          .add_option_function<std::string>(
+              flag, [take](const std::string& text) { take(text.empty() ? "1" : text); }, help)
+          ->expected(0, 1)
+          ->type_name(value);
+    } else {
+      subcommand.add_option_function<std::string>(flag, take, help)->type_name(value);
+    }
+  }
+}
+
+}  // namespace
+
+CommandLine split_at_double_dash(int argc, char** argv) {
+  CommandLine line;
+  int position = 0;
+  while (position < argc && std::strcmp(argv[position], "--") != 0) line.own.push_back(argv[position++]);
+  for (++position; position < argc; ++position) line.viewer.emplace_back(argv[position]);
+  return line;
+}
+
+void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* subcommand = app.add_subcommand("run", "runs a viewer: understudy run [options] -- viewer args…");
+  subcommand->footer("Each option can also be given by the environment variable in brackets.");
+  add_options_of_the_table(*subcommand, arguments);
+  const std::map<std::string, Door> doors{
+      {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
+  subcommand
+      ->add_option("--door", arguments->door,
+                   "how OpenGL calls are caught: audit (all of them), preload, folder")
+      ->transform(CLI::CheckedTransformer(doors, CLI::ignore_case).description(""))
+      ->type_name("audit|preload|folder");
+  subcommand->callback(
+      [arguments, &viewer, &chosen] { chosen = [arguments, &viewer] { return run(*arguments, viewer); }; });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,65 @@
+#include "apps/understudy/run_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <system_error>
+
+namespace understudy::launcher {
+namespace {
+
+constexpr const char* prefix = "understudy-run-";
+
+/// A launcher locks its folder right after making it; younger ones are left alone for that moment.
+constexpr std::time_t young_seconds = 10;
+
+/// The lock and not a process id tells: /tmp may be shared by containers that number processes differently.
+void remove_folders_of_dead_launchers(const std::filesystem::path& parent) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(parent, error)) {
+    if (!entry.path().filename().string().starts_with(prefix)) continue;
+    const int folder = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (folder < 0) continue;
+    struct stat status {};
+    if (fstat(folder, &status) == 0 && status.st_uid == geteuid() &&
+        status.st_ctime + young_seconds < std::time(nullptr) && flock(folder, LOCK_EX | LOCK_NB) == 0) {
+      std::filesystem::remove_all(entry.path(), error);
+    }
+    close(folder);
+  }
+}
+
+}  // namespace
+
+std::filesystem::path runtime_directory() {
+  const char* own = std::getenv("XDG_RUNTIME_DIR");
+  if (own != nullptr && *own == '/' && access(own, W_OK | X_OK) == 0) return own;
+  return "/tmp";
+}
+
+RunFolder::RunFolder() {
+  const std::filesystem::path parent = runtime_directory();
+  remove_folders_of_dead_launchers(parent);
+  std::string name = parent / (std::string(prefix) + "XXXXXX");
+  if (mkdtemp(name.data()) == nullptr) {
+    throw std::system_error(errno, std::generic_category(),
+                            "cannot make a folder for this run in " + parent.string());
+  }
+  path_ = name;
+  lock_ = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
+}
+
+RunFolder::~RunFolder() {
+  std::error_code error;
+  std::filesystem::remove_all(path_, error);
+  if (lock_ >= 0) close(lock_);
+}
+
+}  // namespace understudy::launcher

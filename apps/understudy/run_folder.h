@@ -1,0 +1,27 @@
+// The private folder of one run: counters of the viewer's processes, the socket of its nodes, their log. Mode
+// 0700 under $XDG_RUNTIME_DIR or /tmp, removed with everything in it at the end.
+#pragma once
+
+#include <filesystem>
+
+namespace understudy::launcher {
+
+/// $XDG_RUNTIME_DIR when it can be written to, else /tmp.
+std::filesystem::path runtime_directory();
+
+class RunFolder {
+ public:
+  /// Also removes what launchers that were killed without warning left behind. Throws std::system_error.
+  RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+  ~RunFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int lock_ = -1;  ///< held while the launcher lives: how the next one knows a dead launcher's folder
+};
+
+}  // namespace understudy::launcher

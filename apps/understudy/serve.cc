@@ -1,0 +1,75 @@
+#include "apps/understudy/serve.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/types.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/understudy/node_group.h"
+#include "apps/understudy/run_folder.h"
+#include "apps/understudy/signal_inbox.h"
+#include "spu/options.h"
+
+namespace understudy::launcher {
+namespace {
+
+struct ServeArguments {
+  int nodes = 1;
+  std::string socket;
+  pid_t while_process = 0;  ///< 0: until asked to end
+};
+
+bool is_over(const ServeArguments& arguments) {
+  return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
+}
+
+/// Returns when a signal asks for the end. The nodes and the socket are gone then.
+int serve(const ServeArguments& arguments) {
+  const Installation installation = this_installation();
+  if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
+    fmt::print(stderr, "understudy: {}\n", obstacle);
+    return 1;
+  }
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
+  const RunFolder folder;
+  const std::filesystem::path socket = std::filesystem::absolute(arguments.socket);
+  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path()});
+  bool announced = false;
+  while (!is_over(arguments)) {
+    while (const std::optional<ReceivedSignal> received = inbox.next()) {
+      if (received->number != SIGCHLD) return 0;
+      nodes.look_after_children();
+    }
+    nodes.wait_and_serve(inbox.descriptor());
+    if (announced || !nodes.ready()) continue;
+    announced = true;
+    fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
+               arguments.nodes, socket.string(), socket.string());
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<ServeArguments>();
+  arguments->socket = runtime_directory() / "understudy-nodes.sock";
+  CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
+  subcommand->add_option("-n,--nodes", arguments->nodes, "MPI ranks on this machine")
+      ->required()
+      ->check(CLI::Range(1, spu::max_nodes));
+  subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
+  subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
+      ->type_name("PID")
+      ->check(CLI::PositiveNumber);
+  subcommand->callback([arguments, &chosen] { chosen = [arguments] { return serve(*arguments); }; });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,11 @@
+// `understudy serve -n N [--socket PATH]`: keeps a node group running for viewers that come and go.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+void add_serve(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,195 @@
+// `understudy run` as its user sees it: the viewer's own exit status, one summary line, nothing left behind.
+// The viewers here are shell commands; they open no OpenGL.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Result {
+  int status = 0;
+  std::string output;  ///< both channels
+};
+
+Result shell(const std::string& command) {
+  Result result;
+  std::FILE* output = popen(("exec 2>&1; " + command).c_str(), "r");
+  std::array<char, 4096> part{};
+  for (std::size_t count = 0; (count = fread(part.data(), 1, part.size(), output)) > 0;) {
+    result.output.append(part.data(), count);
+  }
+  const int status = pclose(output);
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  return result;
+}
+
+/// `arguments` go through the shell.
+Result understudy(const std::string& arguments) {
+  return shell(UNDERSTUDY_PROGRAM " " + arguments);
+}
+
+class UnderstudyRun : public ::testing::Test {
+ protected:
+  UnderstudyRun() {
+    fs::create_directories(folder_);
+    // Every run makes its folder here, so that what is left behind can be seen.
+    setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+  }
+  ~UnderstudyRun() override { fs::remove_all(folder_); }
+
+  bool nothing_is_left() const {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().filename().string().starts_with("understudy-")) return false;
+    }
+    return true;
+  }
+
+  std::string contents(const fs::path& path) const {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// Waits for something another process does; a minute is long enough to call it a failure.
+  template <typename Condition>
+  static bool comes_true(Condition condition) {
+    for (int tenths = 0; tenths < 600; ++tenths) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("understudy-run-test-" + std::to_string(getpid()));
+};
+
+TEST_F(UnderstudyRun, ReturnsTheViewersOwnExitStatusAndLeavesNothing) {
+  for (const int status : {0, 7, 255}) {
+    const Result result = understudy("run -- sh -c 'exit " + std::to_string(status) + "'");
+    EXPECT_EQ(result.status, status) << result.output;
+    EXPECT_THAT(result.output, HasSubstr("understudy: 0 volumes seen, 0 frames: 0 substituted"));
+  }
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, ReturnsAKilledViewersStatusAsAShellWould) {
+  EXPECT_EQ(understudy("run -- sh -c 'kill -9 $$'").status, 128 + SIGKILL);
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, SaysWhichViewerItCannotStart) {
+  const Result missing = understudy("run -- no-such-viewer");
+  EXPECT_EQ(missing.status, 127);
+  EXPECT_THAT(missing.output, HasSubstr("cannot start no-such-viewer: No such file"));
+  EXPECT_EQ(understudy("run -- /dev/null").status, 126);
+  const Result none = understudy("run");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.output, HasSubstr("Put -- before its command"));
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, HandsEverythingBehindTheDashesToTheViewer) {
+  const Result result = understudy("run --verify -- printf '%s|' --verify -n '[a,b]' -- 'two words'");
+  EXPECT_THAT(result.output, HasSubstr("--verify|-n|[a,b]|--|two words|"));
+}
+
+TEST_F(UnderstudyRun, TellsTheViewersSideItsOptions) {
+  const Result result =
+      understudy("run --verify=5 --debug-tint --save-frames " + (folder_ / "frames").string() + " --report " +
+                 (folder_ / "r.json").string() + " -- env");
+  EXPECT_THAT(result.output, HasSubstr("UNDERSTUDY_VERIFY=5\n"));
+  EXPECT_THAT(result.output, HasSubstr("UNDERSTUDY_DEBUG_TINT=1\n"));
+  EXPECT_THAT(result.output, HasSubstr("UNDERSTUDY_SAVE_FRAMES=" + (folder_ / "frames").string() + "\n"));
+  EXPECT_THAT(result.output, HasSubstr("UNDERSTUDY_RUN_DIR=" + (folder_ / "understudy-run-").string()));
+  EXPECT_THAT(result.output, Not(HasSubstr("UNDERSTUDY_REPORT"))) << "the report is the launcher's to write";
+  EXPECT_EQ(nlohmann::json::parse(contents(folder_ / "r.json"))["frames"], 0);
+  EXPECT_TRUE(fs::is_directory(folder_ / "frames"));
+}
+
+TEST_F(UnderstudyRun, RefusesAValueThatAnOptionCannotTake) {
+  for (const char* wrong : {"--verify=often", "-n -1", "-n 1000000", "--door window", "--no-such-option"}) {
+    EXPECT_EQ(understudy("run " + std::string(wrong) + " -- true").status, 2) << wrong;
+  }
+}
+
+TEST_F(UnderstudyRun, PassesSignalsOnToTheViewer) {
+  const fs::path ready = folder_ / "ready";
+  const pid_t launcher = fork();
+  if (launcher == 0) {
+    const std::string script = "trap 'echo ended >" + (folder_ / "trapped").string() +
+                               "; exit 3' TERM; echo >" + ready.string() + "; while :; do sleep 0.1; done";
+    execl(UNDERSTUDY_PROGRAM, "understudy", "run", "--", "sh", "-c", script.c_str(), nullptr);
+    _exit(99);
+  }
+  ASSERT_TRUE(comes_true([&] { return fs::exists(ready); }));
+  kill(launcher, SIGTERM);
+  int status = 0;
+  ASSERT_EQ(waitpid(launcher, &status, 0), launcher);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_EQ(contents(folder_ / "trapped"), "ended\n");
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, EndedByASignalItReturns143AndLeavesNothing) {
+  const fs::path ready = folder_ / "ready";
+  const pid_t launcher = fork();
+  if (launcher == 0) {
+    const std::string script = "echo >" + ready.string() + "; exec sleep 600";
+    execl(UNDERSTUDY_PROGRAM, "understudy", "run", "--", "sh", "-c", script.c_str(), nullptr);
+    _exit(99);
+  }
+  ASSERT_TRUE(comes_true([&] { return fs::exists(ready); }));
+  kill(launcher, SIGTERM);
+  int status = 0;
+  ASSERT_EQ(waitpid(launcher, &status, 0), launcher);
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, RunsTheViewerByItselfWhereMpiIsMissing) {
+  const Result without =
+      shell("PATH=/nowhere " UNDERSTUDY_PROGRAM " run -n 4 -- /bin/sh -c 'echo shown; exit 5'");
+  EXPECT_EQ(without.status, 5);
+  EXPECT_THAT(without.output, HasSubstr("apt install openmpi-bin"));
+  EXPECT_THAT(without.output, HasSubstr("shown"));
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, KeepsGoingWhenTheReportCannotBeWritten) {
+  const Result result = understudy("run --report " + (folder_ / "missing" / "r.json").string() + " -- true");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.output, HasSubstr("cannot write the report"));
+}
+
+TEST(UnderstudyCompare, PrintsItsThreeLinesAndTellsWhatItCannotRead) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("understudy-compare-command-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "a.pfm", std::ios::binary) << "Pf\n1 1\n-1.0\n" << std::string(4, '\0');
+  const std::string a = (folder / "a.pfm").string();
+  const Result same = understudy("compare " + a + " " + a);
+  EXPECT_EQ(same.output, "max 0.0000\nRMS 0.0000\nPSNR inf dB\n");
+  EXPECT_EQ(same.status, 0);
+  const Result missing = understudy("compare " + a + " " + a + ".missing");
+  EXPECT_NE(missing.status, 0);
+  EXPECT_THAT(missing.output, HasSubstr("a.pfm.missing: No such file"));
+  fs::remove_all(folder);
+}
+
+}  // namespace

@@ -1,0 +1,168 @@
+// The rules of the house, read from the source files: who may include whom, and what may lie in the folders.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsEmpty;
+
+/// Lowest first: a room may use itself and those before it.
+constexpr std::array<std::string_view, 6> rooms{"volume", "compositor", "spu", "interceptor", "apps", "tests"};
+
+constexpr std::uintmax_t max_source_bytes = 40'000;
+
+struct SourceFile {
+  std::string path;  ///< from the project's root
+  std::string text;
+};
+
+bool is_code(const SourceFile& file) {
+  return file.path.ends_with(".h") || file.path.ends_with(".cc");
+}
+
+std::string_view room_of(std::string_view path) {
+  return path.substr(0, path.find('/'));
+}
+
+std::size_t height_of(std::string_view room) {
+  return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room) - rooms.begin());
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Everything that belongs to the project: hidden folders, build folders and results do not.
+std::vector<SourceFile> project_files() {
+  const fs::path root = UNDERSTUDY_SOURCE_DIR;
+  std::vector<SourceFile> files;
+  for (fs::recursive_directory_iterator entry(root), end; entry != end; ++entry) {
+    const std::string name = entry->path().filename();
+    if (entry->is_directory()) {
+      const bool results =
+          entry.depth() == 0 && (name.starts_with("build") || name == "out" || name == "shared");
+      if (name.starts_with(".") || name == "__pycache__" || results) entry.disable_recursion_pending();
+    } else if (entry->is_regular_file()) {
+      files.push_back({fs::relative(entry->path(), root), contents(entry->path())});
+    }
+  }
+  return files;
+}
+
+const std::vector<SourceFile>& files() {
+  static const std::vector<SourceFile> all = project_files();
+  return all;
+}
+
+/// What stands between the quotes or brackets of the include lines.
+std::vector<std::string> includes_of(const SourceFile& file) {
+  static const std::regex line(R"re((?:^|\n)[ \t]*#[ \t]*include[ \t]*[<"]([^>"\n]+)[>"])re");
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(file.text.begin(), file.text.end(), line), end; match != end; ++match) {
+    found.push_back((*match)[1]);
+  }
+  return found;
+}
+
+/// "path includes header" for every include that `forbidden(file, header)` names.
+template <typename Forbidden>
+std::vector<std::string> includes_where(Forbidden forbidden) {
+  std::vector<std::string> found;
+  for (const SourceFile& file : files()) {
+    if (!is_code(file)) continue;
+    for (const std::string& header : includes_of(file)) {
+      if (forbidden(file, header)) found.push_back(file.path + " includes " + header);
+    }
+  }
+  return found;
+}
+
+TEST(House, HasFilesInEveryRoom) {
+  for (const std::string_view room : rooms) {
+    EXPECT_TRUE(std::any_of(files().begin(), files().end(), [&](const SourceFile& file) {
+      return is_code(file) && room_of(file.path) == room;
+    })) << room;
+  }
+}
+
+TEST(House, NoRoomIncludesARoomAboveIt) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                const std::string_view target = room_of(header);
+                return header.find('/') != std::string::npos && height_of(target) < rooms.size() &&
+                       height_of(target) > height_of(room_of(file.path));
+              }),
+              IsEmpty());
+}
+
+TEST(House, TheBundledViewerIncludesNothingOfUnderstudy) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return file.path.starts_with("apps/viewer/") && !header.starts_with("apps/viewer/") &&
+                       height_of(room_of(header)) < rooms.size();
+              }),
+              IsEmpty());
+}
+
+TEST(House, OnlyTheCompositorAndTheNodesKnowMpi) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return header == "mpi.h" && room_of(file.path) != "compositor" &&
+                       room_of(file.path) != "tests" && !file.path.starts_with("apps/node/");
+              }),
+              IsEmpty());
+}
+
+TEST(House, VolumeAndCompositorKnowNoOpenGlStream) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return (room_of(file.path) == "volume" || room_of(file.path) == "compositor") &&
+                       (header.starts_with("GL/") || header.starts_with("dispatch/"));
+              }),
+              IsEmpty());
+}
+
+TEST(House, EveryRoomAndEveryProgramSaysWhatItIs) {
+  const fs::path root = UNDERSTUDY_SOURCE_DIR;
+  for (const std::string_view room : rooms) EXPECT_TRUE(fs::exists(root / room / "README.md")) << room;
+  for (const auto& entry : fs::directory_iterator(root / "apps")) {
+    if (entry.is_directory() && entry.path().filename() != "__pycache__") {
+      EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
+    }
+  }
+}
+
+TEST(House, NoSourceFileIsTooLongToRead) {
+  for (const SourceFile& file : files()) {
+    if (is_code(file) || file.path.ends_with(".py")) EXPECT_LE(file.text.size(), max_source_bytes) << file.path;
+  }
+}
+
+// The patterns are put together here so that this file does not contain what it looks for.
+TEST(House, HoldsNoGeneratedFile) {
+  const std::regex mark(
+      std::string("(do not ") + "edit|generated " + "by|@" + "generated|auto-?" + "generated)",
+      std::regex::icase);
+  for (const SourceFile& file : files()) {
+    if (!is_code(file)) continue;
+    const std::string head = file.text.substr(0, 400);
+    EXPECT_FALSE(std::regex_search(head, mark)) << file.path;
+  }
+}
+
+TEST(House, HoldsNoPathOfTheMachineItWasWrittenOn) {
+  const std::regex path(std::string("(/") + "work/|/" + "root/|/" + "home/[a-z])");
+  for (const SourceFile& file : files()) {
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(file.text, found, path)) << file.path << ": " << found.str();
+  }
+}
+
+}  // namespace

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
+
+A row: name, value and unit, always; ratio_to (another row's name) and ratio = value / its value; rms (error against
+that row's picture), where they apply.
+"""
+
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
+import frame  # noqa: E402
+
+BENCHMARKS = {"frame": frame.rows}
+
+INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
+
+
+def processor():
+    """Model name and flags, from /proc/cpuinfo."""
+    text = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
+    model = re.search(r"^model name\s*:\s*(.*)$", text, re.MULTILINE)
+    flags = re.search(r"^(?:flags|Features)\s*:\s*(.*)$", text, re.MULTILINE)
+    return model.group(1) if model else platform.machine(), flags.group(1).split() if flags else []
+
+
+def machine():
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    return f"{processor()[0]}, {os.cpu_count()} cores, {memory:.0f} GiB, {platform.system()} {platform.release()}"
+
+
+def instruction_set():
+    flags = processor()[1]
+    return next((name for flag, name in INSTRUCTION_SETS if flag in flags), platform.machine())
+
+
+def compiler():
+    cache = (ROOT / "build" / "CMakeCache.txt").read_text(encoding="utf-8")
+    program = re.search(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", cache, re.MULTILINE).group(1)
+    return subprocess.run([program, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()[0]
+
+
+def text_of(row):
+    text = f"{row['name']:32} {row['value']:10.3f} {row['unit']}"
+    if "ratio" in row:
+        text += f"   {row['ratio']:7.3f} x {row['ratio_to']}"
+    if "rms" in row:
+        text += f"   RMS {row['rms']:.2e}"
+    return text
+
+
+def main(names):
+    unknown = [name for name in names if name not in BENCHMARKS]
+    if unknown:
+        sys.exit(f"bench: no benchmark named {', '.join(unknown)}; there are: {', '.join(BENCHMARKS)}")
+    folder = ROOT / "out" / "bench"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names or BENCHMARKS:
+        print(f"{name}: {machine()}; {instruction_set()}; {compiler()}", flush=True)
+        rows = BENCHMARKS[name]()
+        for row in rows:
+            print(text_of(row))
+        path = folder / f"{name}.json"
+        path.write_text(json.dumps({"machine": machine(), "compiler": compiler(), "instruction_set": instruction_set(),
+                                    "rows": rows}, indent=1), encoding="utf-8")
+        print(path)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

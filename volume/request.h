@@ -111,6 +111,21 @@ struct FrameCounts {
   std::uint64_t nodes_idle = 0;           ///< nodes that had nothing to show and sent nothing
   double render_ms = 0;                   ///< slowest node
   double composite_ms = 0;
+
+  /// Adds another volume of the same frame: they are rendered one after the other, so times add up too.
+  FrameCounts& operator+=(const FrameCounts& other) {
+    rays += other.rays;
+    rays_terminated += other.rays_terminated;
+    samples += other.samples;
+    samples_taken += other.samples_taken;
+    blocks += other.blocks;
+    blocks_empty += other.blocks_empty;
+    bytes_exchanged += other.bytes_exchanged;
+    nodes_idle += other.nodes_idle;
+    render_ms += other.render_ms;
+    composite_ms += other.composite_ms;
+    return *this;
+  }
 };
 
 }  // namespace understudy::volume

@@ -1,0 +1,160 @@
+// The body: one SPU chain for every desktop OpenGL context of the application.
+#include "interceptor/body.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "spu/assemble.h"
+#include "spu/chain.h"
+#include "spu/options.h"
+#include "spu/report/counters.h"
+#include "spu/report/report.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/render_session.h"
+
+namespace understudy::interceptor {
+namespace {
+
+class Body {
+ public:
+  Body(const DoorServices& door, spu::Options options)
+      : door_(door), options_(options), session_(std::make_shared<spu::RenderSession>(std::move(options))) {}
+
+  const DoorServices& door() const { return door_; }
+
+  void context_current(std::uintptr_t context, std::uintptr_t share, bool desktop_gl) {
+    ThreadState& thread = *door_.thread_state();
+    thread.calls = spu::thread_call_counter();
+    if (!desktop_gl) {
+      thread.table = door_.driver;
+      return;
+    }
+    chain_of(context, share).make_current();
+  }
+
+  void context_destroyed(std::uintptr_t context) {
+    std::unique_ptr<Member> gone;
+    {
+      const std::scoped_lock lock(mutex_);
+      const auto found = contexts_.find(context);
+      if (found == contexts_.end()) return;
+      gone = std::move(found->second);
+      contexts_.erase(found);
+    }
+    gone->chain.abandon();
+  }
+
+  void frame_ended(spu::FrameEnd kind) {
+    if (spu::Chain* chain = spu::Chain::current()) chain->frame_ended(kind);
+    if (reports_itself()) spu::write_report_when_due(options_.report);
+  }
+
+  /// Without a launcher nobody else writes the report.
+  bool reports_itself() const { return !options_.report.empty() && options_.run_dir.empty(); }
+  void write_report() const {
+    if (reports_itself()) spu::write_report_now(options_.report);
+  }
+
+ private:
+  struct Member {
+    std::shared_ptr<spu::ShareGroup> group;
+    spu::Chain chain;
+  };
+
+  spu::Chain& chain_of(std::uintptr_t context, std::uintptr_t share) {
+    const std::scoped_lock lock(mutex_);
+    auto& member = contexts_[context];
+    if (!member) {
+      const auto relative = contexts_.find(share);
+      auto group = relative != contexts_.end() && relative->second ? relative->second->group
+                                                                   : std::make_shared<spu::ShareGroup>();
+      member.reset(new Member{group, spu::Chain(*door_.driver, group, &install)});
+      if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
+        fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
+      }
+    }
+    return member->chain;
+  }
+
+  static void install(const spu::DispatchTable* table);
+
+  const DoorServices door_;
+  const spu::Options options_;
+  std::shared_ptr<spu::RenderSession> session_;
+  std::mutex mutex_;
+  std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
+};
+
+/// The per-process body. Never destroyed: the application may call OpenGL until its very last instruction.
+constinit Body* body = nullptr;
+
+void Body::install(const spu::DispatchTable* table) { body->door_.thread_state()->table = table; }
+
+/// Nothing thrown may cross into the application.
+template <class Action>
+void guarded(Action action) noexcept {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
+    if (body != nullptr) body->door().thread_state()->table = body->door().driver;
+  }
+}
+
+void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem, bool desktop_gl, std::uintptr_t) {
+  guarded([&] { body->context_current(context, share, desktop_gl); });
+}
+
+void context_leaving() {
+  guarded([] {
+    if (spu::Chain* chain = spu::Chain::current()) {
+      chain->settle();
+      chain->frame_ended(spu::FrameEnd::make_current);
+    }
+    spu::Chain::release_current();
+  });
+}
+
+void context_destroyed(std::uintptr_t context) {
+  guarded([&] { body->context_destroyed(context); });
+}
+
+void before_frame_end(FrameEnd) {
+  guarded([] {
+    if (spu::Chain* chain = spu::Chain::current()) chain->settle();
+  });
+}
+
+void after_frame_end(FrameEnd kind) {
+  guarded([&] { body->frame_ended(kind == FrameEnd::swap ? spu::FrameEnd::swap : spu::FrameEnd::wait); });
+}
+
+constinit BodyServices services;
+
+/// A courtesy: a program that ends in order leaves its last half second in the report too.
+[[gnu::destructor]] void at_library_end() {
+  if (body != nullptr) body->write_report();
+}
+
+}  // namespace
+}  // namespace understudy::interceptor
+
+extern "C" [[gnu::visibility("default")]] const understudy::interceptor::BodyServices* understudy_open_body(
+    const understudy::interceptor::DoorServices* door) {
+  using namespace understudy::interceptor;
+  if (door == nullptr || door->abi != body_abi || door->driver == nullptr) return nullptr;
+  try {
+    understudy::spu::Options options = understudy::spu::options_from_environment();
+    if (options.disable) return nullptr;
+    if (body == nullptr) body = new Body(*door, std::move(options));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
+    return nullptr;
+  }
+  services = {body_abi, context_current, context_leaving, context_destroyed, before_frame_end, after_frame_end};
+  return &services;
+}

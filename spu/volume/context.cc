@@ -1,0 +1,26 @@
+#include "spu/volume/context.h"
+
+#include <cstdio>
+
+namespace understudy::spu {
+
+GlContext describe_context(const DispatchTable& gl) {
+  GlContext context;
+  context.gl = &gl;
+  // The version string exists in every version; GL_MAJOR_VERSION would raise an error before 3.0.
+  int major = 0;
+  int minor = 0;
+  const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
+  if (text != nullptr && std::sscanf(text, "%d.%d", &major, &minor) == 2) context.version = 100 * major + 10 * minor;
+  if (context.version >= 320) {
+    GLint mask = 0;
+    gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &mask);
+    context.core = (mask & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
+  } else if (context.version >= 310) {
+    context.core = true;  // 3.1 without ARB_compatibility; with it Mesa reports 3.2 or later
+  }
+  if (!context.core) gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
+  return context;
+}
+
+}  // namespace understudy::spu

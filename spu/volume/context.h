@@ -1,0 +1,21 @@
+// What the volume unit must know about the context it stands in.
+#pragma once
+
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+struct GlContext {
+  const DispatchTable* gl = nullptr;  ///< the table below the volume unit
+  int version = 0;                    ///< 100 * major + 10 * minor, e.g. 450
+  bool core = false;                  ///< no fixed function, no GL_FEEDBACK
+  int fixed_function_units = 0;       ///< texture units of the fixed-function pipeline; 0 in core profiles
+
+  /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.
+  bool sufficient() const { return version >= 300; }
+};
+
+/// Asks the current context.
+GlContext describe_context(const DispatchTable& gl);
+
+}  // namespace understudy::spu

@@ -1,0 +1,89 @@
+#include "spu/volume/geometry/feedback.h"
+
+#include <cmath>
+
+namespace understudy::spu {
+namespace {
+
+constexpr std::size_t first_buffer = std::size_t(1) << 18;    // floats: about 1,500 slices
+constexpr std::size_t largest_buffer = std::size_t(1) << 26;
+constexpr std::size_t floats_per_vertex = 12;  // GL_4D_COLOR_TEXTURE: x y z w, r g b a, s t r q
+
+struct Window {
+  std::array<GLint, 4> viewport{};
+  std::array<GLdouble, 2> depth_range{};
+};
+
+ObservedVertex vertex_from(const float* f, const Window& window) {
+  ObservedVertex v;
+  const double w = f[3];
+  const double x = 2.0 * (f[0] - window.viewport[0]) / window.viewport[2] - 1.0;
+  const double y = 2.0 * (f[1] - window.viewport[1]) / window.viewport[3] - 1.0;
+  const double near = window.depth_range[0];
+  const double far = window.depth_range[1];
+  const double z = (2.0 * f[2] - near - far) / (far - near);
+  v.clip = {x * w, y * w, z * w, w};
+  const double q = f[11];
+  v.texture = {f[8] / q, f[9] / q, f[10] / q};
+  return v;
+}
+
+ObservedPolygons parse(std::span<const float> feedback, const Window& window) {
+  ObservedPolygons polygons;
+  polygons.clipped = true;
+  bool first = true;
+  std::size_t i = 0;
+  while (i + 1 < feedback.size() && feedback[i] == float(GL_POLYGON_TOKEN)) {
+    const auto count = std::size_t(feedback[i + 1]);
+    i += 2;
+    if (feedback.size() - i < count * floats_per_vertex) break;
+    for (std::size_t k = 0; k < count; ++k, i += floats_per_vertex) {
+      const float* f = &feedback[i];
+      polygons.vertices.push_back(vertex_from(f, window));
+      const std::array<float, 4> colour{f[4], f[5], f[6], f[7]};
+      if (first) polygons.primary_colour = colour;
+      first = false;
+      for (int c = 0; c < 4; ++c) {
+        if (std::abs(colour[c] - polygons.primary_colour[c]) > 1e-3F) polygons.constant_colour = false;
+      }
+    }
+    polygons.first.push_back(polygons.vertices.size());
+  }
+  // Points or lines among the slices: not a run that we know, say so by an empty answer.
+  return i == feedback.size() ? polygons : ObservedPolygons{};
+}
+
+}  // namespace
+
+ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
+  const DispatchTable& gl = *context.gl;
+  Window window;
+  gl.GetIntegerv(GL_VIEWPORT, window.viewport.data());
+  gl.GetDoublev(GL_DEPTH_RANGE, window.depth_range.data());
+  if (window.viewport[2] <= 0 || window.viewport[3] <= 0 || window.depth_range[0] == window.depth_range[1]) return {};
+
+  GLint application_size = 0;
+  GLint application_type = 0;
+  void* application_buffer = nullptr;
+  gl.GetIntegerv(GL_FEEDBACK_BUFFER_SIZE, &application_size);
+  gl.GetIntegerv(GL_FEEDBACK_BUFFER_TYPE, &application_type);
+  gl.GetPointerv(GL_FEEDBACK_BUFFER_POINTER, &application_buffer);
+
+  std::vector<float> buffer(first_buffer);
+  GLint values = -1;
+  while (true) {
+    gl.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
+    gl.RenderMode(GL_FEEDBACK);
+    run.replay(gl);
+    values = gl.RenderMode(GL_RENDER);
+    if (values >= 0 || buffer.size() >= largest_buffer) break;
+    buffer.resize(buffer.size() * 4);
+  }
+  if (application_buffer != nullptr) {
+    gl.FeedbackBuffer(application_size, GLenum(application_type), static_cast<GLfloat*>(application_buffer));
+  }
+  if (values < 0) return {};
+  return parse(std::span(buffer).first(std::size_t(values)), window);
+}
+
+}  // namespace understudy::spu

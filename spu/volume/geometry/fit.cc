@@ -1,0 +1,112 @@
+#include "spu/volume/geometry/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace understudy::spu {
+namespace {
+
+using Symmetric3 = std::array<std::array<double, 3>, 3>;
+
+/// Cholesky factor of a symmetric positive definite 3x3 matrix; null when a pivot falls below `floor` times the
+/// largest diagonal entry, which is how a flat cloud of points (a single slice) shows itself.
+std::optional<Symmetric3> cholesky(const Symmetric3& m, double floor) {
+  const double largest = std::max({m[0][0], m[1][1], m[2][2]});
+  Symmetric3 l{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = m[i][j];
+      for (int k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+      if (i == j) {
+        if (!(sum > floor * largest)) return std::nullopt;
+        l[i][i] = std::sqrt(sum);
+      } else {
+        l[i][j] = sum / l[j][j];
+      }
+    }
+  }
+  return l;
+}
+
+volume::Vec3 solve(const Symmetric3& l, const volume::Vec3& right) {
+  volume::Vec3 y{};
+  for (int i = 0; i < 3; ++i) {
+    y[i] = right[i];
+    for (int k = 0; k < i; ++k) y[i] -= l[i][k] * y[k];
+    y[i] /= l[i][i];
+  }
+  for (int i = 2; i >= 0; --i) {
+    for (int k = i + 1; k < 3; ++k) y[i] -= l[k][i] * y[k];
+    y[i] /= l[i][i];
+  }
+  return y;
+}
+
+}  // namespace
+
+std::optional<CameraFit> fit_camera(std::span<const ObservedVertex> vertices) {
+  if (vertices.size() < 4) return std::nullopt;
+  // Centring keeps a volume that stands far from the origin (offset 1e7) from drowning its own extent.
+  volume::Vec3 centre_t{};
+  std::array<double, 4> centre_c{};
+  for (const ObservedVertex& v : vertices) {
+    for (int i = 0; i < 3; ++i) centre_t[i] += v.texture[i];
+    for (int i = 0; i < 4; ++i) centre_c[i] += v.clip[i];
+  }
+  const double n = double(vertices.size());
+  for (double& x : centre_t) x /= n;
+  for (double& x : centre_c) x /= n;
+  for (double x : centre_c) {
+    if (!std::isfinite(x)) return std::nullopt;
+  }
+
+  volume::Vec3 scale{};
+  for (const ObservedVertex& v : vertices) {
+    for (int i = 0; i < 3; ++i) scale[i] = std::max(scale[i], std::abs(v.texture[i] - centre_t[i]));
+  }
+  for (double s : scale) {
+    if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
+  }
+
+  Symmetric3 normal{};
+  std::array<volume::Vec3, 4> right{};
+  for (const ObservedVertex& v : vertices) {
+    volume::Vec3 t{};
+    for (int i = 0; i < 3; ++i) t[i] = (v.texture[i] - centre_t[i]) / scale[i];
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) normal[i][j] += t[i] * t[j];
+      for (int row = 0; row < 4; ++row) right[row][i] += t[i] * (v.clip[row] - centre_c[row]);
+    }
+  }
+  // Two slices of N lie 1/N apart at least; squared and scaled that is far above 1e-10, float noise far below.
+  const auto factor = cholesky(normal, 1e-10);
+  if (!factor) return std::nullopt;
+
+  CameraFit fit;
+  for (int row = 0; row < 4; ++row) {
+    const volume::Vec3 solution = solve(*factor, right[row]);
+    double constant = centre_c[row];
+    for (int i = 0; i < 3; ++i) {
+      fit.texture_to_clip[4 * row + i] = solution[i] / scale[i];
+      constant -= solution[i] / scale[i] * centre_t[i];
+    }
+    fit.texture_to_clip[4 * row + 3] = constant;
+  }
+
+  double extent = 0;
+  double deviation = 0;
+  for (const ObservedVertex& v : vertices) {
+    for (int row = 0; row < 4; ++row) {
+      const double* a = &fit.texture_to_clip[4 * row];
+      const double predicted = a[0] * v.texture[0] + a[1] * v.texture[1] + a[2] * v.texture[2] + a[3];
+      deviation = std::max(deviation, std::abs(predicted - v.clip[row]));
+      extent = std::max(extent, std::abs(v.clip[row] - centre_c[row]));
+    }
+  }
+  fit.residual = extent > 0 ? deviation / extent : std::numeric_limits<double>::infinity();
+  if (!std::isfinite(fit.residual)) return std::nullopt;
+  return fit;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,194 @@
+#include "spu/volume/geometry/slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::cross;
+using volume::dot;
+using volume::HalfSpace;
+using volume::length;
+using volume::subtract;
+using volume::Vec3;
+
+/// Offsets of one slice's vertices, and of neighbouring slices in the application's own arithmetic, agree to float
+/// precision of texture coordinates; the spacing of real viewers is above 1e-4.
+constexpr double same_plane = 2e-6;
+/// Slices are evenly spaced when no offset strays from its place by more than this part of the spacing.
+constexpr double even_spacing = 0.02;
+/// A coordinate this close to the texture's edge is the edge.
+constexpr double snap = 1e-4;
+/// Observed and expected area may differ by this part.
+constexpr double same_area = 5e-3;
+
+/// Twice the area vector of a planar polygon.
+template <class Points>
+Vec3 area_vector(const Points& points) {
+  Vec3 sum{};
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const Vec3 c = cross(subtract(points[i - 1], points[0]), subtract(points[i], points[0]));
+    for (int k = 0; k < 3; ++k) sum[k] += c[k];
+  }
+  return sum;
+}
+
+std::vector<Vec3> clipped(std::vector<Vec3> polygon, const HalfSpace& keep) {
+  std::vector<Vec3> result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3& b = polygon[(i + 1) % polygon.size()];
+    const double da = dot(keep.normal, a) + keep.offset;
+    const double db = dot(keep.normal, b) + keep.offset;
+    if (da >= 0) result.push_back(a);
+    if ((da >= 0) != (db >= 0)) {
+      const double s = da / (da - db);
+      result.push_back({a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2])});
+    }
+  }
+  return result;
+}
+
+/// A square on the plane, large enough to cover everything near the unit cube.
+std::vector<Vec3> plane_square(const Vec3& normal, double offset) {
+  const int axis = std::abs(normal[0]) < 0.6 ? 0 : std::abs(normal[1]) < 0.6 ? 1 : 2;
+  Vec3 helper{};
+  helper[axis] = 1;
+  Vec3 u = cross(normal, helper);
+  const double lu = length(u);
+  for (double& x : u) x /= lu;
+  const Vec3 v = cross(normal, u);
+  constexpr double reach = 8;
+  std::vector<Vec3> square;
+  for (const auto& [a, b] : {std::pair{-reach, -reach}, {reach, -reach}, {reach, reach}, {-reach, reach}}) {
+    Vec3 p{};
+    for (int k = 0; k < 3; ++k) p[k] = normal[k] * offset + a * u[k] + b * v[k];
+    square.push_back(p);
+  }
+  return square;
+}
+
+/// The six half-spaces of the view volume, -w <= x, y, z <= w, carried to texture space.
+std::vector<HalfSpace> view_volume(const volume::Matrix4& a) {
+  std::vector<HalfSpace> planes;
+  for (int row = 0; row < 3; ++row) {
+    for (double sign : {1.0, -1.0}) {
+      HalfSpace h;
+      for (int k = 0; k < 3; ++k) h.normal[k] = a[12 + k] + sign * a[4 * row + k];
+      h.offset = a[15] + sign * a[4 * row + 3];
+      planes.push_back(h);
+    }
+  }
+  return planes;
+}
+
+double depth_at(const volume::Matrix4& a, const Vec3& t) {
+  const double z = a[8] * t[0] + a[9] * t[1] + a[10] * t[2] + a[11];
+  const double w = a[12] * t[0] + a[13] * t[1] + a[14] * t[2] + a[15];
+  return z / w;
+}
+
+}  // namespace
+
+SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
+                         std::span<const volume::HalfSpace> clip_planes) {
+  std::vector<Vec3> points;
+  // One normal for all slices: the sum of all area vectors, turned to agree, outweighs slivers.
+  Vec3 normal{};
+  double observed_area = 0;
+  for (std::size_t p = 0; p < polygons.count(); ++p) {
+    points.clear();
+    for (const ObservedVertex& v : polygons.polygon(p)) points.push_back(v.texture);
+    const Vec3 area = area_vector(points);
+    const double sign = dot(area, normal) < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) normal[k] += sign * area[k];
+    observed_area += length(area);
+  }
+  const double total = length(normal);
+  if (!(total > 0)) return "slices have no area";
+  if (total < 0.999 * observed_area) return "slices are not parallel";
+  for (double& x : normal) x /= total;
+
+  std::vector<double> offsets;  // in drawing order
+  volume::Box box{{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+  for (std::size_t p = 0; p < polygons.count(); ++p) {
+    double low = 1e30;
+    double high = -1e30;
+    points.clear();
+    for (const ObservedVertex& v : polygons.polygon(p)) {
+      points.push_back(v.texture);
+      const double d = dot(normal, v.texture);
+      low = std::min(low, d);
+      high = std::max(high, d);
+    }
+    // A degenerate vertex run (batched strips) paints nothing and says nothing.
+    if (length(area_vector(points)) < 1e-12) continue;
+    if (high - low > 16 * same_plane) return "slices are not flat in texture space";
+    for (const Vec3& t : points) {
+      for (int k = 0; k < 3; ++k) {
+        box.low[k] = std::min(box.low[k], t[k]);
+        box.high[k] = std::max(box.high[k], t[k]);
+      }
+    }
+    const double offset = (low + high) / 2;
+    if (offsets.empty() || std::abs(offset - offsets.back()) > 16 * same_plane) offsets.push_back(offset);
+  }
+  if (offsets.size() < 2) return "fewer than two slices";
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(box.low[k]) < snap) box.low[k] = 0;
+    if (std::abs(box.high[k] - 1) < snap) box.high[k] = 1;
+    if (box.low[k] < 0 || box.high[k] > 1) return "slices leave the texture";
+  }
+
+  const std::size_t n = offsets.size();
+  const double step = (offsets.back() - offsets.front()) / double(n - 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (std::abs(offsets.front() + double(i) * step - offsets[i]) > even_spacing * std::abs(step)) {
+      return "slices are not equally spaced";
+    }
+  }
+
+  SliceSet set;
+  set.region = box;
+  set.planes.normal = normal;
+  set.planes.first = offsets.back();
+  set.planes.spacing = -step;
+  set.planes.count = int(n);
+
+  const Vec3 middle{(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, (box.low[2] + box.high[2]) / 2};
+  Vec3 beyond = middle;
+  for (int k = 0; k < 3; ++k) beyond[k] += 1e-3 * (set.planes.spacing < 0 ? -normal[k] : normal[k]);
+  if (depth_at(camera.texture_to_clip, beyond) < depth_at(camera.texture_to_clip, middle)) {
+    return "slices are drawn front to back under a back-to-front blend";
+  }
+
+  std::vector<HalfSpace> cuts(clip_planes.begin(), clip_planes.end());
+  for (int k = 0; k < 3; ++k) {
+    HalfSpace low;
+    low.normal[k] = 1;
+    low.offset = -box.low[k];
+    HalfSpace high;
+    high.normal[k] = -1;
+    high.offset = box.high[k];
+    cuts.push_back(low);
+    cuts.push_back(high);
+  }
+  if (polygons.clipped) {
+    const auto view = view_volume(camera.texture_to_clip);
+    cuts.insert(cuts.end(), view.begin(), view.end());
+  }
+  double expected_area = 0;
+  for (double offset : offsets) {
+    std::vector<Vec3> polygon = plane_square(normal, offset);
+    for (const HalfSpace& cut : cuts) polygon = clipped(std::move(polygon), cut);
+    expected_area += length(area_vector(polygon));
+  }
+  if (std::abs(expected_area - observed_area) > same_area * expected_area) return "slices do not fill a box";
+  return set;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,26 @@
+// From observed polygons to the application's sampling: equidistant parallel planes through a box of texture space.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "spu/volume/geometry/fit.h"
+#include "spu/volume/geometry/polygon.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+struct SliceSet {
+  volume::SlicePlanes planes;  ///< plane 0 is the one drawn last, nearest to the eye
+  volume::Box region;          ///< the box of texture space that the slices fill
+};
+
+/// Either the slices, or why they are none, in words that end in the report ("slices are not equally spaced").
+using SliceFinding = std::variant<SliceSet, std::string>;
+
+/// `clip_planes` are the application's own, in texture space. The polygons must be exactly what the planes cut out of
+/// the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the check.
+SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
+                         std::span<const volume::HalfSpace> clip_planes);
+
+}  // namespace understudy::spu

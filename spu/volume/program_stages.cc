@@ -1,0 +1,295 @@
+#include "spu/volume/program_stages.h"
+
+#include <array>
+#include <cstring>
+#include <regex>
+
+namespace understudy::spu {
+namespace {
+
+struct UniformShape {
+  int components = 0;
+  enum class Kind { real, integer, natural, matrix } kind = Kind::real;
+};
+
+/// How a uniform type is read and written; components 0 for types that no volume shader met so far uses.
+UniformShape shape_of(GLenum type) {
+  using Kind = UniformShape::Kind;
+  switch (type) {
+    case GL_FLOAT: return {1, Kind::real};
+    case GL_FLOAT_VEC2: return {2, Kind::real};
+    case GL_FLOAT_VEC3: return {3, Kind::real};
+    case GL_FLOAT_VEC4: return {4, Kind::real};
+    case GL_FLOAT_MAT2: return {4, Kind::matrix};
+    case GL_FLOAT_MAT3: return {9, Kind::matrix};
+    case GL_FLOAT_MAT4: return {16, Kind::matrix};
+    case GL_UNSIGNED_INT: return {1, Kind::natural};
+    case GL_UNSIGNED_INT_VEC2: return {2, Kind::natural};
+    case GL_UNSIGNED_INT_VEC3: return {3, Kind::natural};
+    case GL_UNSIGNED_INT_VEC4: return {4, Kind::natural};
+    case GL_INT_VEC2:
+    case GL_BOOL_VEC2: return {2, Kind::integer};
+    case GL_INT_VEC3:
+    case GL_BOOL_VEC3: return {3, Kind::integer};
+    case GL_INT_VEC4:
+    case GL_BOOL_VEC4: return {4, Kind::integer};
+    case GL_INT:
+    case GL_BOOL:
+    case GL_SAMPLER_1D:
+    case GL_SAMPLER_2D:
+    case GL_SAMPLER_3D:
+    case GL_SAMPLER_CUBE:
+    case GL_SAMPLER_2D_RECT:
+    case GL_SAMPLER_1D_SHADOW:
+    case GL_SAMPLER_2D_SHADOW: return {1, Kind::integer};
+    default: return {};
+  }
+}
+
+template <class Visit>
+void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
+  GLint count = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    std::array<char, 256> name{};
+    GLint size = 0;
+    GLenum type = 0;
+    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    std::string text = name.data();
+    // Arrays are listed by their first element.
+    const bool array = text.ends_with("[0]");
+    if (array) text.resize(text.size() - 3);
+    for (GLint element = 0; element < size; ++element) {
+      visit(array ? text + "[" + std::to_string(element) + "]" : text, type);
+    }
+  }
+}
+
+void copy_uniform(const DispatchTable& gl, GLuint from, GLint source, GLuint to, GLint target, GLenum type) {
+  using Kind = UniformShape::Kind;
+  const UniformShape shape = shape_of(type);
+  std::array<GLfloat, 16> real{};
+  std::array<GLint, 4> integer{};
+  std::array<GLuint, 4> natural{};
+  gl.UseProgram(to);
+  switch (shape.kind) {
+    case Kind::real:
+      gl.GetUniformfv(from, source, real.data());
+      if (shape.components == 1) gl.Uniform1fv(target, 1, real.data());
+      if (shape.components == 2) gl.Uniform2fv(target, 1, real.data());
+      if (shape.components == 3) gl.Uniform3fv(target, 1, real.data());
+      if (shape.components == 4) gl.Uniform4fv(target, 1, real.data());
+      break;
+    case Kind::matrix:
+      gl.GetUniformfv(from, source, real.data());
+      if (shape.components == 4) gl.UniformMatrix2fv(target, 1, GL_FALSE, real.data());
+      if (shape.components == 9) gl.UniformMatrix3fv(target, 1, GL_FALSE, real.data());
+      if (shape.components == 16) gl.UniformMatrix4fv(target, 1, GL_FALSE, real.data());
+      break;
+    case Kind::integer:
+      gl.GetUniformiv(from, source, integer.data());
+      if (shape.components == 1) gl.Uniform1iv(target, 1, integer.data());
+      if (shape.components == 2) gl.Uniform2iv(target, 1, integer.data());
+      if (shape.components == 3) gl.Uniform3iv(target, 1, integer.data());
+      if (shape.components == 4) gl.Uniform4iv(target, 1, integer.data());
+      break;
+    case Kind::natural:
+      gl.GetUniformuiv(from, source, natural.data());
+      if (shape.components == 1) gl.Uniform1uiv(target, 1, natural.data());
+      if (shape.components == 2) gl.Uniform2uiv(target, 1, natural.data());
+      if (shape.components == 3) gl.Uniform3uiv(target, 1, natural.data());
+      if (shape.components == 4) gl.Uniform4uiv(target, 1, natural.data());
+      break;
+  }
+}
+
+GLuint compile(const DispatchTable& gl, GLenum stage, const std::vector<std::string>& sources, GLuint program) {
+  for (const std::string& source : sources) {
+    const GLuint shader = gl.CreateShader(stage);
+    const char* text = source.c_str();
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(program, shader);
+    gl.DeleteShader(shader);  // lives as long as it is attached
+  }
+  return program;
+}
+
+bool linked(const DispatchTable& gl, GLuint program) {
+  gl.LinkProgram(program);
+  GLint status = 0;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &status);
+  return status != 0;
+}
+
+/// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once lowered,
+/// as gl_in_TexCoord0.
+std::string written_name(const std::string& read) {
+  static const std::regex texture_coordinate(R"(^gl_(?:in_)?TexCoord\[?(\d+)\]?$)");
+  std::smatch match;
+  if (std::regex_match(read, match, texture_coordinate)) return "gl_TexCoord[" + match[1].str() + "]";
+  if (read == "gl_Color") return "gl_FrontColor";
+  if (read == "gl_SecondaryColor") return "gl_FrontSecondaryColor";
+  if (read == "gl_FogFragCoord") return read;
+  return read;
+}
+
+std::optional<std::vector<StageInput>> fragment_inputs(const GlContext& context, const ProgramRecord& record,
+                                                       std::string& trouble) {
+  const DispatchTable& gl = *context.gl;
+  const GLuint program = compile(gl, GL_FRAGMENT_SHADER, record.fragment_sources, gl.CreateProgram());
+  gl.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
+  std::vector<StageInput> inputs;
+  if (!linked(gl, program)) {
+    trouble = "the fragment shader does not link alone";
+  } else {
+    GLint count = 0;
+    gl.GetProgramInterfaceiv(program, GL_PROGRAM_INPUT, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; ++i) {
+      std::array<char, 256> name{};
+      gl.GetProgramResourceName(program, GL_PROGRAM_INPUT, GLuint(i), GLsizei(name.size()), nullptr, name.data());
+      const std::array<GLenum, 2> asked{GL_TYPE, GL_ARRAY_SIZE};
+      std::array<GLint, 2> answer{};
+      gl.GetProgramResourceiv(program, GL_PROGRAM_INPUT, GLuint(i), 2, asked.data(), 2, nullptr, answer.data());
+      StageInput input;
+      input.name = written_name(name.data());
+      input.type = GLenum(answer[0]);
+      const UniformShape shape = shape_of(input.type);
+      if (input.name == "gl_FragCoord" || input.name == "gl_FrontFacing" || input.name == "gl_PointCoord") {
+        trouble = "the fragment shader reads " + input.name;
+        break;
+      }
+      if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
+        trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
+        break;
+      }
+      input.components = shape.components;
+      input.integer = shape.kind != UniformShape::Kind::real;
+      inputs.push_back(input);
+    }
+  }
+  gl.DeleteProgram(program);
+  if (!trouble.empty()) return std::nullopt;
+  return inputs;
+}
+
+const char* glsl_type(const StageInput& input) {
+  switch (input.type) {
+    case GL_FLOAT: return "float";
+    case GL_FLOAT_VEC2: return "vec2";
+    case GL_FLOAT_VEC3: return "vec3";
+    case GL_FLOAT_VEC4: return "vec4";
+    case GL_INT: return "int";
+    case GL_UNSIGNED_INT: return "uint";
+    case GL_INT_VEC2: return "ivec2";
+    case GL_INT_VEC3: return "ivec3";
+    case GL_INT_VEC4: return "ivec4";
+    default: return "vec4";
+  }
+}
+
+}  // namespace
+
+ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
+  const DispatchTable& gl = *context.gl;
+  ProgramStages stages;
+  const auto inputs = fragment_inputs(context, record, stages.trouble);
+  if (!inputs) return stages;
+  stages.inputs = *inputs;
+  if (!record.vertex_shader) return stages;
+
+  const GLuint program = compile(gl, GL_VERTEX_SHADER, record.vertex_sources, gl.CreateProgram());
+  GLint attributes = 0;
+  gl.GetProgramiv(application, GL_ACTIVE_ATTRIBUTES, &attributes);
+  for (GLint i = 0; i < attributes; ++i) {
+    std::array<char, 256> name{};
+    GLint size = 0;
+    GLenum type = 0;
+    gl.GetActiveAttrib(application, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    const GLint location = gl.GetAttribLocation(application, name.data());
+    if (location >= 0) gl.BindAttribLocation(program, GLuint(location), name.data());
+  }
+  std::vector<const char*> captured{"gl_Position"};
+  for (const StageInput& input : stages.inputs) captured.push_back(input.name.c_str());
+  gl.TransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
+  if (linked(gl, program)) {
+    stages.observer = program;
+  } else {
+    stages.trouble = "the vertex shader does not link for capture";
+    gl.DeleteProgram(program);
+  }
+  return stages;
+}
+
+GLuint probe_program(const GlContext& context, const ProgramRecord* record, const std::vector<StageInput>& inputs,
+                     const std::string& coordinate, std::string& trouble) {
+  const DispatchTable& gl = *context.gl;
+  std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
+  std::string body;
+  int others = 0;
+  for (const StageInput& input : inputs) {
+    const std::string type = glsl_type(input);
+    if (!input.name.starts_with("gl_")) declarations += (input.integer ? "flat out " : "out ") + type + " " + input.name + ";\n";
+    if (input.name == coordinate) {
+      body += "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
+    } else {
+      static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
+      body += "  " + input.name + " = " + type + "(understudy_value[" + std::to_string(others) + "]" +
+              swizzle[std::size_t(input.components)] + ");\n";
+      ++others;
+    }
+  }
+  if (others > 0) declarations += "uniform vec4 understudy_value[" + std::to_string(others) + "];\n";
+  const std::string source = declarations +
+                             "void main() {\n"
+                             "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+                             "  vec2 unit = 0.5 * corner + 0.5;\n"
+                             "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
+                             body + "}\n";
+  const GLuint program = gl.CreateProgram();
+  compile(gl, GL_VERTEX_SHADER, {source}, program);
+  if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
+  if (linked(gl, program)) return program;
+  std::array<char, 200> log{};
+  gl.GetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
+  trouble = std::string("the fragment shader does not link with a probe: ") + log.data();
+  gl.DeleteProgram(program);
+  return 0;
+}
+
+void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
+  const DispatchTable& gl = *context.gl;
+  for_each_uniform(gl, to, [&](const std::string& name, GLenum type) {
+    if (name.starts_with("gl_")) return;  // fixed-function state, the same for both
+    const GLint source = gl.GetUniformLocation(from, name.c_str());
+    const GLint target = gl.GetUniformLocation(to, name.c_str());
+    if (source >= 0 && target >= 0 && shape_of(type).components > 0) copy_uniform(gl, from, source, to, target, type);
+  });
+  GLint blocks = 0;
+  if (context.version >= 310) gl.GetProgramiv(to, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  for (GLint block = 0; block < blocks; ++block) {
+    std::array<char, 256> name{};
+    gl.GetActiveUniformBlockName(to, GLuint(block), GLsizei(name.size()), nullptr, name.data());
+    const GLuint source = gl.GetUniformBlockIndex(from, name.data());
+    GLint binding = 0;
+    if (source == GL_INVALID_INDEX) continue;
+    gl.GetActiveUniformBlockiv(from, source, GL_UNIFORM_BLOCK_BINDING, &binding);
+    gl.UniformBlockBinding(to, GLuint(block), GLuint(binding));
+  }
+}
+
+std::vector<float> uniform_values(const GlContext& context, GLuint application, GLuint program) {
+  const DispatchTable& gl = *context.gl;
+  std::vector<float> values;
+  for_each_uniform(gl, program, [&](const std::string& name, GLenum type) {
+    const GLint location = gl.GetUniformLocation(application, name.c_str());
+    const UniformShape shape = shape_of(type);
+    if (location < 0 || shape.components == 0) return;
+    std::array<GLfloat, 16> value{};
+    gl.GetUniformfv(application, location, value.data());
+    values.insert(values.end(), value.begin(), value.begin() + shape.components);
+  });
+  return values;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,56 @@
+#include "spu/volume/render_session.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace understudy::spu {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The first connection waits for mpirun to start its ranks; later ones must not hold up the viewer's frames.
+constexpr int first_patience_ms = 30000;
+constexpr int later_patience_ms = 20;
+/// Between two attempts the application draws by itself.
+constexpr auto retry_after = 200ms;
+
+}  // namespace
+
+compositor::RenderService& RenderSession::service() {
+  if (service_) return *service_;
+  if (std::chrono::steady_clock::now() < not_before_) {
+    throw compositor::ServiceLost("waiting for a new group of render nodes");
+  }
+  try {
+    service_ = options_.connect.empty()
+                   ? compositor::embedded_service()
+                   : compositor::linked_service(options_.connect, connected_once_ ? later_patience_ms : first_patience_ms);
+  } catch (const compositor::ServiceLost&) {
+    not_before_ = std::chrono::steady_clock::now() + retry_after;
+    connected_once_ = true;  // whoever was not there after 30 s is not waited for again
+    throw;
+  }
+  connected_once_ = true;
+  ++generation_;
+  return *service_;
+}
+
+void RenderSession::forget(volume::VolumeId id) {
+  if (!service_) return;
+  try {
+    service_->forget_volume(id);
+  } catch (const compositor::ServiceLost& gone) {
+    lost(gone.what());
+  }
+}
+
+void RenderSession::lost(const std::string& what) {
+  if (service_) {
+    fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
+  }
+  service_.reset();
+  not_before_ = std::chrono::steady_clock::now() + retry_after;
+}
+
+}  // namespace understudy::spu

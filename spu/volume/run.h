@@ -1,0 +1,44 @@
+// A run: consecutive draws of slices with one pipeline, kept instead of drawn until it is known what they mean.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "dispatch/packed_call.h"
+#include "spu/volume/pipeline.h"
+
+namespace understudy::spu {
+
+class Run {
+ public:
+  explicit Run(Pipeline pipeline) : pipeline_(std::move(pipeline)) {}
+
+  const Pipeline& pipeline() const { return pipeline_; }
+
+  /// Where deferred calls go.
+  PackedCalls& calls() { return calls_; }
+  /// glDrawElements whose indices lie in the bound element buffer; `offset` as the application gave it.
+  void draw_elements(GLenum mode, GLsizei count, GLenum type, const void* offset) {
+    elements_.push_back({calls_.words().size(), mode, count, type, offset});
+  }
+  bool inside_begin = false;
+  std::size_t draws = 0;
+
+  /// Makes the calls on `gl`, in order.
+  void replay(const DispatchTable& gl) const;
+
+ private:
+  struct ElementDraw {
+    std::size_t position;  ///< words of packed calls before it
+    GLenum mode;
+    GLsizei count;
+    GLenum type;
+    const void* offset;
+  };
+
+  Pipeline pipeline_;
+  PackedCalls calls_;
+  std::vector<ElementDraw> elements_;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,542 @@
+#include "spu/volume/volume_unit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "spu/track/track.h"
+#include "spu/volume/depth.h"
+#include "spu/volume/draw_slots.h"
+#include "spu/volume/geometry/feedback.h"
+#include "spu/volume/save_frames.h"
+#include "spu/volume/saved_state.h"
+#include "spu/volume/verify.h"
+#include "volume/footprint.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Ends the substitution of one run: the application draws, and the reason goes to the report.
+struct Doubt {
+  std::string reason;
+};
+
+/// Nothing of the run is visible: the application may draw it, it costs nothing and means nothing.
+struct NothingVisible {};
+
+volume::Matrix4 projection_matrix(const DispatchTable& gl) {
+  std::array<GLdouble, 16> column_major{};
+  gl.GetDoublev(GL_PROJECTION_MATRIX, column_major.data());
+  volume::Matrix4 matrix{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) matrix[4 * row + column] = column_major[4 * column + row];
+  }
+  return matrix;
+}
+
+/// The row vector `plane` times `matrix`: how plane equations travel against points.
+std::array<double, 4> plane_times(const std::array<double, 4>& plane, const volume::Matrix4& matrix) {
+  std::array<double, 4> result{};
+  for (std::size_t column = 0; column < 4; ++column) {
+    for (std::size_t row = 0; row < 4; ++row) result[column] += plane[row] * matrix[4 * row + column];
+  }
+  return result;
+}
+
+/// The application's user clip planes, which OpenGL keeps in eye space, carried to texture space through the camera.
+std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable& gl, const volume::Matrix4& texture_to_clip) {
+  std::vector<volume::HalfSpace> planes;
+  GLint count = 0;
+  gl.GetIntegerv(GL_MAX_CLIP_PLANES, &count);
+  std::optional<volume::Matrix4> clip_to_eye;
+  for (GLint i = 0; i < count; ++i) {
+    if (!gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) continue;
+    if (!clip_to_eye) clip_to_eye = volume::inverse(projection_matrix(gl));
+    if (!clip_to_eye) throw Doubt{"the projection matrix is singular"};
+    std::array<double, 4> eye{};
+    gl.GetClipPlane(GLenum(GL_CLIP_PLANE0 + i), eye.data());
+    const auto texture = plane_times(plane_times(eye, *clip_to_eye), texture_to_clip);
+    planes.push_back({{texture[0], texture[1], texture[2]}, texture[3]});
+  }
+  return planes;
+}
+
+/// Everything that fixed-function fragments depend on, as numbers to compare.
+void append_fixed_function_state(const DispatchTable& gl, std::vector<float>& key) {
+  constexpr std::array<GLenum, 17> names = {
+      GL_TEXTURE_ENV_MODE, GL_COMBINE_RGB,    GL_COMBINE_ALPHA,  GL_SRC0_RGB,       GL_SRC1_RGB,    GL_SRC2_RGB,
+      GL_SRC0_ALPHA,       GL_SRC1_ALPHA,     GL_SRC2_ALPHA,     GL_OPERAND0_RGB,   GL_OPERAND1_RGB, GL_OPERAND2_RGB,
+      GL_OPERAND0_ALPHA,   GL_OPERAND1_ALPHA, GL_OPERAND2_ALPHA, GL_RGB_SCALE,      GL_ALPHA_SCALE};
+  GLint active = 0;
+  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  gl.ActiveTexture(GL_TEXTURE0);
+  for (const GLenum name : names) {
+    GLfloat value = 0;
+    gl.GetTexEnvfv(GL_TEXTURE_ENV, name, &value);
+    key.push_back(value);
+  }
+  std::array<GLfloat, 4> colour{};
+  gl.GetTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, colour.data());
+  key.insert(key.end(), colour.begin(), colour.end());
+  gl.ActiveTexture(GLenum(active));
+}
+
+void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
+  GLfloat value = 0;
+  key.push_back(gl.IsEnabled(GL_ALPHA_TEST) ? 1.0F : 0.0F);
+  gl.GetFloatv(GL_ALPHA_TEST_FUNC, &value);
+  key.push_back(value);
+  gl.GetFloatv(GL_ALPHA_TEST_REF, &value);
+  key.push_back(value);
+}
+
+/// Texels of `size` that samples of `region` read, linear filter included.
+volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& size) {
+  volume::TexelBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double n = size[k];
+    box.low[k] = std::clamp(int(std::floor(region.low[k] * n - 0.5)), 0, size[k] - 1);
+    box.high[k] = std::clamp(int(std::floor(region.high[k] * n - 0.5)) + 2, box.low[k] + 1, size[k]);
+  }
+  return box;
+}
+
+bool holds(const volume::TexelBox& outer, const volume::TexelBox& inner) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (inner.low[k] < outer.low[k] || inner.high[k] > outer.high[k]) return false;
+  }
+  return true;
+}
+
+std::string_view name_of(volume::TexelType type) {
+  switch (type) {
+    case volume::TexelType::u8: return "8-bit";
+    case volume::TexelType::u16: return "16-bit";
+    case volume::TexelType::f32: return "float";
+    default: return "RGBA";
+  }
+}
+
+template <std::size_t N>
+void put(char (&to)[N], std::string_view text) {
+  const std::size_t length = std::min(text.size(), N - 1);
+  std::copy_n(text.begin(), length, to);
+  to[length] = 0;
+}
+
+void count_reason(VolumeCounters& counters, const std::string& reason) {
+  for (ReasonCount& slot : counters.left_because) {
+    if (slot.reason[0] == 0) put(slot.reason, reason);
+    if (std::string_view(slot.reason) == std::string_view(reason).substr(0, sizeof slot.reason - 1)) {
+      slot.count.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+/// What is found out about one run on its way to a picture.
+struct VolumeUnit::Substitution {
+  const Run& run;
+  const Pipeline& pipeline;
+  KnownVolume& volume;
+  std::uint64_t texture_version = 0;
+  ObservedPolygons polygons{};
+  std::optional<CameraFit> fit{};
+  FragmentInputs fragment{};
+  SliceSet slices{};
+  volume::RenderRequest request{};
+};
+
+VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
+    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {
+  frame_.error_rms = -1;
+}
+
+VolumeUnit::~VolumeUnit() = default;
+
+const GlContext& VolumeUnit::context() {
+  if (!context_) context_ = describe_context(chain_.below(*this, Phase::plain));
+  return *context_;
+}
+
+void VolumeUnit::fill(Phase phase, DispatchTable& table) {
+  if (phase == Phase::watching) fill_watching_slots(table);
+  if (phase == Phase::deferring) fill_deferring_slots(table);
+}
+
+KnownVolume& VolumeUnit::known(GLuint texture) {
+  KnownVolume& volume = known_[texture];
+  if (volume.counters == nullptr) {
+    ProcessCounters& process = process_counters();
+    const std::uint32_t index = process.volumes.fetch_add(1, std::memory_order_relaxed);
+    // Past the last slot the counts of further volumes are shared; the drawing is not affected.
+    volume.counters = &process.volume[std::min<std::uint32_t>(index, max_counted_volumes - 1)];
+    volume.counters->texture = texture;
+  }
+  return volume;
+}
+
+void VolumeUnit::leave(GLuint texture, const std::string& reason) {
+  KnownVolume& volume = known(texture);
+  ++frame_.left;
+  volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
+  const bool new_reason = volume.last_reason != reason;
+  count_reason(*volume.counters, reason);
+  volume.last_reason = reason;
+  if (new_reason) {
+    fmt::print(stderr, "understudy: volume {} left to the application: {}\n", texture, reason);
+  }
+}
+
+bool VolumeUnit::opens_run() {
+  if (inside_begin || !context().sufficient()) return false;
+  const PipelineFinding finding = read_pipeline(context(), chain_.group());
+  if (std::holds_alternative<NotAVolume>(finding)) return false;
+  std::string reason;
+  GLuint texture = 0;
+  if (const auto* left = std::get_if<LeftAlone>(&finding)) {
+    reason = left->reason;
+    texture = left->texture;
+  } else {
+    texture = std::get<Pipeline>(finding).volume.texture;
+    reason = known(texture).given_back;
+    if (reason.empty() && chain_.group().is_rendered_to(texture)) reason = "the volume texture is rendered into";
+  }
+  if (!reason.empty()) {
+    // Slices drawn one by one are still one run: it is counted once a frame.
+    if (known(texture).left_in_frame != frames_) leave(texture, reason);
+    known(texture).left_in_frame = frames_;
+    return false;
+  }
+  run_ = std::make_unique<Run>(std::get<Pipeline>(finding));
+  chain_.set_phase(Phase::deferring);
+  return true;
+}
+
+void VolumeUnit::close_run() {
+  if (!run_) return;
+  const std::unique_ptr<Run> run = std::move(run_);
+  chain_.set_phase(Phase::watching);
+  if (run->inside_begin) {
+    leave(run->pipeline().volume.texture, "calls other than vertices between glBegin and glEnd");
+    inside_begin = true;
+    run->replay(*context().gl);
+    return;
+  }
+  try {
+    substitute(*run);
+    return;
+  } catch (const Doubt& doubt) {
+    leave(run->pipeline().volume.texture, doubt.reason);
+  } catch (const NothingVisible&) {
+  } catch (const compositor::RequestRefused& refused) {
+    leave(run->pipeline().volume.texture, refused.what());
+  } catch (const compositor::ServiceLost& lost) {
+    const auto lock = session_->lock();
+    session_->lost(lost.what());
+    leave(run->pipeline().volume.texture, "the render nodes did not answer");
+  } catch (const std::exception& error) {
+    leave(run->pipeline().volume.texture, error.what());
+  }
+  run->replay(*context().gl);
+}
+
+const ProgramStages& VolumeUnit::stages(GLuint program, const ProgramRecord& record) {
+  auto& [link, stages] = stages_[program];
+  if (link != record.link) {
+    if (stages.observer != 0) context().gl->DeleteProgram(stages.observer);
+    stages = take_apart(context(), record, program);
+    link = record.link;
+  }
+  return stages;
+}
+
+void VolumeUnit::observe(Substitution& s) {
+  const DispatchTable& gl = *context().gl;
+  const ProgramRecord* record = s.pipeline.program != 0 ? chain_.group().program(s.pipeline.program) : nullptr;
+  s.fragment.record = record;
+  s.fragment.application = s.pipeline.program;
+  if (record != nullptr) {
+    const ProgramStages& parts = stages(s.pipeline.program, *record);
+    if (!parts.trouble.empty()) throw Doubt{parts.trouble};
+    s.fragment.inputs = parts.inputs;
+    if (record->vertex_shader) {
+      if (!context().core && (gl.IsEnabled(GL_CLIP_PLANE0) || gl.IsEnabled(GL_CLIP_PLANE1))) {
+        throw Doubt{"clip planes cut what a vertex shader draws"};
+      }
+      Capture capture = capture_vertices(context(), s.run, parts);
+      if (capture.polygons.count() == 0) throw NothingVisible{};
+      if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
+      s.polygons = std::move(capture.polygons);
+      s.fit = capture.fit;
+      s.fragment.coordinate = capture.coordinate;
+      s.fragment.first = std::move(capture.first);
+      s.fragment.last = std::move(capture.last);
+      return;
+    }
+  } else {
+    s.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false}, {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
+  }
+  if (gl.IsEnabled(GL_COLOR_SUM)) throw Doubt{"a secondary colour is added after texturing"};
+  GLint colour_control = 0;
+  gl.GetIntegerv(GL_LIGHT_MODEL_COLOR_CONTROL, &colour_control);
+  if (gl.IsEnabled(GL_LIGHTING) && colour_control == GL_SEPARATE_SPECULAR_COLOR) {
+    throw Doubt{"specular colour is added after texturing"};
+  }
+  s.polygons = observe_by_feedback(context(), s.run);
+  if (s.polygons.count() == 0) throw NothingVisible{};
+  if (!s.polygons.constant_colour) throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
+  s.fragment.coordinate = "gl_TexCoord[0]";
+  for (const StageInput& input : s.fragment.inputs) {
+    if (input.name == "gl_TexCoord[0]") {
+      s.fragment.first.push_back({});
+    } else if (input.name == "gl_FrontColor") {
+      s.fragment.first.push_back(s.polygons.primary_colour);
+    } else {
+      throw Doubt{"the fragment shader reads " + input.name + ", which feedback does not tell"};
+    }
+  }
+  s.fragment.last = s.fragment.first;
+}
+
+void VolumeUnit::find_geometry(Substitution& s) {
+  if (!s.fit) s.fit = fit_camera(s.polygons.vertices);
+  if (!s.fit) throw Doubt{"the draw does not span the volume (a single slice or face)"};
+  if (s.fit->residual > max_fit_residual) throw Doubt{"positions are not an affine map of texture coordinates"};
+  if (s.polygons.clipped) {
+    s.request.clip_planes = clip_planes_in_texture_space(*context().gl, s.fit->texture_to_clip);
+  }
+  SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes);
+  if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+  s.slices = std::get<SliceSet>(finding);
+}
+
+void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
+  const DispatchTable& gl = *context().gl;
+  KnownVolume& known = s.volume;
+  GLint active = 0;
+  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
+  TextureDescription texture;
+  const auto reason = describe_texture(context(), s.pipeline.volume.unit, texture);
+  gl.ActiveTexture(GLenum(active));
+  if (reason) throw Doubt{*reason};
+  known.texture = texture;
+  for (int k = 0; k < 3; ++k) known.counters->size[k] = texture.size[std::size_t(k)];
+  put(known.counters->texture_format, texture.format_name);
+
+  volume::VolumeDescription wanted;
+  wanted.id = known.description.id;
+  wanted.version = s.texture_version;
+  wanted.size = texture.size;
+  wanted.type = texture.type;
+  wanted.wrap = texture.wrap;
+  wanted.border = texture.border;
+  wanted.stored = texels_of(s.slices.region, texture.size);
+  const bool kept = known.generation == session_->generation();
+  if (kept && holds(known.description.stored, wanted.stored)) {
+    wanted.stored = known.description.stored;
+    if (wanted == known.description) return;
+  } else if (kept) {
+    // The view showed a part first and shows more now: take the whole, once.
+    wanted.stored = {{0, 0, 0}, texture.size};
+  }
+  if (wanted.id == 0) wanted.id = session_->new_volume_id();
+
+  known.generation = 0;
+  service.begin_volume(wanted);
+  {
+    SavedState saved(context());
+    gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
+    known.range = read_texels(context(), s.pipeline.volume.texture, texture, wanted.stored,
+                              [&](int first, int slices, std::span<const std::byte> texels) {
+                                service.add_slices(wanted.id, first, slices, texels);
+                              });
+  }
+  service.end_volume(wanted.id);
+  known.description = wanted;
+  known.generation = session_->generation();
+}
+
+void VolumeUnit::classify(Substitution& s) {
+  const DispatchTable& gl = *context().gl;
+  KnownVolume& known = s.volume;
+  std::vector<float> key{known.range[0], known.range[1], s.pipeline.premultiplied ? 1.0F : 0.0F,
+                         float(known.texture.base), float(known.texture.type)};
+  for (const GLint swizzle : known.texture.swizzle) key.push_back(float(swizzle));
+  if (!context().core) append_alpha_test(gl, key);
+  if (s.fragment.record != nullptr) {
+    key.push_back(float(s.fragment.record->link));
+    const auto values = uniform_values(context(), s.pipeline.program, s.pipeline.program);
+    key.insert(key.end(), values.begin(), values.end());
+  } else {
+    append_fixed_function_state(gl, key);
+  }
+  for (const SampledTexture& table : s.pipeline.others) {
+    key.push_back(float(table.texture));
+    key.push_back(float(chain_.group().texture_version(table.texture)));
+    if (chain_.group().is_rendered_to(table.texture)) key.push_back(std::nanf(""));  // never equal: probed every time
+  }
+  for (std::size_t i = 0; i < s.fragment.inputs.size(); ++i) {
+    if (s.fragment.inputs[i].name == s.fragment.coordinate) continue;
+    key.insert(key.end(), s.fragment.first[i].begin(), s.fragment.first[i].end());
+    key.insert(key.end(), s.fragment.last[i].begin(), s.fragment.last[i].end());
+  }
+  if (!known.classification || key != known.classification_inputs) {
+    ProbeFinding finding = probe_classification(context(), s.pipeline, known.texture, s.fragment, known.range);
+    if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+    known.classification = std::get<volume::Classification>(std::move(finding));
+    known.classification_inputs = std::move(key);
+  }
+  s.request.classification = *known.classification;
+}
+
+void VolumeUnit::compose_request(Substitution& s) {
+  const DispatchTable& gl = *context().gl;
+  volume::RenderRequest& request = s.request;
+  std::array<GLint, 4> viewport{};
+  gl.GetIntegerv(GL_VIEWPORT, viewport.data());
+  request.viewport = {viewport[0], viewport[1], viewport[2], viewport[3]};
+  request.window = request.viewport;
+  if (gl.IsEnabled(GL_SCISSOR_TEST)) {
+    std::array<GLint, 4> scissor{};
+    gl.GetIntegerv(GL_SCISSOR_BOX, scissor.data());
+    request.window = intersection(request.window, {scissor[0], scissor[1], scissor[2], scissor[3]});
+  }
+  gl.GetDoublev(GL_DEPTH_RANGE, request.depth_range.data());
+  request.volume = s.volume.description.id;
+  request.version = s.volume.description.version;
+  request.texture_to_clip = s.fit->texture_to_clip;
+  request.planes = s.slices.planes;
+  request.region = s.slices.region;
+  request.filter = s.volume.texture.filter;
+  if (s.pipeline.depth_test) {
+    request.depth = read_depth(context(), volume::footprint(request, request.region), s.pipeline.depth_or_equal);
+  }
+}
+
+void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
+  const Options& options = session_->options();
+  const bool first = s.volume.frames == 0 && options.verify >= 0;
+  const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
+  if (!first && !due) return;
+  const auto difference = compare_with_application(context(), s.run, s.request, image);
+  if (!difference) return;
+  VolumeCounters& counters = *s.volume.counters;
+  counters.verify_max = std::max(counters.verify_max, difference->max);
+  counters.verify_sum_sq += difference->mean_square;
+  counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
+  frame_.error_rms = std::sqrt(difference->mean_square);
+  if (difference->psnr() < options.verify_psnr) {
+    s.volume.given_back = fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
+                                      difference->psnr(), options.verify_psnr);
+    throw Doubt{s.volume.given_back};
+  }
+}
+
+void VolumeUnit::explain(const Substitution& s) {
+  const volume::SlicePlanes& planes = s.slices.planes;
+  const volume::Matrix4& a = s.request.texture_to_clip;
+  const bool perspective = std::abs(a[12]) + std::abs(a[13]) + std::abs(a[14]) > 1e-9 * std::abs(a[15]);
+  put(s.volume.counters->explanation,
+      fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, fit to {:.1e}, "
+                  "{} clip planes, {}",
+                  s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
+                  name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count, std::abs(planes.spacing),
+                  s.request.filter == volume::Filter::linear ? "linear" : "nearest",
+                  std::holds_alternative<volume::LinearMap>(s.request.classification)
+                      ? "colours in the texels"
+                      : (s.pipeline.program != 0 ? "table probed from the program" : "table probed from fixed function"),
+                  perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
+                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));
+}
+
+void VolumeUnit::substitute(const Run& run) {
+  Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.pipeline().volume.texture)};
+  s.texture_version = chain_.group().texture_version(s.pipeline.volume.texture);
+  observe(s);
+  find_geometry(s);
+  const Options& options = session_->options();
+  const auto lock = session_->lock();
+  compositor::RenderService& service = session_->service();
+  process_counters().nodes = service.nodes();
+  upload(s, service);
+  classify(s);
+  compose_request(s);
+  const Clock::time_point asked = Clock::now();
+  const compositor::Rendered rendered = service.render(s.request);
+  frame_.render_ms += milliseconds_since(asked);
+  verify(s, rendered.image);
+
+  if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
+  if (options.debug_tint) {
+    volume::Image tinted(rendered.image.rect);
+    for (std::size_t i = 0; i < rendered.image.rgba.size(); i += 4) {
+      const float alpha = rendered.image.rgba[i + 3];
+      tinted.rgba[i] = alpha;
+      tinted.rgba[i + 2] = alpha;
+      tinted.rgba[i + 3] = alpha;
+    }
+    presenter_->present(tinted.view());
+  } else {
+    presenter_->present(rendered.image);
+  }
+  if (!options.save_frames.empty()) {
+    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, rendered.image);
+    if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
+  }
+  if (s.volume.frames == 0 || options.explain) explain(s);
+  ++s.volume.frames;
+  ++frame_.substituted;
+  s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
+  frame_.counts += rendered.counts;
+}
+
+void VolumeUnit::frame_ended(FrameEnd kind) {
+  if (kind != FrameEnd::swap) return;
+  ++frames_;
+  ProcessCounters& process = process_counters();
+  frame_.time_ms = milliseconds_since(frame_started_);
+  const std::uint64_t number = process.frames.load(std::memory_order_relaxed);
+  process.frame[number % max_frame_records] = frame_;
+  process.frames.store(number + 1, std::memory_order_release);
+  frame_ = {};
+  frame_.error_rms = -1;
+  frame_started_ = Clock::now();
+  forget_deleted_volumes();
+}
+
+void VolumeUnit::forget_deleted_volumes() {
+  std::erase_if(known_, [&](auto& entry) {
+    auto& [texture, volume] = entry;
+    if (chain_.group().is_volume(texture)) return false;
+    if (volume.generation != 0) {
+      const auto lock = session_->lock();
+      if (volume.generation == session_->generation()) session_->forget(volume.description.id);
+    }
+    return true;
+  });
+}
+
+void VolumeUnit::abandon() {
+  run_.reset();
+  stages_.clear();
+  for (auto& [texture, volume] : known_) {
+    const auto lock = session_->lock();
+    if (volume.generation != 0 && volume.generation == session_->generation()) session_->forget(volume.description.id);
+  }
+  known_.clear();
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,94 @@
+// The volume unit: watches for runs of slices, and lets the render nodes play their part.
+//
+//   watching ──(a draw that may be a volume)──► deferring ──(any other call, a frame end)──► close the run:
+//     observe geometry → fit camera → find slices → classification → texels (once) → render → present
+//   Any doubt on that way ends in the application's own drawing: the run is replayed as it was.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "spu/chain.h"
+#include "spu/report/counters.h"
+#include "spu/volume/classification/probe.h"
+#include "spu/volume/context.h"
+#include "spu/volume/geometry/slices.h"
+#include "spu/volume/present.h"
+#include "spu/volume/render_session.h"
+#include "spu/volume/run.h"
+
+namespace understudy::spu {
+
+/// What is remembered of one texture between frames.
+struct KnownVolume {
+  volume::VolumeDescription description;  ///< as the service has it
+  std::uint64_t generation = 0;           ///< of the service that has it; 0: none
+  TextureDescription texture;
+  std::array<float, 2> range{0, 1};
+  std::optional<volume::Classification> classification;
+  std::vector<float> classification_inputs;  ///< what the classification was probed under
+  std::string given_back;  ///< why the volume is left to the application for good; empty: it is not
+  std::string last_reason;  ///< the last reason for leaving it that was said
+  std::uint64_t left_in_frame = ~std::uint64_t(0);
+  std::uint64_t frames = 0;
+  VolumeCounters* counters = nullptr;
+};
+
+class VolumeUnit final : public Unit {
+ public:
+  static constexpr char tag = 'v';
+
+  VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session);
+  ~VolumeUnit() override;
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase phase, DispatchTable& table) override;
+  void settle() override { close_run(); }
+  void frame_ended(FrameEnd kind) override;
+  void abandon() override;
+
+  /// A draw is about to happen while watching. Opens a run and answers true when it may be a slice.
+  bool opens_run();
+  Run& run() { return *run_; }
+  void close_run();
+
+  /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of OpenGL.
+  bool inside_begin = false;
+
+  const GlContext& context();
+  const DispatchTable& next() const { return chain_.below(*this); }
+  Chain& chain() { return chain_; }
+
+ private:
+  struct Substitution;
+
+  void substitute(const Run& run);
+  KnownVolume& known(GLuint texture);
+  void observe(Substitution& s);
+  void find_geometry(Substitution& s);
+  void upload(Substitution& s, compositor::RenderService& service);
+  void classify(Substitution& s);
+  void compose_request(Substitution& s);
+  void verify(Substitution& s, const volume::ImageView& image);
+  void explain(const Substitution& s);
+  void leave(GLuint texture, const std::string& reason);
+  void forget_deleted_volumes();
+  const ProgramStages& stages(GLuint program, const ProgramRecord& record);
+
+  Chain& chain_;
+  std::shared_ptr<RenderSession> session_;
+  std::optional<GlContext> context_;
+  std::unique_ptr<Presenter> presenter_;
+  std::unique_ptr<Run> run_;
+  std::map<GLuint, KnownVolume> known_;
+  std::map<GLuint, std::pair<std::uint64_t, ProgramStages>> stages_;  ///< by program, with the link they stem from
+  FrameRecord frame_{};
+  std::uint64_t frames_ = 0;
+  std::uint64_t saved_ = 0;
+  std::chrono::steady_clock::time_point frame_started_{};
+};
+
+}  // namespace understudy::spu

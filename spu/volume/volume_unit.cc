@@ -506,11 +506,8 @@ void VolumeUnit::substitute(const Run& run) {
 void VolumeUnit::frame_ended(FrameEnd kind) {
   if (kind != FrameEnd::swap) return;
   ++frames_;
-  ProcessCounters& process = process_counters();
   frame_.time_ms = milliseconds_since(frame_started_);
-  const std::uint64_t number = process.frames.load(std::memory_order_relaxed);
-  process.frame[number % max_frame_records] = frame_;
-  process.frames.store(number + 1, std::memory_order_release);
+  count_frame(frame_);
   frame_ = {};
   frame_.error_rms = -1;
   frame_started_ = Clock::now();

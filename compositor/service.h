@@ -12,15 +12,15 @@
 
 namespace understudy::compositor {
 
-/// The service cannot answer (node lost, socket closed, time out). The caller draws by itself; the message says what
-/// happened, where, and what happens next, in one line without a full stop.
+/// The service cannot answer (node lost, socket closed, time out). The caller draws by itself; the message says
+/// what happened, where, and what happens next, in one line without a full stop.
 class ServiceLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The service understood the request and refuses it (unknown volume, singular matrix, over a limit). Asking again
-/// does not help; the message names the reason.
+/// The service understood the request and refuses it (unknown volume, singular matrix, over a limit). Asking
+/// again does not help; the message names the reason.
 class RequestRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -37,9 +37,10 @@ class RenderService {
 
   /// Announces a volume; texels follow slab by slab. An id that exists is replaced.
   virtual void begin_volume(const volume::VolumeDescription& volume) = 0;
-  /// Texels of the slices [first_slice, first_slice + slices) of `stored` (absolute z), tightly packed, x fastest,
-  /// native byte order, bytes_per_texel each.
-  virtual void add_slices(volume::VolumeId id, int first_slice, int slices, std::span<const std::byte> texels) = 0;
+  /// Texels of the slices [first_slice, first_slice + slices) of `stored` (absolute z), tightly packed, x
+  /// fastest, native byte order, bytes_per_texel each.
+  virtual void add_slices(volume::VolumeId id, int first_slice, int slices,
+                          std::span<const std::byte> texels) = 0;
   virtual void end_volume(volume::VolumeId id) = 0;
   virtual void forget_volume(volume::VolumeId id) = 0;
 

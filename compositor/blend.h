@@ -1,0 +1,21 @@
+// Blending two runs of premultiplied float RGBA pixels, one operator each. The arithmetic is the framebuffer's
+// (glBlendFunc, glBlendEquation) carried out in float, so that any grouping of neighbours gives the same
+// picture to within rounding (at most 2e-6 for any tree of partial images).
+#pragma once
+
+#include <span>
+
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// front = front `op` back, pixel by pixel; both hold the same number of components, a multiple of four.
+/// Under `over` the front covers the back: every component, alpha too, grows by (1 - alpha) * back, so that fog
+/// of alpha 1e-9 still adds up. The other operators commute.
+void blend(volume::Operator op, std::span<float> front, std::span<const float> back);
+
+/// Blends the part of `back` that lies in `front.rect` behind `front`.
+void blend(volume::Operator op, volume::Image& front, const volume::ImageView& back);
+
+}  // namespace understudy::compositor

@@ -1,0 +1,13 @@
+// Only what shows need travel: the smallest rectangle that holds every pixel a sample has reached.
+#pragma once
+
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// Reduces `image` to that rectangle, in place; an image without any such pixel becomes empty. The picture
+/// stays the same, because pixels outside an image count as untouched (volume::neutral_value).
+void crop_to_content(volume::Image& image, volume::Operator op);
+
+}  // namespace understudy::compositor

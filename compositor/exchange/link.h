@@ -1,0 +1,61 @@
+// How the ranks of a node group reach each other. The exchanges and the node loop are written against this
+// interface and never say MPI; mpi_link.cc alone does, and thread_link.cc lets threads of one process play the
+// ranks.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+namespace understudy::compositor {
+
+using Rank = int;
+
+/// The group is broken: another rank gave up, or went away.
+class LinkLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Outgoing {
+  Rank to = 0;
+  std::span<const std::byte> bytes;
+};
+
+struct Incoming {
+  Rank from = 0;
+  std::span<std::byte> bytes;  ///< exactly as many as the sender sends
+};
+
+/// All functions but rank() and size() may block until the other ranks take part, and throw LinkLost.
+class Link {
+ public:
+  virtual ~Link() = default;
+
+  virtual Rank rank() const = 0;
+  virtual int size() const = 0;
+
+  /// Sends and receives all of these at once, in any order; returns when all have arrived. At most one message
+  /// from one rank to another per transfer. Ranks that neither send nor receive need not call it.
+  virtual void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
+
+  /// Collective: everybody leaves with the bytes of `root`. The waiting ranks sleep, so that a group without
+  /// work leaves the processor to the viewer.
+  virtual void broadcast(Rank root, std::span<std::byte> bytes) = 0;
+
+  /// Collective: `all` holds size() times as many bytes as `mine`, in rank order.
+  virtual void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) = 0;
+
+  /// Ends the whole group because this rank cannot go on: no rank is left waiting for it.
+  [[noreturn]] virtual void abandon(const std::string& why) = 0;
+};
+
+/// The bytes of a plain value, to send it between ranks of one build on machines of one kind.
+template <class T>
+requires std::is_trivially_copyable_v<T> std::span<std::byte> bytes_of(T& value) {
+  return std::as_writable_bytes(std::span(&value, 1));
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,102 @@
+#include "compositor/exchange/mpi_link.h"
+
+#include <mpi.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+namespace understudy::compositor {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// MPI counts in int.
+constexpr std::size_t max_bytes_per_message = std::size_t(1) << 30;
+constexpr int picture_tag = 1;
+
+// OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
+// ranks that still work: first it only yields, then it sleeps for a sixteenth of the time it has waited so far
+// (so the wait grows by a sixteenth at most), a millisecond at most.
+void complete(std::vector<MPI_Request>& requests) {
+  constexpr auto only_yield = std::chrono::microseconds(100);
+  constexpr auto longest_sleep = std::chrono::microseconds(1000);
+  const auto start = Clock::now();
+  for (;;) {
+    int done = 0;
+    MPI_Testall(int(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+    if (done) return;
+    const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
+    if (waited < only_yield)
+      sched_yield();
+    else
+      std::this_thread::sleep_for(std::min<std::chrono::microseconds>(waited / 16, longest_sleep));
+  }
+}
+
+template <class Span, class Call>
+void in_pieces(Span bytes, Call call) {
+  for (std::size_t from = 0; from < bytes.size(); from += max_bytes_per_message)
+    call(bytes.subspan(from, std::min(max_bytes_per_message, bytes.size() - from)));
+}
+
+}  // namespace
+
+MpiLink::MpiLink(int& argc, char**& argv) {
+  int provided = 0;
+  // Other threads of a rank ray-cast, but only the main one talks.
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  MPI_Comm_size(machine, &local_size_);
+  MPI_Comm_free(&machine);
+}
+
+MpiLink::~MpiLink() {
+  MPI_Finalize();
+}
+
+void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
+  std::vector<MPI_Request> requests;
+  for (const Incoming& message : incoming)
+    in_pieces(message.bytes, [&](std::span<std::byte> piece) {
+      MPI_Irecv(piece.data(), int(piece.size()), MPI_BYTE, message.from, picture_tag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+    });
+  for (const Outgoing& message : outgoing)
+    in_pieces(message.bytes, [&](std::span<const std::byte> piece) {
+      MPI_Isend(piece.data(), int(piece.size()), MPI_BYTE, message.to, picture_tag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+    });
+  complete(requests);
+}
+
+void MpiLink::broadcast(Rank root, std::span<std::byte> bytes) {
+  in_pieces(bytes, [&](std::span<std::byte> piece) {
+    std::vector<MPI_Request> request(1);
+    MPI_Ibcast(piece.data(), int(piece.size()), MPI_BYTE, root, MPI_COMM_WORLD, request.data());
+    complete(request);
+  });
+}
+
+void MpiLink::gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) {
+  std::vector<MPI_Request> request(1);
+  MPI_Iallgather(mine.data(), int(mine.size()), MPI_BYTE, all.data(), int(mine.size()), MPI_BYTE,
+                 MPI_COMM_WORLD, request.data());
+  complete(request);
+}
+
+void MpiLink::abandon(const std::string& why) {
+  std::fprintf(stderr, "understudy-node: rank %d ends the group: %s\n", rank_, why.c_str());
+  MPI_Abort(MPI_COMM_WORLD, 1);
+  std::abort();
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,34 @@
+// The ranks of an MPI job. The source of this header is the one file that says MPI.
+#pragma once
+
+#include <memory>
+
+#include "compositor/exchange/link.h"
+
+namespace understudy::compositor {
+
+class MpiLink : public Link {
+ public:
+  /// Starts MPI; one object per process, on the thread that will make all calls.
+  MpiLink(int& argc, char**& argv);
+  ~MpiLink() override;
+  MpiLink(const MpiLink&) = delete;
+  MpiLink& operator=(const MpiLink&) = delete;
+
+  Rank rank() const override { return rank_; }
+  int size() const override { return size_; }
+  /// Ranks of this job that share this machine's processors.
+  int ranks_on_this_machine() const { return local_size_; }
+
+  void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override;
+  void broadcast(Rank root, std::span<std::byte> bytes) override;
+  void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override;
+  [[noreturn]] void abandon(const std::string& why) override;
+
+ private:
+  Rank rank_ = 0;
+  int size_ = 1;
+  int local_size_ = 1;
+};
+
+}  // namespace understudy::compositor

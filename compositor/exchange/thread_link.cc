@@ -1,0 +1,117 @@
+#include "compositor/exchange/thread_link.h"
+
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace understudy::compositor {
+
+namespace {
+
+// One queue of messages from each rank to each other: broadcast and gather are made of plain messages, which
+// keep their order, so the two never mix.
+class Group {
+ public:
+  explicit Group(int ranks) : ranks_(ranks), queues_(std::size_t(ranks) * std::size_t(ranks)) {}
+
+  int ranks() const { return ranks_; }
+
+  void post(Rank from, Rank to, std::span<const std::byte> bytes) {
+    const std::lock_guard lock(mutex_);
+    queue(from, to).emplace_back(bytes.begin(), bytes.end());
+    arrived_.notify_all();
+  }
+
+  void take(Rank from, Rank to, std::span<std::byte> bytes) {
+    std::unique_lock lock(mutex_);
+    arrived_.wait(lock, [&] { return !broken_.empty() || !queue(from, to).empty(); });
+    if (queue(from, to).empty()) throw LinkLost(broken_);
+    const std::vector<std::byte> message = std::move(queue(from, to).front());
+    queue(from, to).pop_front();
+    if (message.size() != bytes.size()) throw std::logic_error("a rank sent another length than was expected");
+    if (!bytes.empty()) std::memcpy(bytes.data(), message.data(), bytes.size());
+  }
+
+  void break_off(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    if (broken_.empty()) broken_ = why;
+    arrived_.notify_all();
+  }
+
+ private:
+  std::deque<std::vector<std::byte>>& queue(Rank from, Rank to) {
+    return queues_[std::size_t(from) * std::size_t(ranks_) + std::size_t(to)];
+  }
+
+  int ranks_;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<std::deque<std::vector<std::byte>>> queues_;
+  std::string broken_;
+};
+
+class ThreadLink : public Link {
+ public:
+  ThreadLink(Group& group, Rank rank) : group_(group), rank_(rank) {}
+
+  Rank rank() const override { return rank_; }
+  int size() const override { return group_.ranks(); }
+
+  void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
+    for (const Outgoing& message : outgoing) group_.post(rank_, message.to, message.bytes);
+    for (const Incoming& message : incoming) group_.take(message.from, rank_, message.bytes);
+  }
+
+  void broadcast(Rank root, std::span<std::byte> bytes) override {
+    if (rank_ != root) return group_.take(root, rank_, bytes);
+    for (Rank other = 0; other < size(); ++other)
+      if (other != root) group_.post(root, other, bytes);
+  }
+
+  void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override {
+    for (Rank other = 0; other < size(); ++other) group_.post(rank_, other, mine);
+    for (Rank other = 0; other < size(); ++other)
+      group_.take(other, rank_, all.subspan(std::size_t(other) * mine.size(), mine.size()));
+  }
+
+  [[noreturn]] void abandon(const std::string& why) override {
+    group_.break_off(why);
+    throw LinkLost(why);
+  }
+
+ private:
+  Group& group_;
+  Rank rank_;
+};
+
+}  // namespace
+
+void run_ranks(int ranks, const std::function<void(Link&)>& body) {
+  Group group(ranks);
+  std::mutex mutex;
+  std::exception_ptr first;
+  {
+    std::vector<std::jthread> threads;
+    for (Rank rank = 0; rank < ranks; ++rank) {
+      threads.emplace_back([&, rank] {
+        ThreadLink link(group, rank);
+        try {
+          body(link);
+        } catch (...) {
+          {
+            const std::lock_guard lock(mutex);
+            if (!first) first = std::current_exception();
+          }
+          group.break_off("another rank ended with an error");
+        }
+      });
+    }
+  }
+  if (first) std::rethrow_exception(first);
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,14 @@
+// Ranks as threads of one process: what the tests use to run whole node groups without MPI.
+#pragma once
+
+#include <functional>
+
+#include "compositor/exchange/link.h"
+
+namespace understudy::compositor {
+
+/// Runs `body` once per rank, each on a thread of its own, and returns when all have ended. Rethrows the first
+/// exception of any rank; the other ranks then get LinkLost instead of waiting for ever.
+void run_ranks(int ranks, const std::function<void(Link&)>& body);
+
+}  // namespace understudy::compositor

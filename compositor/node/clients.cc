@@ -1,0 +1,152 @@
+#include "compositor/node/clients.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <array>
+#include <vector>
+
+namespace understudy::compositor {
+
+namespace {
+
+// How soon a stalled message is noticed.
+constexpr int stall_check_ms = 1000;
+
+}  // namespace
+
+Clients::Clients(const std::string& control_path, int ranks)
+    : launcher_(connect_to(control_path, Clock::now() + limits::send_patience)), ranks_(ranks) {
+  launcher_.send(MessageType::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
+}
+
+Clients::Event Clients::next() {
+  for (;;) {
+    if (!departed_.empty()) {
+      const Departed departed{departed_.front()};
+      departed_.pop_front();
+      return departed;
+    }
+
+    std::vector<pollfd> fds{{launcher_.fd(), POLLIN, 0}};
+    std::vector<std::uint64_t> numbers;
+    bool unfinished = false;
+    // In turn, beginning behind the application that was heard last.
+    const auto add = [&](auto first, auto last) {
+      for (; first != last; ++first) {
+        fds.push_back({first->second.connection.fd(), POLLIN, 0});
+        numbers.push_back(first->first);
+        unfinished |= first->second.connection.unfinished();
+      }
+    };
+    const auto behind = clients_.upper_bound(last_heard_);
+    add(behind, clients_.end());
+    add(clients_.begin(), behind);
+
+    ::poll(fds.data(), fds.size(), unfinished ? stall_check_ms : -1);
+    if (fds.front().revents != 0 && !hear_launcher()) return Ended{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      Client& client = clients_.at(numbers[i]);
+      if (fds[i + 1].revents != 0) {
+        if (std::optional<Message> message = hear(numbers[i], client)) {
+          last_heard_ = numbers[i];
+          return Request{numbers[i], std::move(*message)};
+        }
+      } else if (client.connection.stalled()) {
+        drop(numbers[i], "stopped in the middle of a message");
+      }
+    }
+  }
+}
+
+// Takes in the applications that the launcher hands over; false when it has gone.
+bool Clients::hear_launcher() {
+  try {
+    while (std::optional<Message> message = launcher_.receive_some()) {
+      if (message->type != MessageType::client || !message->attached) continue;
+      if (clients_.size() >= limits::max_clients) {
+        const std::string reason = fmt::format("{} applications are served already", limits::max_clients);
+        Connection(std::move(message->attached))
+            .send(MessageType::refused, 0, encode_text(reason), Connection::now_or_never());
+        continue;
+      }
+      const std::uint64_t number = ++last_number_;
+      Client& client =
+          clients_.try_emplace(number, Client{Connection(std::move(message->attached)), {}}).first->second;
+      try {
+        client.connection.send(MessageType::welcome, 0, encode(Hello{ranks_}), Connection::now_or_never());
+      } catch (const ConnectionLost&) {
+        clients_.erase(number);  // gone while it waited
+      }
+    }
+    return true;
+  } catch (const ConnectionLost&) {
+    return false;
+  } catch (const MalformedMessage&) {
+    return false;
+  }
+}
+
+// A message for the ranks, if one is complete.
+std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
+  try {
+    std::optional<Message> message = client.connection.receive_some();
+    if (!message) return std::nullopt;
+    switch (message->type) {
+      case MessageType::image_memory:
+        take_image_memory(client, std::move(*message));
+        return std::nullopt;
+      case MessageType::begin_volume:
+      case MessageType::add_slices:
+      case MessageType::end_volume:
+      case MessageType::forget_volume:
+      case MessageType::render:
+        return message;
+      default:
+        throw MalformedMessage("an application does not send this type of message");
+    }
+  } catch (const ConnectionLost& lost) {
+    // An application that ends between two messages has done nothing wrong.
+    drop(number, client.connection.unfinished() ? lost.what() : "");
+  } catch (const std::exception& error) {
+    drop(number, error.what());
+  }
+  return std::nullopt;
+}
+
+void Clients::take_image_memory(Client& client, Message message) {
+  MessageType answer = MessageType::done;
+  std::vector<std::byte> payload;
+  try {
+    client.memory = {};
+    client.memory = ImageMemory::map(std::move(message.attached), decode_size(message.payload));
+    client.memory.close_descriptor();
+  } catch (const std::runtime_error& error) {
+    answer = MessageType::refused;
+    payload = encode_text(error.what());
+  }
+  client.connection.send(answer, message.sequence, payload, Connection::now_or_never());
+}
+
+void Clients::reply(const Request& request, MessageType type, Bytes payload) {
+  const auto client = clients_.find(request.client);
+  if (client == clients_.end()) return;
+  try {
+    client->second.connection.send(type, request.message.sequence, payload, Connection::now_or_never());
+  } catch (const ConnectionLost& lost) {
+    drop(request.client, lost.what());
+  }
+}
+
+std::span<float> Clients::image_memory(std::uint64_t client) const {
+  const auto found = clients_.find(client);
+  return found == clients_.end() ? std::span<float>() : found->second.memory.floats();
+}
+
+void Clients::drop(std::uint64_t number, const std::string& why) {
+  if (!why.empty()) fmt::print(stderr, "understudy-node: dropped application {}: {}\n", number, why);
+  clients_.erase(number);
+  departed_.push_back(number);
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,64 @@
+// Rank 0's side of the link to the applications: the connection to the launcher, which hands over applications,
+// and one connection per application. One thread, one poll; an application that is slow, silent in the middle
+// of a message, or talks nonsense is dropped with one line and never keeps the others waiting.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "compositor/service/connection.h"
+#include "compositor/service/image_memory.h"
+
+namespace understudy::compositor {
+
+class Clients {
+ public:
+  /// An application's message; image_memory never appears here.
+  struct Request {
+    std::uint64_t client = 0;
+    Message message;
+  };
+  /// An application has gone or was dropped; what it left may be forgotten.
+  struct Departed {
+    std::uint64_t client = 0;
+  };
+  /// The launcher closed its connection: time to end.
+  struct Ended {};
+  using Event = std::variant<Request, Departed, Ended>;
+
+  /// Connects to the launcher at `control_path` and says hello for `ranks` ranks. Throws std::runtime_error.
+  Clients(const std::string& control_path, int ranks);
+
+  /// Waits for the next event.
+  Event next();
+
+  /// Answers `request`; an application that does not take the answer at once is dropped.
+  void reply(const Request& request, MessageType type, Bytes payload);
+
+  /// Where the pictures of this application go; empty before it has said so.
+  std::span<float> image_memory(std::uint64_t client) const;
+
+ private:
+  struct Client {
+    Connection connection;
+    ImageMemory memory;
+  };
+
+  bool hear_launcher();
+  std::optional<Message> hear(std::uint64_t number, Client& client);
+  void take_image_memory(Client& client, Message message);
+  void drop(std::uint64_t number, const std::string& why);
+
+  Connection launcher_;
+  int ranks_;
+  std::map<std::uint64_t, Client> clients_;
+  std::uint64_t last_number_ = 0;  // numbers are never used twice
+  std::uint64_t last_heard_ = 0;   // the next turn begins behind this one
+  std::deque<std::uint64_t> departed_;
+};
+
+}  // namespace understudy::compositor

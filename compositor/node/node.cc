@@ -1,0 +1,239 @@
+#include "compositor/node/node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <vector>
+
+#include "compositor/exchange/direct_send.h"
+#include "compositor/node/clients.h"
+#include "compositor/service/limits.h"
+#include "compositor/service/protocol.h"
+#include "compositor/service/rank_renderer.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+enum class Step : std::uint32_t { end, forget_client, request };
+
+// What rank 0 broadcasts before anything else. A request's payload follows as the application sent it.
+struct Order {
+  Step step = Step::end;
+  MessageType type{};
+  std::uint64_t client = 0;
+  std::uint64_t payload_bytes = 0;
+};
+
+// What every rank tells every other about its part in a request.
+struct Outcome {
+  bool refused = false;
+  std::array<char, limits::max_text_bytes> reason{};  ///< ends with a zero
+  volume::Rect footprint;
+  volume::FrameCounts counts;
+};
+
+class Node {
+ public:
+  explicit Node(Link& link) : link_(link), renderer_(link.rank(), link.size()) {}
+
+  bool lead(const std::string& control_path);
+  void follow();
+
+ private:
+  void request(Clients& clients, Clients::Request request);
+  bool receive_payload(const Order& order, std::span<std::byte> here);
+  std::vector<Outcome> perform(const Order& order, Bytes payload);
+  Exchanged composite(const std::vector<Outcome>& outcomes);
+
+  Link& link_;
+  RankRenderer renderer_;
+  std::vector<std::byte> payload_room_;  // the same size on all ranks but 0
+  std::size_t room_ = 0;                 // that size, known to rank 0 too
+  // Of the render request in hand.
+  volume::Operator op_{};
+  std::vector<Rank> visible_order_;
+  volume::Image image_;
+};
+
+const Outcome* first_refusal(const std::vector<Outcome>& outcomes) {
+  const auto found = std::ranges::find_if(outcomes, &Outcome::refused);
+  return found == outcomes.end() ? nullptr : &*found;
+}
+
+// Adds up what the ranks did; the time is the slowest rank's.
+volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
+  volume::FrameCounts total;
+  for (const Outcome& outcome : outcomes) {
+    const volume::FrameCounts& counts = outcome.counts;
+    total.rays += counts.rays;
+    total.rays_terminated += counts.rays_terminated;
+    total.samples += counts.samples;
+    total.samples_taken += counts.samples_taken;
+    total.blocks += counts.blocks;
+    total.blocks_empty += counts.blocks_empty;
+    total.nodes_idle += outcome.footprint.empty();
+    total.render_ms = std::max(total.render_ms, counts.render_ms);
+  }
+  return total;
+}
+
+bool Node::lead(const std::string& control_path) {
+  std::optional<Clients> clients;
+  try {
+    clients.emplace(control_path, link_.size());
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "understudy-node: no launcher: {}\n", error.what());
+  }
+  while (clients) {
+    Clients::Event event = clients->next();
+    if (std::holds_alternative<Clients::Ended>(event)) break;
+    if (auto* asked = std::get_if<Clients::Request>(&event)) {
+      request(*clients, std::move(*asked));
+    } else {
+      Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0};
+      link_.broadcast(0, bytes_of(order));
+      renderer_.forget_client(order.client);
+    }
+  }
+  Order order{Step::end, {}, 0, 0};
+  link_.broadcast(0, bytes_of(order));
+  return clients.has_value();
+}
+
+void Node::follow() {
+  for (;;) {
+    Order order;
+    link_.broadcast(0, bytes_of(order));
+    if (order.step == Step::end) return;
+    if (order.step == Step::forget_client) {
+      renderer_.forget_client(order.client);
+      continue;
+    }
+    if (!receive_payload(order, {})) continue;
+    const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
+    if (order.type == MessageType::render && !first_refusal(outcomes)) composite(outcomes);
+  }
+}
+
+// Broadcasts the payload that is `here` on rank 0. False, on all ranks, when one of them has no room for it.
+bool Node::receive_payload(const Order& order, std::span<std::byte> here) {
+  // All ranks have seen the same orders, so they agree on when there must be more room; only then they must
+  // also agree on whether there is.
+  if (order.payload_bytes > room_) {
+    std::uint8_t fits = 1;
+    try {
+      if (link_.rank() != 0) payload_room_.resize(order.payload_bytes);
+    } catch (const std::bad_alloc&) {
+      fits = 0;
+    }
+    std::vector<std::uint8_t> all(std::size_t(link_.size()));
+    link_.gather_to_all(bytes_of(fits), std::as_writable_bytes(std::span(all)));
+    if (std::ranges::count(all, 0) > 0) return false;
+    room_ = order.payload_bytes;
+  }
+  link_.broadcast(0, link_.rank() == 0 ? here : std::span(payload_room_).first(order.payload_bytes));
+  return true;
+}
+
+void Node::request(Clients& clients, Clients::Request request) {
+  Order order{Step::request, request.message.type, request.client, request.message.payload.size()};
+  link_.broadcast(0, bytes_of(order));
+  if (!receive_payload(order, request.message.payload))
+    return clients.reply(request, MessageType::refused,
+                         encode_text("a node has no memory left for this message"));
+
+  const std::vector<Outcome> outcomes = perform(order, request.message.payload);
+  if (const Outcome* refusal = first_refusal(outcomes))
+    return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
+  if (order.type != MessageType::render) return clients.reply(request, MessageType::done, {});
+
+  RenderedReply rendered;
+  rendered.counts = sum(outcomes);
+  const auto start = std::chrono::steady_clock::now();
+  const Exchanged exchanged = composite(outcomes);
+  rendered.counts.composite_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  rendered.counts.bytes_exchanged = exchanged.bytes;
+  rendered.rect = exchanged.picture.rect;
+
+  const std::span<float> memory = clients.image_memory(request.client);
+  if (memory.size() < exchanged.picture.rgba.size())
+    return clients.reply(request, MessageType::refused,
+                         encode_text("there is no image memory for this picture"));
+  std::ranges::copy(exchanged.picture.rgba, memory.begin());
+  clients.reply(request, MessageType::rendered, encode(rendered));
+}
+
+// This rank's part of a request, and what became of the parts of all ranks.
+std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
+  Outcome mine;
+  std::optional<VolumeKey> filling;  // the volume whose texels this order concerns
+  try {
+    switch (order.type) {
+      case MessageType::begin_volume: {
+        const volume::VolumeDescription description = decode_volume(payload);
+        filling = VolumeKey{order.client, description.id};
+        renderer_.begin(order.client, description);
+        break;
+      }
+      case MessageType::add_slices: {
+        const Slices slices = decode_slices(payload);
+        filling = VolumeKey{order.client, slices.volume};
+        renderer_.add_slices(*filling, slices.first_slice, slices.slices, slices.texels);
+        break;
+      }
+      case MessageType::end_volume:
+        filling = VolumeKey{order.client, decode_id(payload)};
+        // A slab's worth of memory is not needed again soon.
+        payload_room_ = {};
+        room_ = 0;
+        renderer_.end(*filling);
+        break;
+      case MessageType::forget_volume:
+        renderer_.forget({order.client, decode_id(payload)});
+        break;
+      case MessageType::render: {
+        const volume::RenderRequest request = decode_request(payload);
+        op_ = request.op;
+        visible_order_ = renderer_.visibility_order(order.client, request);
+        image_ = renderer_.render(order.client, request, mine.counts);
+        mine.footprint = image_.rect;
+        break;
+      }
+      default:
+        throw MalformedMessage("an application does not send this type of message");
+    }
+  } catch (const std::exception& error) {
+    mine.refused = true;
+    std::strncpy(mine.reason.data(), error.what(), mine.reason.size() - 1);
+  }
+
+  std::vector<Outcome> outcomes(std::size_t(link_.size()));
+  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
+  // A volume that one rank could not take in is of no use on the others.
+  if (filling && first_refusal(outcomes)) renderer_.forget(*filling);
+  return outcomes;
+}
+
+Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
+  std::vector<volume::Rect> footprints;
+  for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
+  return direct_send(std::move(image_), {op_, visible_order_, footprints}, link_);
+}
+
+}  // namespace
+
+bool run_node(Link& link, const std::string& control_path) {
+  Node node(link);
+  if (link.rank() == 0) return node.lead(control_path);
+  node.follow();
+  return true;
+}
+
+}  // namespace understudy::compositor

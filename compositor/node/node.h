@@ -1,0 +1,21 @@
+// The life of a render node: rank 0 listens to the applications and tells all ranks what to do; every rank
+// keeps and draws its share; the images are composited by direct-send and rank 0 leaves the picture in the
+// application's memory.
+#pragma once
+
+#include <string>
+
+#include "compositor/exchange/link.h"
+
+namespace understudy::compositor {
+
+/// Collective over `link`: every rank of the group calls it with the same arguments. Returns true when the
+/// launcher behind `control_path` has closed its connection; false, on rank 0, when it could not be reached:
+/// that has been said on stderr, and the other ranks return as well.
+///
+/// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
+/// application gets a refusal. Anything else that fails, such as memory in the middle of an exchange, is
+/// thrown: the caller then must end the group with link.abandon(), or the other ranks would wait for ever.
+bool run_node(Link& link, const std::string& control_path);
+
+}  // namespace understudy::compositor

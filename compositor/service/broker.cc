@@ -1,0 +1,163 @@
+#include "compositor/service/broker.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "compositor/service/limits.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+void send_away(Connection& client, const std::string& reason) {
+  try {
+    client.send(MessageType::refused, 0, encode_text(reason), Connection::now_or_never());
+  } catch (const ConnectionLost&) {
+    // It is leaving anyway.
+  }
+}
+
+// Whether something arrived, or ended, on a connection that should be quiet.
+bool stirs(const Connection& connection) {
+  return wait_until_ready(connection.fd(), POLLIN | POLLRDHUP, Connection::now_or_never());
+}
+
+}  // namespace
+
+Broker::Broker(std::string path, Say say)
+    : path_(std::move(path)), say_(std::move(say)), listener_(listen_at(path_)) {
+  if (!say_) say_ = [](const std::string& line) { fmt::print(stderr, "understudy: {}\n", line); };
+  struct stat file {};
+  if (::lstat(path_.c_str(), &file) == 0) {
+    device_ = file.st_dev;
+    inode_ = file.st_ino;
+  }
+}
+
+Broker::~Broker() {
+  struct stat file {};
+  if (::lstat(path_.c_str(), &file) == 0 && file.st_dev == device_ && file.st_ino == inode_)
+    ::unlink(path_.c_str());
+}
+
+void Broker::poll_fds(std::vector<pollfd>& fds) const {
+  if (Clock::now() >= accept_again_) fds.push_back({listener_.get(), POLLIN, 0});
+  for (const Peer& peer : newcomers_) fds.push_back({peer.connection.fd(), POLLIN, 0});
+  for (const Connection& client : waiting_) fds.push_back({client.fd(), POLLIN | POLLRDHUP, 0});
+  for (const Connection& nodes : nodes_) fds.push_back({nodes.fd(), POLLIN | POLLRDHUP, 0});
+}
+
+void Broker::step(std::chrono::milliseconds timeout) {
+  std::vector<pollfd> fds;
+  poll_fds(fds);
+  // Errors and signals: the handlers below find out by themselves what there is to do.
+  ::poll(fds.data(), fds.size(), int(timeout.count()));
+  hear_nodes();  // first: a group that died must not stand in the way of its successor
+  accept_all();
+  hear_newcomers();
+  hear_waiting();
+  hand_over();
+}
+
+void Broker::accept_all() {
+  while (Clock::now() >= accept_again_) {
+    FileDescriptor peer(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!peer) {
+      if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
+      // Out of descriptors or memory: the caller of connect() stays in the queue, and asking again at once
+      // would spin.
+      say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", path_,
+                       std::strerror(errno)));
+      accept_again_ = Clock::now() + std::chrono::seconds(1);
+      return;
+    }
+    Connection connection(std::move(peer), limits::max_hello_bytes);
+    if (newcomers_.size() + waiting_.size() >= limits::max_clients) {
+      send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
+      continue;
+    }
+    newcomers_.push_back({std::move(connection), Clock::now() + limits::hello_patience});
+  }
+}
+
+void Broker::hear_newcomers() {
+  std::vector<Peer> still_new;
+  for (Peer& peer : newcomers_) {
+    try {
+      if (const std::optional<Message> hello = peer.connection.receive_some())
+        welcome(std::move(peer), *hello);
+      else if (Clock::now() < peer.hello_until)
+        still_new.push_back(std::move(peer));
+      else
+        say_(fmt::format("dropped a connection at '{}' that did not say what it is", path_));
+    } catch (const std::runtime_error& error) {
+      say_(fmt::format("dropped a connection at '{}': {}", path_, error.what()));
+    }
+  }
+  newcomers_ = std::move(still_new);
+}
+
+void Broker::welcome(Peer peer, const Message& hello) {
+  if (hello.type == MessageType::hello_nodes) {
+    const int ranks = decode_hello(hello.payload).ranks;
+    if (!nodes_.empty()) return say_(fmt::format("sent a second node group of {} ranks away", ranks));
+    nodes_.push_back(std::move(peer.connection));
+    ranks_ = ranks;
+    lost_ = false;
+    turned_away_.clear();
+  } else if (hello.type == MessageType::hello_client) {
+    if (turned_away_.empty())
+      waiting_.push_back(std::move(peer.connection));
+    else
+      send_away(peer.connection, turned_away_);
+  } else {
+    throw MalformedMessage("its first message is no hello");
+  }
+}
+
+void Broker::hear_waiting() {
+  // An application waits for its welcome without a word; when it stirs it has gone, or speaks out of turn.
+  std::erase_if(waiting_, [](const Connection& client) { return stirs(client); });
+}
+
+void Broker::hear_nodes() {
+  // A node group says nothing after its hello.
+  if (!nodes_.empty() && stirs(nodes_.front())) lose_nodes("the node group closed its connection");
+}
+
+void Broker::hand_over() {
+  while (!nodes_.empty() && !waiting_.empty()) {
+    try {
+      nodes_.front().send(MessageType::client, 0, Bytes{}, Connection::now_or_never(), waiting_.front().fd());
+    } catch (const ConnectionLost& lost) {
+      if (stirs(nodes_.front())) lose_nodes(fmt::format("the node group {}", lost.what()));
+      return;  // busy: the next step tries again
+    }
+    waiting_.erase(waiting_.begin());
+    ++handed_over_;
+  }
+}
+
+void Broker::lose_nodes(const std::string& why) {
+  nodes_.clear();
+  lost_ = true;
+  say_(why);
+}
+
+void Broker::dismiss_node_group() {
+  nodes_.clear();
+}
+
+void Broker::turn_away(const std::string& reason) {
+  turned_away_ = reason;
+  for (Connection& client : waiting_) send_away(client, reason);
+  waiting_.clear();
+}
+
+}  // namespace understudy::compositor

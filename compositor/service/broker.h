@@ -1,0 +1,82 @@
+// The launcher's side of the render service: the one socket at which a node group and the applications meet.
+//
+// It outlives node groups, because MPI ends a whole job when one rank dies. Applications that come while no
+// group is there are held; when rank 0 of a group has said hello, their connections are handed to it
+// (SCM_RIGHTS), and from then on application and rank 0 talk without the launcher.
+#pragma once
+
+#include <poll.h>
+#include <sys/types.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "compositor/service/connection.h"
+
+namespace understudy::compositor {
+
+class Broker {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  /// Listens at `path` (mode 0600). `say` gets one line about everything that goes wrong later; by default it
+  /// is written to stderr. Throws std::runtime_error when the path is taken or cannot be.
+  explicit Broker(std::string path, Say say = {});
+  /// Closes all connections, which ends the node group, and removes the socket file.
+  ~Broker();
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  /// Adds the descriptors to wait for, for a caller with a poll loop of its own, which then calls step(0).
+  void poll_fds(std::vector<pollfd>& fds) const;
+  /// Waits at most `timeout` for something to happen and handles all that has happened.
+  void step(std::chrono::milliseconds timeout);
+
+  bool node_group_ready() const { return !nodes_.empty(); }
+  /// How many ranks the group has; 0 without a group.
+  int ranks() const { return nodes_.empty() ? 0 : ranks_; }
+  /// A node group was there and is gone: start another. False again once that one has said hello.
+  bool lost() const { return lost_; }
+  /// Asks the group to end: its applications lose their connections. That is no loss in the sense of lost().
+  void dismiss_node_group();
+
+  /// No group will come (MPI is missing, it keeps dying): all that wait and will come are sent away with
+  /// `reason`, until a group says hello after all.
+  void turn_away(const std::string& reason);
+
+  std::size_t clients_waiting() const { return waiting_.size(); }
+  std::size_t clients_handed_over() const { return handed_over_; }
+
+ private:
+  struct Peer {
+    Connection connection;
+    Deadline hello_until;
+  };
+
+  void accept_all();
+  void hear_newcomers();
+  void hear_waiting();
+  void hear_nodes();
+  void welcome(Peer peer, const Message& hello);
+  void hand_over();
+  void lose_nodes(const std::string& why);
+
+  std::string path_;
+  Say say_;
+  FileDescriptor listener_;
+  dev_t device_ = 0;  // of the socket file, so that only our own is removed
+  ino_t inode_ = 0;
+  Deadline accept_again_{};
+  std::vector<Peer> newcomers_;      // have not said hello
+  std::vector<Connection> waiting_;  // applications
+  std::vector<Connection> nodes_;    // the group: one or none
+  int ranks_ = 0;
+  bool lost_ = false;
+  std::string turned_away_;
+  std::size_t handed_over_ = 0;
+};
+
+}  // namespace understudy::compositor

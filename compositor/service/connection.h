@@ -1,0 +1,74 @@
+// Messages over one Unix socket. Never raises SIGPIPE, never waits longer than it was told to, never reads
+// beyond the message it returns (so that the socket can be handed to another process afterwards).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "compositor/service/file_descriptor.h"
+#include "compositor/service/limits.h"
+#include "compositor/service/protocol.h"
+#include "compositor/service/socket.h"
+
+namespace understudy::compositor {
+
+/// The peer is gone, or did not take or give a message in time. The text says which, as in "... closed the
+/// connection".
+class ConnectionLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Message {
+  MessageType type{};
+  std::uint64_t sequence = 0;
+  std::vector<std::byte> payload;
+  FileDescriptor attached;
+};
+
+using Bytes = std::span<const std::byte>;
+
+class Connection {
+ public:
+  explicit Connection(FileDescriptor socket, std::uint64_t max_payload = limits::max_message_bytes)
+      : socket_(std::move(socket)), max_payload_(max_payload) {}
+
+  int fd() const { return socket_.get(); }
+
+  /// Takes what is there; a message once it is complete. A long message needs several calls, so that one peer
+  /// cannot keep the caller from the others. Throws ConnectionLost, and MalformedMessage: after either nothing
+  /// more can be read.
+  std::optional<Message> receive_some();
+  /// Throws ConnectionLost, also at the deadline.
+  Message receive(Deadline deadline);
+  /// The beginning of a message is here.
+  bool unfinished() const { return received_ > 0; }
+  /// And the rest has not come for limits::stall_patience.
+  bool stalled() const;
+
+  /// Sends a header and the payload made of `parts`, with a descriptor attached when `attach` is one. Throws
+  /// ConnectionLost, also at the deadline; a deadline that has passed means: now or never.
+  void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, Deadline deadline,
+            int attach = -1);
+  void send(MessageType type, std::uint64_t sequence, Bytes payload, Deadline deadline, int attach = -1) {
+    send(type, sequence, {&payload, 1}, deadline, attach);
+  }
+
+  /// What an event loop sends: now or never.
+  static Deadline now_or_never() { return {}; }
+
+ private:
+  std::size_t read(std::byte* to, std::size_t size);
+
+  FileDescriptor socket_;
+  std::uint64_t max_payload_;
+  MessageHeader header_;
+  std::size_t received_ = 0;  ///< of header and payload together
+  Deadline last_progress_{};
+  Message message_;
+};
+
+}  // namespace understudy::compositor

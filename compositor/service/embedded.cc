@@ -1,0 +1,40 @@
+// The render service inside the application: one rank, all cores, no socket.
+#include "compositor/service.h"
+#include "compositor/service/rank_renderer.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+class EmbeddedService : public RenderService {
+ public:
+  void begin_volume(const volume::VolumeDescription& volume) override { renderer_.begin(application, volume); }
+  void add_slices(volume::VolumeId id, int first_slice, int slices,
+                  std::span<const std::byte> texels) override {
+    renderer_.add_slices({application, id}, first_slice, slices, texels);
+  }
+  void end_volume(volume::VolumeId id) override { renderer_.end({application, id}); }
+  void forget_volume(volume::VolumeId id) override { renderer_.forget({application, id}); }
+
+  Rendered render(const volume::RenderRequest& request) override {
+    volume::FrameCounts counts;
+    image_ = renderer_.render(application, request, counts);
+    return {image_.view(), counts};
+  }
+
+  int nodes() const override { return 0; }
+
+ private:
+  static constexpr std::uint64_t application = 0;
+
+  RankRenderer renderer_{0, 1};
+  volume::Image image_;
+};
+
+}  // namespace
+
+std::unique_ptr<RenderService> embedded_service() {
+  return std::make_unique<EmbeddedService>();
+}
+
+}  // namespace understudy::compositor

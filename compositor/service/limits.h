@@ -1,0 +1,44 @@
+// Every bound of the render service: what a message may promise before it is believed, and how long anybody
+// waits.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace understudy::compositor::limits {
+
+using std::chrono::milliseconds;
+
+// Volumes. The longest axis is volume::max_axis_texels, the most slice planes volume::max_planes.
+constexpr std::uint64_t max_slice_bytes = std::uint64_t(1) << 28;   ///< one z-slice: 8192 x 8192 x RGBA
+constexpr std::uint64_t max_volume_bytes = std::uint64_t(1) << 38;  ///< stored texels
+constexpr std::size_t max_volumes_per_client = 256;
+
+// Requests and pictures.
+constexpr int max_viewport_extent = 1 << 16;                         ///< pixels along one side
+constexpr int max_viewport_offset = 1 << 20;                         ///< of a viewport's corner from the origin
+constexpr std::uint64_t max_window_pixels = std::uint64_t(1) << 26;  ///< 8192 x 8192
+constexpr std::size_t max_clip_planes = 64;
+constexpr std::size_t max_table_entries = std::size_t(1) << 20;
+
+// Messages.
+constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a stranger
+constexpr std::uint64_t max_message_bytes = max_slice_bytes + (std::uint64_t(1) << 20);
+constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
+constexpr std::size_t read_ahead = std::size_t(1)
+                                   << 20;  ///< memory given to a message before its bytes are here
+constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
+                                         << 23;  ///< several slices travel together up to this size
+constexpr int max_ranks = 4096;
+constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
+
+// Patience. A peer that is silent between two messages may be so for ever (a viewer that nobody turns); within
+// a message, or when an answer is due, it may not.
+constexpr milliseconds hello_patience{5'000};    ///< from accept to a complete hello
+constexpr milliseconds stall_patience{10'000};   ///< between two pieces of one message
+constexpr milliseconds send_patience{10'000};    ///< until a message has left
+constexpr milliseconds reply_patience{30'000};   ///< an answer to anything but a request for a picture
+constexpr milliseconds render_patience{20'000};  ///< a picture
+
+}  // namespace understudy::compositor::limits

@@ -1,0 +1,310 @@
+#include "compositor/service/protocol.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "compositor/service/limits.h"
+#include "volume/brick/cell_lattice.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+using namespace volume;
+
+constexpr std::array<const char*, 3> x_y_z{"x", "y", "z"};
+
+void write(Writer& out, const Rect& rect) {
+  for (const int value : {rect.x, rect.y, rect.width, rect.height}) out.integer(value);
+}
+
+Rect read_rect(Reader& in, const std::string& name) {
+  Rect rect;
+  rect.x = in.small(name + ".x", -limits::max_viewport_offset, limits::max_viewport_offset);
+  rect.y = in.small(name + ".y", -limits::max_viewport_offset, limits::max_viewport_offset);
+  rect.width = in.small(name + ".width", 0, limits::max_viewport_extent);
+  rect.height = in.small(name + ".height", 0, limits::max_viewport_extent);
+  return rect;
+}
+
+// A rectangle whose pixels will be allocated.
+Rect read_pixels(Reader& in, const std::string& name) {
+  const Rect rect = read_rect(in, name);
+  if (rect.pixels() > limits::max_window_pixels)
+    in.fail(name, fmt::format("has {} pixels, more than {}", rect.pixels(), limits::max_window_pixels));
+  return rect;
+}
+
+void write(Writer& out, std::span<const double> values) {
+  for (const double value : values) out.real(value);
+}
+
+void read(Reader& in, std::string_view name, std::span<double> values) {
+  for (double& value : values) value = in.real(name);
+}
+
+template <class T>
+void write_run(Writer& out, const std::vector<T>& values) {
+  out.run(std::as_bytes(std::span(values)));
+}
+
+void write(Writer& out, const Classification& classification) {
+  out.integer(std::int64_t(classification.index()));
+  if (const auto* table = std::get_if<TransferFunction>(&classification)) {
+    out.real(table->low);
+    out.real(table->high);
+    write_run(out, table->entries);
+  } else {
+    const auto& map = std::get<LinearMap>(classification);
+    for (const float value : map.matrix) out.real(value);
+    out.integer(map.multiply_by_alpha);
+    out.real(map.alpha_above);
+  }
+}
+
+Classification read_classification(Reader& in) {
+  if (in.integer("classification", 0, 1) == 0) {
+    TransferFunction table;
+    table.low = in.real32("classification.low");
+    table.high = in.real32("classification.high");
+    table.entries = in.values<Rgba>("classification.entries", limits::max_table_entries);
+    if (table.entries.size() < 2) in.fail("classification.entries", "holds fewer than two entries");
+    return table;
+  }
+  LinearMap map;
+  for (float& value : map.matrix) value = in.real32("classification.matrix");
+  map.multiply_by_alpha = in.flag("classification.multiply_by_alpha");
+  map.alpha_above = in.real32("classification.alpha_above");
+  return map;
+}
+
+void write(Writer& out, const std::optional<DepthImage>& depth) {
+  out.integer(depth.has_value());
+  if (!depth) return;
+  write(out, depth->rect);
+  write_run(out, depth->depth);
+  out.integer(depth->or_equal);
+}
+
+std::optional<DepthImage> read_depth(Reader& in) {
+  if (!in.flag("depth")) return std::nullopt;
+  DepthImage depth;
+  depth.rect = read_pixels(in, "depth.rect");
+  depth.depth = in.values<float>("depth.depth", depth.rect.pixels());
+  if (depth.depth.size() != depth.rect.pixels()) in.fail("depth.depth", "does not fill depth.rect");
+  depth.or_equal = in.flag("depth.or_equal");
+  return depth;
+}
+
+}  // namespace
+
+void check(const MessageHeader& header, std::uint64_t max_payload) {
+  if (header.magic != protocol_magic) throw MalformedMessage("header: this is not a message of Understudy");
+  if (header.version != protocol_version)
+    throw MalformedMessage(fmt::format("header: protocol version {} instead of {}: use programs of one release",
+                                       header.version, protocol_version));
+  if (header.type < MessageType::hello_client || header.type > MessageType::last)
+    throw MalformedMessage(fmt::format("header: unknown message type {}", int(header.type)));
+  if (header.payload_bytes > max_payload)
+    throw MalformedMessage(
+        fmt::format("header: payload of {} bytes, more than {}", header.payload_bytes, max_payload));
+}
+
+std::vector<std::byte> encode(const Hello& hello) {
+  Writer out;
+  out.integer(hello.ranks);
+  return out.bytes();
+}
+
+Hello decode_hello(std::span<const std::byte> payload) {
+  Reader in("hello", payload);
+  const Hello hello{in.small("ranks", 1, limits::max_ranks)};
+  in.end();
+  return hello;
+}
+
+std::vector<std::byte> encode(const VolumeDescription& volume) {
+  Writer out;
+  out.integer(std::int64_t(volume.id));
+  out.integer(std::int64_t(volume.version));
+  for (const int extent : volume.size) out.integer(extent);
+  out.integer(std::int64_t(volume.type));
+  for (const Wrap wrap : volume.wrap) out.integer(std::int64_t(wrap));
+  for (const float value : volume.border) out.real(value);
+  for (const int value : volume.stored.low) out.integer(value);
+  for (const int value : volume.stored.high) out.integer(value);
+  return out.bytes();
+}
+
+VolumeDescription decode_volume(std::span<const std::byte> payload) {
+  Reader in("begin volume", payload);
+  VolumeDescription volume;
+  volume.id = in.word("id");
+  volume.version = in.word("version");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume.size[axis] = in.small(std::string("size.") + x_y_z[axis], 1, max_axis_texels);
+  volume.type = in.enumerator("type", TexelType::rgba8);
+  for (Wrap& wrap : volume.wrap) wrap = in.enumerator("wrap", Wrap::repeat);
+  for (float& value : volume.border) value = in.real32("border");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume.stored.low[axis] = in.small(std::string("stored.low.") + x_y_z[axis], 0, volume.size[axis] - 1);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume.stored.high[axis] =
+        in.small(std::string("stored.high.") + x_y_z[axis], volume.stored.low[axis] + 1, volume.size[axis]);
+  in.end();
+  return volume;
+}
+
+std::vector<std::byte> encode_slices_head(const Slices& slices) {
+  Writer out;
+  out.integer(std::int64_t(slices.volume));
+  out.integer(slices.first_slice);
+  out.integer(slices.slices);
+  out.integer(std::int64_t(slices.texels.size()));
+  return out.bytes();
+}
+
+Slices decode_slices(std::span<const std::byte> payload) {
+  Reader in("slices", payload);
+  Slices slices;
+  slices.volume = in.word("volume");
+  slices.first_slice = in.small("first_slice", 0, max_axis_texels);
+  slices.slices = in.small("slices", 1, max_axis_texels);
+  slices.texels = in.run("texels", limits::max_slice_bytes);
+  in.end();
+  return slices;
+}
+
+std::vector<std::byte> encode(const RenderRequest& request) {
+  Writer out;
+  out.integer(std::int64_t(request.volume));
+  out.integer(std::int64_t(request.version));
+  write(out, request.texture_to_clip);
+  write(out, request.viewport);
+  write(out, request.window);
+  write(out, request.depth_range);
+  write(out, request.planes.normal);
+  out.real(request.planes.first);
+  out.real(request.planes.spacing);
+  out.integer(request.planes.count);
+  out.integer(std::int64_t(request.op));
+  out.integer(std::int64_t(request.filter));
+  write(out, request.region.low);
+  write(out, request.region.high);
+  out.integer(std::int64_t(request.clip_planes.size()));
+  for (const HalfSpace& plane : request.clip_planes) {
+    write(out, plane.normal);
+    out.real(plane.offset);
+  }
+  write(out, request.classification);
+  out.real(request.termination);
+  write(out, request.depth);
+  return out.bytes();
+}
+
+RenderRequest decode_request(std::span<const std::byte> payload) {
+  Reader in("render request", payload);
+  RenderRequest request;
+  request.volume = in.word("volume");
+  request.version = in.word("version");
+  read(in, "texture_to_clip", request.texture_to_clip);
+  request.viewport = read_rect(in, "viewport");
+  request.window = read_pixels(in, "window");
+  read(in, "depth_range", request.depth_range);
+  read(in, "planes.normal", request.planes.normal);
+  request.planes.first = in.real("planes.first");
+  request.planes.spacing = in.real("planes.spacing");
+  request.planes.count = in.small("planes.count", 0, max_planes);
+  request.op = in.enumerator("op", Operator::add);
+  request.filter = in.enumerator("filter", Filter::linear);
+  read(in, "region.low", request.region.low);
+  read(in, "region.high", request.region.high);
+  request.clip_planes.resize(std::size_t(in.integer("clip_planes", 0, limits::max_clip_planes)));
+  for (HalfSpace& plane : request.clip_planes) {
+    read(in, "clip_planes.normal", plane.normal);
+    plane.offset = in.real("clip_planes.offset");
+  }
+  request.classification = read_classification(in);
+  request.termination = in.real32("termination");
+  request.depth = read_depth(in);
+  in.end();
+  return request;
+}
+
+std::vector<std::byte> encode(const RenderedReply& reply) {
+  Writer out;
+  write(out, reply.rect);
+  const FrameCounts& counts = reply.counts;
+  for (const std::uint64_t value :
+       {counts.rays, counts.rays_terminated, counts.samples, counts.samples_taken, counts.blocks,
+        counts.blocks_empty, counts.bytes_exchanged, counts.nodes_idle})
+    out.integer(std::int64_t(value));
+  out.real(counts.render_ms);
+  out.real(counts.composite_ms);
+  return out.bytes();
+}
+
+RenderedReply decode_rendered(std::span<const std::byte> payload) {
+  Reader in("rendered", payload);
+  RenderedReply reply;
+  reply.rect = read_pixels(in, "rect");
+  FrameCounts& counts = reply.counts;
+  for (std::uint64_t* value :
+       {&counts.rays, &counts.rays_terminated, &counts.samples, &counts.samples_taken, &counts.blocks,
+        &counts.blocks_empty, &counts.bytes_exchanged, &counts.nodes_idle})
+    *value = in.word("counts");
+  counts.render_ms = in.real("counts.render_ms");
+  counts.composite_ms = in.real("counts.composite_ms");
+  in.end();
+  return reply;
+}
+
+std::vector<std::byte> encode_id(VolumeId id) {
+  Writer out;
+  out.integer(std::int64_t(id));
+  return out.bytes();
+}
+
+VolumeId decode_id(std::span<const std::byte> payload) {
+  Reader in("volume id", payload);
+  const VolumeId id = in.word("id");
+  in.end();
+  return id;
+}
+
+std::vector<std::byte> encode_size(std::uint64_t bytes) {
+  Writer out;
+  out.integer(std::int64_t(bytes));
+  return out.bytes();
+}
+
+std::uint64_t decode_size(std::span<const std::byte> payload) {
+  Reader in("image memory", payload);
+  const auto size = in.integer("bytes", 1, std::int64_t(limits::max_window_pixels * 4 * sizeof(float)));
+  in.end();
+  return std::uint64_t(size);
+}
+
+std::vector<std::byte> encode_text(const std::string& text) {
+  Writer out;
+  out.run(std::as_bytes(std::span(text).first(std::min(text.size(), limits::max_text_bytes))));
+  return out.bytes();
+}
+
+std::string decode_text(std::span<const std::byte> payload) {
+  Reader in("refusal", payload);
+  const auto bytes = in.run("text", limits::max_text_bytes);
+  in.end();
+  std::string text(bytes.size(), ' ');
+  // A peer's text ends up on a terminal: one line, nothing that steers it.
+  std::ranges::transform(bytes, text.begin(), [](std::byte b) {
+    const char c = char(b);
+    return c >= 0 && c < ' ' ? ' ' : c;
+  });
+  return text;
+}
+
+}  // namespace understudy::compositor

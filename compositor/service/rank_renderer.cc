@@ -1,0 +1,139 @@
+#include "compositor/service/rank_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <stdexcept>
+
+#include "compositor/crop.h"
+#include "compositor/service.h"
+#include "compositor/service/limits.h"
+#include "volume/brick/brick_store.h"
+#include "volume/footprint.h"
+#include "volume/kd_tree.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::compositor {
+
+using namespace volume;
+
+struct RankRenderer::Volume {
+  KdTree tree;
+  BrickStore bricks;
+  RayCaster caster;
+  bool complete = false;
+
+  Volume(const VolumeDescription& description, int rank, int ranks)
+      : tree(description, ranks), bricks(description, tree.box(rank)), caster(bricks) {}
+};
+
+namespace {
+
+// What the volume room finds wrong with its arguments is a refusal here, and so is a machine that is too small.
+template <class Call>
+auto refusing(Call call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw RequestRefused(error.what());
+  } catch (const std::bad_alloc&) {
+    throw RequestRefused("out of memory: use more nodes or a smaller volume");
+  }
+}
+
+void keep_limits(const VolumeDescription& description) {
+  std::array<std::uint64_t, 3> stored{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int extent = description.stored.high[axis] - description.stored.low[axis];
+    if (extent <= 0 || extent > max_axis_texels)
+      throw RequestRefused(fmt::format("volume {} stores {} texels along axis {}, not 1 to {}", description.id,
+                                       extent, axis, max_axis_texels));
+    stored[axis] = std::uint64_t(extent);
+  }
+  const std::uint64_t slice = stored[0] * stored[1] * bytes_per_texel(description.type);
+  if (slice > limits::max_slice_bytes || slice * stored[2] > limits::max_volume_bytes)
+    throw RequestRefused(fmt::format(
+        "volume {} of {} x {} x {} texels is over the limit of {} MiB a slice or {} GiB", description.id,
+        stored[0], stored[1], stored[2], limits::max_slice_bytes >> 20, limits::max_volume_bytes >> 30));
+}
+
+}  // namespace
+
+RankRenderer::RankRenderer(int rank, int ranks) : rank_(rank), ranks_(ranks) {}
+RankRenderer::~RankRenderer() = default;
+
+RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
+  const auto found = volumes_.find(key);
+  if (found == volumes_.end()) throw RequestRefused(fmt::format("volume {} is not known here", key.volume));
+  return *found->second;
+}
+
+RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const RenderRequest& request) const {
+  Volume& volume = find({client, request.volume});
+  if (!volume.complete) throw RequestRefused(fmt::format("volume {} is not complete yet", request.volume));
+  if (const std::uint64_t held = volume.bricks.description().version; held != request.version)
+    throw RequestRefused(
+        fmt::format("volume {} is here in version {}, not {}", request.volume, held, request.version));
+  return volume;
+}
+
+void RankRenderer::begin(std::uint64_t client, const VolumeDescription& description) {
+  keep_limits(description);
+  const VolumeKey key{client, description.id};
+  const auto held =
+      std::ranges::count_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
+  if (!volumes_.contains(key) && std::size_t(held) >= limits::max_volumes_per_client)
+    throw RequestRefused(fmt::format("{} volumes are held already: forget one first", held));
+  // The old one goes first: two versions of a large volume need not fit side by side.
+  volumes_.erase(key);
+  refusing([&] { volumes_.emplace(key, std::make_unique<Volume>(description, rank_, ranks_)); });
+}
+
+void RankRenderer::add_slices(VolumeKey key, int first_slice, int slices, std::span<const std::byte> texels) {
+  Volume& volume = find(key);
+  if (volume.complete)
+    throw RequestRefused(fmt::format("volume {} is complete: begin a new version", key.volume));
+  refusing([&] { volume.bricks.add_slices(first_slice, slices, texels); });
+}
+
+void RankRenderer::end(VolumeKey key) {
+  Volume& volume = find(key);
+  refusing([&] { volume.bricks.finish(); });
+  volume.complete = true;
+}
+
+void RankRenderer::forget(VolumeKey key) {
+  volumes_.erase(key);
+}
+
+void RankRenderer::forget_client(std::uint64_t client) {
+  std::erase_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
+}
+
+Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts) {
+  const auto start = std::chrono::steady_clock::now();
+  Volume& volume = find_complete(client, request);
+  Image image = refusing([&] {
+    const VolumeDescription& description = volume.bricks.description();
+    validate(description, request);
+    if (request.window.pixels() > limits::max_window_pixels)
+      throw RequestRefused(fmt::format("a picture of {} pixels is over the limit of {}",
+                                       request.window.pixels(), limits::max_window_pixels));
+    Image result(footprint(request, description, volume.tree.box(rank_)));
+    volume.caster.render(request, result, counts);
+    return result;
+  });
+  crop_to_content(image, request.op);
+  counts.render_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return image;
+}
+
+std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const RenderRequest& request) const {
+  const Volume& volume = find_complete(client, request);
+  return refusing([&] { return volume.tree.visibility_order(request); });
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,56 @@
+// What one rank keeps of its clients' volumes, and what it draws of them: the bricks of its own box of each
+// volume's kd-tree. The embedded service is the only rank of one.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// Volume ids belong to the application that gave them.
+struct VolumeKey {
+  std::uint64_t client = 0;
+  volume::VolumeId volume = 0;
+
+  auto operator<=>(const VolumeKey&) const = default;
+};
+
+/// All functions that take a volume throw RequestRefused when it is unknown or what is asked of it makes no
+/// sense; what had been there before is then as it was.
+class RankRenderer {
+ public:
+  /// Rank `rank` of `ranks`.
+  RankRenderer(int rank, int ranks);
+  ~RankRenderer();
+
+  void begin(std::uint64_t client, const volume::VolumeDescription& description);
+  void add_slices(VolumeKey key, int first_slice, int slices, std::span<const std::byte> texels);
+  void end(VolumeKey key);
+  void forget(VolumeKey key);
+  void forget_client(std::uint64_t client);
+  std::size_t volumes() const { return volumes_.size(); }
+
+  /// This rank's image, cropped to what shows; adds to `counts`, time included.
+  volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts);
+  /// All ranks, front first.
+  std::vector<int> visibility_order(std::uint64_t client, const volume::RenderRequest& request) const;
+
+ private:
+  struct Volume;
+
+  Volume& find(VolumeKey key) const;
+  Volume& find_complete(std::uint64_t client, const volume::RenderRequest& request) const;
+
+  int rank_;
+  int ranks_;
+  std::map<VolumeKey, std::unique_ptr<Volume>> volumes_;
+};
+
+}  // namespace understudy::compositor

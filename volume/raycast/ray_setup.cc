@@ -209,7 +209,9 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
     low_is_bound[axis] = low > 0;
     high_is_bound[axis] = high < lattice.cells[axis];
     resting_place[axis] = float(low) + 0.5F;
-    top[axis] = std::nextafter(float(lattice.cells[axis]), 0.0F);
+    const TexelBox& stored = store.description().stored;
+    const bool one_texel = lattice.origin[axis] >= 0 && stored.high[axis] - stored.low[axis] == 1;
+    top[axis] = one_texel ? 0.0F : std::nextafter(float(lattice.cells[axis]), 0.0F);
     const double reach = std::max(std::abs(request.region.low[axis]), std::abs(request.region.high[axis]));
     rounding[axis] = float(4e-7 * (store.description().size[axis] * (reach + 1) + lattice.cells[axis]));
   }

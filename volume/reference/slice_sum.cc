@@ -1,0 +1,227 @@
+#include "volume/reference/slice_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <variant>
+
+#include "volume/matrix.h"
+
+namespace understudy::volume {
+
+namespace {
+
+using Sample = std::array<double, 4>;
+
+/// A texture as OpenGL sees it, one texel at a time.
+class Texture {
+ public:
+  Texture(const VolumeDescription& volume, std::span<const std::byte> texels) : volume_(volume) {
+    const int channels = volume.type == TexelType::rgba8 ? 4 : 1;
+    const std::size_t count = texels.size() / bytes_per_texel(volume.type);
+    texels_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::byte* texel = texels.data() + i * bytes_per_texel(volume.type);
+      switch (volume.type) {
+        case TexelType::u8:
+        case TexelType::rgba8:
+          for (int k = 0; k < channels; ++k) texels_[i][k] = std::to_integer<int>(texel[k]) / 255.0;
+          break;
+        case TexelType::u16: {
+          std::uint16_t v;
+          std::memcpy(&v, texel, sizeof v);
+          texels_[i][0] = v / 65535.0;
+          break;
+        }
+        case TexelType::f32: {
+          float v;
+          std::memcpy(&v, texel, sizeof v);
+          const double huge = std::ldexp(1.0, 125);
+          texels_[i][0] = std::isnan(v) ? v : std::clamp(double(v), -huge, huge);
+          break;
+        }
+      }
+    }
+    for (int k = 0; k < 4; ++k) {
+      const double b = volume.border[k];
+      border_[k] = volume.type == TexelType::f32 ? b : std::clamp(b, 0.0, 1.0);
+    }
+  }
+
+  Sample texel(std::array<int, 3> index) const {
+    std::size_t place = 0, stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int size = volume_.size[axis];
+      if (index[axis] < 0 || index[axis] >= size) {
+        if (volume_.wrap[axis] == Wrap::border) return border_;
+        if (volume_.wrap[axis] == Wrap::repeat)
+          index[axis] = ((index[axis] % size) + size) % size;
+        else
+          index[axis] = std::clamp(index[axis], 0, size - 1);
+      }
+      const int low = volume_.stored.low[axis], high = volume_.stored.high[axis];
+      place += std::size_t(std::clamp(index[axis], low, high - 1) - low) * stride;
+      stride *= std::size_t(high - low);
+    }
+    return texels_[place];
+  }
+
+  Sample nearest(const Vec3& t) const {
+    std::array<int, 3> index;
+    for (int axis = 0; axis < 3; ++axis)
+      index[axis] = std::clamp(int(std::floor(t[axis] * volume_.size[axis])), 0, volume_.size[axis] - 1);
+    return texel(index);
+  }
+
+  Sample linear(const Vec3& t) const {
+    std::array<int, 3> low;
+    Vec3 fraction;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double u = t[axis] * volume_.size[axis] - 0.5;
+      low[axis] = int(std::floor(u));
+      fraction[axis] = u - low[axis];
+    }
+    Sample sum{};
+    for (int corner = 0; corner < 8; ++corner) {
+      double weight = 1;
+      std::array<int, 3> index;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int step = corner >> axis & 1;
+        index[axis] = low[axis] + step;
+        weight *= step ? fraction[axis] : 1 - fraction[axis];
+      }
+      const Sample v = texel(index);
+      for (int k = 0; k < 4; ++k) sum[k] += weight * v[k];
+    }
+    if (touches_nan(low)) sum.fill(std::numeric_limits<double>::quiet_NaN());
+    return sum;
+  }
+
+ private:
+  /// Whether the sample's cell has a NaN corner; samples beyond the outermost texel centres belong to the
+  /// outermost cell.
+  bool touches_nan(const std::array<int, 3>& low) const {
+    for (int corner = 0; corner < 8; ++corner) {
+      std::array<int, 3> index;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int size = volume_.size[axis];
+        const bool clamps = volume_.wrap[axis] != Wrap::repeat;
+        const int cell = clamps ? std::clamp(low[axis], 0, std::max(size - 2, 0)) : low[axis];
+        index[axis] = cell + (corner >> axis & 1);
+        if (clamps) index[axis] = std::min(index[axis], size - 1);
+      }
+      if (std::isnan(texel(index)[0])) return true;
+    }
+    return false;
+  }
+
+  VolumeDescription volume_;
+  std::vector<Sample> texels_;
+  Sample border_{};
+};
+
+/// The fragment that a sample becomes, premultiplied; false when it is discarded.
+bool fragment(const Classification& classification, const Sample& sample, Sample& colour) {
+  if (const auto* function = std::get_if<TransferFunction>(&classification)) {
+    if (std::isnan(sample[0])) return false;
+    const double last = double(function->entries.size() - 1);
+    const double position =
+        std::clamp((sample[0] - function->low) / (double(function->high) - function->low) * last, 0.0, last);
+    const auto below = std::size_t(std::floor(position));
+    const std::size_t above = std::min(below + 1, function->entries.size() - 1);
+    const double s = position - double(below);
+    for (int k = 0; k < 4; ++k)
+      colour[k] = (1 - s) * double(function->entries[below][k]) + s * double(function->entries[above][k]);
+    return true;
+  }
+  const LinearMap& map = std::get<LinearMap>(classification);
+  for (int row = 0; row < 4; ++row) {
+    colour[row] = 0;
+    for (int k = 0; k < 4; ++k) colour[row] += double(map.matrix[4 * row + k]) * sample[k];
+    colour[row] = std::clamp(colour[row], 0.0, 1.0);
+  }
+  if (colour[3] <= map.alpha_above) return false;
+  if (map.multiply_by_alpha)
+    for (int k = 0; k < 3; ++k) colour[k] *= colour[3];
+  return true;
+}
+
+/// GL_LESS or GL_LEQUAL against the depth image; pixels without depth pass.
+bool nearer(const std::optional<DepthImage>& image, int x, int y, double depth) {
+  if (!image) return true;
+  const int u = x - image->rect.x, v = y - image->rect.y;
+  if (u < 0 || v < 0 || u >= image->rect.width || v >= image->rect.height) return true;
+  const double there = image->depth[std::size_t(v) * std::size_t(image->rect.width) + std::size_t(u)];
+  return image->or_equal ? depth <= there : depth < there;
+}
+
+}  // namespace
+
+Field texture_field(const VolumeDescription& volume, Filter filter, std::span<const std::byte> texels) {
+  const Texture texture(volume, texels);
+  if (filter == Filter::nearest) return [texture](const Vec3& t) { return texture.nearest(t); };
+  return [texture](const Vec3& t) { return texture.linear(t); };
+}
+
+ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect) {
+  const auto clip_to_texture = inverse(request.texture_to_clip);
+  if (!clip_to_texture) throw std::invalid_argument("the matrix from texture to clip space is singular");
+  ReferenceImage image{rect, {}};
+  const double neutral = request.op == Operator::min ? double(std::numeric_limits<float>::max()) : 0;
+  image.rgba.assign(4 * rect.pixels(), neutral);
+
+  const Rect pixels = intersection(rect, intersection(request.window, request.viewport));
+  for (int y = pixels.y; y < pixels.y + pixels.height; ++y)
+    for (int x = pixels.x; x < pixels.x + pixels.width; ++x) {
+      const double X = 2 * (x + 0.5 - request.viewport.x) / request.viewport.width - 1;
+      const double Y = 2 * (y + 0.5 - request.viewport.y) / request.viewport.height - 1;
+      const Vec4 near = transform(*clip_to_texture, {X, Y, -1, 1}),
+                 far = transform(*clip_to_texture, {X, Y, 1, 1});
+      double* pixel = image.rgba.data() + (image.at(x, y) - image.rgba.data());
+      for (int i = 0; i < request.planes.count; ++i) {
+        // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or not
+        // at all.
+        const double plane = request.planes.first + i * request.planes.spacing;
+        const auto offset = [&](const Vec4& p) {
+          return dot(request.planes.normal, {p[0], p[1], p[2]}) - plane * p[3];
+        };
+        const double at_near = offset(near), at_far = offset(far);
+        if (at_near == at_far || (at_near > 0) == (at_far > 0)) continue;
+        const double s = at_near / (at_near - at_far);
+        Vec3 t;
+        const double w = near[3] + s * (far[3] - near[3]);
+        for (int k = 0; k < 3; ++k) t[k] = (near[k] + s * (far[k] - near[k])) / w;
+
+        bool kept = true;
+        for (int k = 0; k < 3; ++k)
+          kept = kept && t[k] >= request.region.low[k] && t[k] <= request.region.high[k];
+        for (const HalfSpace& plane_cut : request.clip_planes)
+          kept = kept && dot(plane_cut.normal, t) + plane_cut.offset >= 0;
+        // In clip coordinates both points have w = 1, so depth is linear between them.
+        const double depth = request.depth_range[0] + s * (request.depth_range[1] - request.depth_range[0]);
+        Sample colour;
+        if (!kept || !nearer(request.depth, x, y, depth) || !fragment(request.classification, field(t), colour))
+          continue;
+        const double room = 1 - pixel[3];
+        for (int k = 0; k < 4; ++k) switch (request.op) {
+            case Operator::over:
+              pixel[k] += room * colour[k];
+              break;
+            case Operator::add:
+              pixel[k] += colour[k];
+              break;
+            case Operator::max:
+              pixel[k] = std::max(pixel[k], colour[k]);
+              break;
+            case Operator::min:
+              pixel[k] = std::min(pixel[k], colour[k]);
+              break;
+          }
+      }
+    }
+  return image;
+}
+
+}  // namespace understudy::volume

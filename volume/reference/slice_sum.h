@@ -1,0 +1,36 @@
+// What the application's slices mean, literally and in double precision: for every pixel the ordered
+// composition of every plane that its ray meets. Slow, plain and written independently of the ray caster, which
+// is judged by it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+/// A field over texture space: normalised value in the first component, or RGBA. A NaN contributes nothing.
+using Field = std::function<std::array<double, 4>(const Vec3& t)>;
+
+/// The field of a texture: the texels of `volume.stored`, x fastest, under OpenGL's filter and wrap rules. A
+/// linear sample next to a NaN texel is NaN; infinite texels become huge. Copies the texels.
+Field texture_field(const VolumeDescription& volume, Filter filter, std::span<const std::byte> texels);
+
+struct ReferenceImage {
+  Rect rect;
+  std::vector<double> rgba;  ///< rows bottom up, premultiplied; pixels without samples as in neutral_value()
+
+  const double* at(int x, int y) const {
+    return rgba.data() + 4 * (std::size_t(y - rect.y) * std::size_t(rect.width) + std::size_t(x - rect.x));
+  }
+};
+
+/// Composes all planes of `request` over the pixels of `rect` that lie in its window; never terminates early.
+/// Throws std::invalid_argument when the matrix is singular.
+ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect);
+
+}  // namespace understudy::volume

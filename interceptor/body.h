@@ -1,8 +1,9 @@
 // The line between the door and the body.
 //
-// libunderstudy.so, the door, is what applications load: exported entry points, real-driver lookup, nothing else. Its
-// body (libunderstudy-body.so: chain, recognition, ray casting) is opened when the first context becomes current, so a
-// program that never draws pays for neither its memory nor its libraries. They meet in the C structures below.
+// libunderstudy.so, the door, is what applications load: exported entry points, real-driver lookup, nothing
+// else. Its body (libunderstudy-body.so: chain, recognition, ray casting) is opened when the first context
+// becomes current, so a program that never draws pays for neither its memory nor its libraries. They meet in
+// the C structures below.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@
 
 namespace understudy::interceptor {
 
-/// What one thread's entry points need. Lives in the door (thread-local); the body changes `table` when the chain's
-/// head changes (a run of slices opens or closes).
+/// What one thread's entry points need. Lives in the door (thread-local); the body changes `table` when the
+/// chain's head changes (a run of slices opens or closes).
 struct ThreadState {
   const spu::DispatchTable* table = nullptr;  ///< null: no context yet, calls go to the driver
   std::uint64_t* calls = nullptr;             ///< GL calls that came through the door on this thread
@@ -33,21 +34,23 @@ struct DoorServices {
 /// Answered by the body, once. No function throws; all may be called from any thread.
 struct BodyServices {
   std::uint32_t abi = body_abi;
-  /// The calling thread has just made `context` current on the real driver. Sets the thread's table. `share` is any
-  /// context of the same share group that is already known (0: none). `desktop_gl` is false for OpenGL ES contexts,
-  /// which go straight to the driver. `drawable` tells frames of two windows apart.
+  /// The calling thread has just made `context` current on the real driver. Sets the thread's table. `share` is
+  /// any context of the same share group that is already known (0: none). `desktop_gl` is false for OpenGL ES
+  /// contexts, which go straight to the driver. `drawable` tells frames of two windows apart.
   void (*context_current)(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                           std::uintptr_t drawable) = nullptr;
   /// The calling thread's context is about to stop being current (or another is about to replace it).
   void (*context_leaving)() = nullptr;
   void (*context_destroyed)(std::uintptr_t context) = nullptr;
-  /// Before the real call that ends or publishes a frame (swap, WaitGL): what is pending must reach the framebuffer.
+  /// Before the real call that ends or publishes a frame (swap, WaitGL): what is pending must reach the
+  /// framebuffer.
   void (*before_frame_end)(FrameEnd kind) = nullptr;
   /// After the real swap returned.
   void (*after_frame_end)(FrameEnd kind) = nullptr;
 };
 
-/// The one symbol that libunderstudy-body.so exports. Null when the body refuses (ABI mismatch, UNDERSTUDY_DISABLE).
+/// The one symbol that libunderstudy-body.so exports. Null when the body refuses (ABI mismatch,
+/// UNDERSTUDY_DISABLE).
 using OpenBody = const BodyServices* (*)(const DoorServices*);
 constexpr const char* open_body_symbol = "understudy_open_body";
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the C++ that follows from the Khronos registry: the dispatch table, and everything that has one piece a command.
 
-    generate.py --gl gl.xml --glx glx.xml --out DIRECTORY
+    generate.py --gl gl.xml --glx glx.xml --egl egl.h --out DIRECTORY
 
 Files written (README.md in this folder says who uses which):
 
@@ -10,9 +10,10 @@ Files written (README.md in this folder says who uses which):
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
     packed_call.h, .cc  pack_X and replay for the commands whose arguments are plain values
     gl_entry_N.cc     the exported gl* functions of the door, in a few files so that they compile in parallel
-    glx_entry.cc      the exported glX* functions that the door does not write by hand
+    glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the door does not write by hand
 
-Python's standard library only. The registry is Debian's package khronos-api; nothing generated is ever committed.
+Python's standard library only. The registry is Debian's package khronos-api, which lacks EGL's: EGL's commands are read
+from its header, which the registry's own generator writes. Nothing generated is ever committed.
 """
 
 import argparse
@@ -23,19 +24,21 @@ from pathlib import Path
 
 GL_ENTRY_FILES = 6  # compiled in parallel
 
-# Written by hand in interceptor/: they change which context is current, end a frame, or answer for the driver.
-GLX_BY_HAND = {
-    "glXChooseFBConfigSGIX", "glXCopySubBufferMESA", "glXCreateContext", "glXCreateContextAttribsARB",
-    "glXCreateContextWithConfigSGIX", "glXCreateNewContext", "glXDestroyContext", "glXGetCurrentContext",
-    "glXGetCurrentDisplay", "glXGetCurrentDisplayEXT", "glXGetCurrentDrawable", "glXGetCurrentReadDrawable",
-    "glXGetCurrentReadDrawableSGI", "glXGetProcAddress", "glXGetProcAddressARB", "glXImportContextEXT",
-    "glXFreeContextEXT", "glXMakeContextCurrent", "glXMakeCurrent", "glXMakeCurrentReadSGI", "glXSwapBuffers",
-    "glXSwapBuffersMscOML", "glXWaitGL",
+# Written by hand in interceptor/glx.cc and egl.cc: they change which context is current, end a frame, or hand out
+# addresses.
+BY_HAND = {
+    "glXCopySubBufferMESA", "glXCreateContext", "glXCreateContextAttribsARB", "glXCreateContextWithConfigSGIX",
+    "glXCreateNewContext", "glXDestroyContext", "glXFreeContextEXT", "glXGetCurrentContext", "glXGetCurrentDisplay",
+    "glXGetCurrentDisplayEXT", "glXGetCurrentDrawable", "glXGetCurrentReadDrawable", "glXGetCurrentReadDrawableSGI",
+    "glXGetProcAddress", "glXGetProcAddressARB", "glXImportContextEXT", "glXMakeContextCurrent", "glXMakeCurrent",
+    "glXMakeCurrentReadSGI", "glXSwapBuffers", "glXSwapBuffersMscOML", "glXWaitGL",
+    "eglCopyBuffers", "eglCreateContext", "eglDestroyContext", "eglGetCurrentContext", "eglGetCurrentDisplay",
+    "eglGetCurrentSurface", "eglGetProcAddress", "eglMakeCurrent", "eglReleaseThread", "eglSwapBuffers",
+    "eglTerminate", "eglWaitClient", "eglWaitGL",
 }
-GLX_BY_HAND -= {"glXChooseFBConfigSGIX"}
 
 # Types of IRIX's video and digital-media libraries: no header of ours has them, no Linux driver has the commands.
-GLX_FOREIGN_TYPES = {"DMparams", "DMbuffer", "VLServer", "VLPath", "VLNode", "__GLXextFuncPtr"}
+FOREIGN_TYPES = {"DMparams", "DMbuffer", "VLServer", "VLPath", "VLNode"}
 
 # Values that are addresses of this process: they mean nothing in a stored or sent stream.
 ADDRESS_TYPES = {
@@ -116,6 +119,16 @@ def read_commands(registry):
             Parameter(text_before_name(p), p.find("name").text, p.get("len", "")) for p in element.findall("param")
         )
         commands.append(Command(proto.find("name").text, text_before_name(proto), parameters))
+    return sorted(commands, key=lambda command: command.name)
+
+
+def read_egl_commands(header):
+    """The commands that <EGL/egl.h> declares: one line each, `EGLAPI EGLint EGLAPIENTRY eglGetError (void);`."""
+    commands = []
+    declaration = re.compile(r"^EGLAPI (.+?) ?EGLAPIENTRY (egl\w+) \((.*)\);$", re.MULTILINE)
+    for result, name, parameters in declaration.findall(header.read_text()):
+        split = [re.fullmatch(r"(.*?)(\w+)", p.strip()) for p in parameters.split(",") if p.strip() != "void"]
+        commands.append(Command(name, result, tuple(Parameter(p[1].strip(), p[2], "") for p in split)))
     return sorted(commands, key=lambda command: command.name)
 
 
@@ -390,28 +403,21 @@ using understudy::spu::CallId;
 """
 
 
-def gl_entry_list(commands):
-    declarations = "\n".join(f"void {c.name}();" for c in commands)
-    return declarations
-
-
-def glx_entries(commands):
-    passed = [
-        c
-        for c in commands
-        if c.name not in GLX_BY_HAND
-        and not any(foreign in f"{c.result} {c.parameter_list}" for foreign in GLX_FOREIGN_TYPES)
+def window_system_entries(commands, system, header):
+    passed_on = [
+        c for c in commands
+        if c.name not in BY_HAND and not any(t in f"{c.result} {c.parameter_list}" for t in FOREIGN_TYPES)
     ]
     functions = "\n".join(
         f"UNDERSTUDY_ENTRY {c.result} {c.name}({c.parameter_list}) {{\n"
         f"  using Function = {c.result} (*)({', '.join(p.type for p in c.parameters)});\n"
-        f"  static constinit RealFunction<Function> real{{Library::glx, \"{c.name}\"}};\n"
+        f"  static constinit RealFunction<Function> real{{WindowSystem::{system}, \"{c.name}\"}};\n"
         f"  return real({c.arguments});\n"
         f"}}"
-        for c in passed
+        for c in passed_on
     )
     return f"""\
-#include <GL/glx.h>
+#include <{header}>
 
 #include "interceptor/real_function.h"
 
@@ -425,13 +431,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--gl", type=Path, required=True, help="gl.xml of the Khronos registry")
     parser.add_argument("--glx", type=Path, required=True, help="glx.xml of the Khronos registry")
+    parser.add_argument("--egl", type=Path, required=True, help="<EGL/egl.h>")
     parser.add_argument("--out", type=Path, required=True, help="folder to write to")
     arguments = parser.parse_args()
 
     gl = read_commands(arguments.gl)
     glx = read_commands(arguments.glx)
+    egl = read_egl_commands(arguments.egl)
     if len(gl) < 3000 or len(gl) >= 1 << 16:
-        raise SystemExit(f"{arguments.gl}: {len(gl)} commands; a registry of some 3,300 was expected. Is khronos-api installed?")
+        raise SystemExit(f"{arguments.gl}: {len(gl)} commands where some 3,300 were expected. Is it Khronos's gl.xml?")
+    if len(egl) < 40:
+        raise SystemExit(f"{arguments.egl}: {len(egl)} commands where 44 were expected. Is it Khronos's EGL 1.5 header?")
 
     out = arguments.out
     out.mkdir(parents=True, exist_ok=True)
@@ -444,7 +454,8 @@ def main():
     share = -(-len(gl) // GL_ENTRY_FILES)
     for number in range(GL_ENTRY_FILES):
         write(out / f"gl_entry_{number}.cc", gl_entries(gl[number * share : (number + 1) * share]))
-    write(out / "glx_entry.cc", glx_entries(glx))
+    write(out / "glx_entry.cc", window_system_entries(glx, "glx", "GL/glx.h"))
+    write(out / "egl_entry.cc", window_system_entries(egl, "egl", "EGL/egl.h"))
 
 
 if __name__ == "__main__":

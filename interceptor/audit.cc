@@ -1,0 +1,53 @@
+// LD_AUDIT's door: the loader asks this library where to look for each library it is about to load.
+//
+// It lives in a link namespace with a C library of its own, so it is kept to a few lines of C.
+#include <dlfcn.h>
+#include <limits.h>
+#include <link.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "interceptor/gl_names.h"
+
+using namespace understudy::interceptor;
+
+namespace {
+
+StubPaths stubs;
+
+void find_stubs() {
+  const char* given = getenv("UNDERSTUDY_DOOR_DIR");
+  char folder[PATH_MAX];
+  Dl_info self;
+  if (given != nullptr && *given != '\0') {
+    stubs.set_folder(given);
+  } else if (dladdr(&stubs, &self) != 0 && realpath(self.dli_fname, folder) != nullptr) {
+    const size_t own_name = static_cast<size_t>(base_name(folder) - folder);
+    snprintf(folder + own_name, sizeof folder - own_name, "door");
+    stubs.set_folder(folder);
+  }
+}
+
+}  // namespace
+
+#define AUDIT_INTERFACE extern "C" __attribute__((visibility("default")))
+
+AUDIT_INTERFACE unsigned la_version(unsigned offered) {
+  find_stubs();
+  return offered < LAV_CURRENT ? offered : LAV_CURRENT;
+}
+
+AUDIT_INTERFACE unsigned la_objopen(struct link_map* map, Lmid_t, uintptr_t* cookie) {
+  *cookie = reinterpret_cast<uintptr_t>(map);
+  return 0;
+}
+
+AUDIT_INTERFACE char* la_objsearch(const char* name, uintptr_t* cookie, unsigned flag) {
+  const int stub = flag == LA_SER_ORIG ? stub_for(name) : -1;
+  if (stub < 0 || stubs.path[stub][0] == '\0') return const_cast<char*>(name);
+  const auto* asker = reinterpret_cast<const struct link_map*>(*cookie);
+  const bool real = asker != nullptr && asker->l_name != nullptr &&
+                    may_have_the_real_one(asker->l_name, getenv("UNDERSTUDY_DRIVER_DIR"));
+  return real ? const_cast<char*>(name) : stubs.path[stub];
+}

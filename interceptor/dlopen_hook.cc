@@ -1,0 +1,99 @@
+// LD_PRELOAD's second half: applications that open OpenGL by name get the stub instead.
+//
+// glibc looks at who called dlopen (the caller's RUNPATH, its namespace), so every request that is not ours is
+// passed on by a jump, with the caller's return address still on the stack. On x86-64 that jump is written
+// down; elsewhere the compiler makes one of a call in tail position when it optimises, and a plain call, which
+// loses the caller's RUNPATH, when it does not.
+#include <dlfcn.h>
+#include <stdlib.h>
+
+#include "interceptor/entry_point.h"
+#include "interceptor/gl_names.h"
+#include "interceptor/real_driver.h"
+
+namespace understudy::interceptor {
+
+using Dlopen = void* (*)(const char*, int);
+
+extern "C" {
+/// Read by the jump below.
+__attribute__((visibility("hidden"))) constinit Dlopen understudy_next_dlopen = nullptr;
+
+/// What to ask of the next dlopen: returned in two registers.
+struct Request {
+  const char* name;
+  long mode;
+};
+__attribute__((visibility("hidden"))) Request understudy_route_dlopen(const char* name, int mode,
+                                                                      const void* caller);
+}
+
+namespace {
+
+Dlopen next_dlopen() {
+  if (understudy_next_dlopen == nullptr) {
+    // Preloaded, we stand before the C library; as what a stub needs, behind it, and it is the first of all.
+    void* next = dlsym(RTLD_NEXT, "dlopen");
+    if (next == nullptr) next = dlsym(RTLD_DEFAULT, "dlopen");
+    understudy_next_dlopen = reinterpret_cast<Dlopen>(next);
+  }
+  return understudy_next_dlopen;
+}
+
+bool caller_may_have_the_real_one(const void* caller) {
+  Dl_info info;
+  return dladdr(caller, &info) != 0 && info.dli_fname != nullptr &&
+         may_have_the_real_one(info.dli_fname, getenv("UNDERSTUDY_DRIVER_DIR"));
+}
+
+}  // namespace
+
+void* real_dlopen(const char* name, int mode) {
+  return next_dlopen()(name, mode);
+}
+
+Request understudy_route_dlopen(const char* name, int mode, const void* caller) {
+  next_dlopen();
+  if (name == nullptr) return {name, mode};
+  claim_names();
+  const int stub = stub_for(name);
+  const bool deep = (mode & RTLD_DEEPBIND) != 0;
+  if ((stub >= 0 || deep) && !caller_may_have_the_real_one(caller)) {
+    if (stub >= 0 && own_stub(stub)[0] != '\0') name = own_stub(stub);
+    // RTLD_DEEPBIND would make a plugin prefer the OpenGL that it was linked with to us.
+    mode &= ~RTLD_DEEPBIND;
+  }
+  return {name, mode};
+}
+
+}  // namespace understudy::interceptor
+
+#if defined(__x86_64__)
+asm(R"(
+    .text
+    .globl dlopen
+    .type dlopen, @function
+dlopen:
+    .cfi_startproc
+    endbr64
+    movq (%rsp), %rdx
+    subq $8, %rsp
+    .cfi_adjust_cfa_offset 8
+    call understudy_route_dlopen
+    addq $8, %rsp
+    .cfi_adjust_cfa_offset -8
+    movq %rax, %rdi
+    movl %edx, %esi
+    movq understudy_next_dlopen(%rip), %rax
+    jmp *%rax
+    .cfi_endproc
+    .size dlopen, .-dlopen
+)");
+#else
+namespace understudy::interceptor {
+UNDERSTUDY_ENTRY void* dlopen(const char* name, int mode) {
+  const Request request = understudy_route_dlopen(name, mode, __builtin_return_address(0));
+  return understudy_next_dlopen(request.name, static_cast<int>(request.mode));
+}
+}  // namespace understudy::interceptor
+#endif

@@ -1,0 +1,63 @@
+// What the door keeps for each thread, and the two guards that say on whose behalf the thread is running.
+//
+// The level is VirtualGL's idea (faker::TempContext and its thread-local "faker level"): while it is above
+// zero, what arrives at our exported names was called by the driver or by the body, not by the application, and
+// goes to the driver uncounted.
+#pragma once
+
+#include <cstdint>
+
+#include "interceptor/body.h"
+
+namespace understudy::interceptor {
+
+/// Which context the thread has current; `context` is 0 when none that the door follows.
+struct CurrentContext {
+  std::uintptr_t context = 0;  ///< the door's number for it (context_ledger.h)
+  WindowSystem system = WindowSystem::glx;
+  std::uintptr_t display = 0;
+  std::uintptr_t handle = 0;  ///< GLXContext or EGLContext
+  std::uintptr_t draw = 0;
+  std::uintptr_t read = 0;
+  bool operator==(const CurrentContext&) const = default;
+};
+
+struct DoorThread {
+  ThreadState state;              ///< `table` set means `calls` set
+  std::uint64_t spare_calls = 0;  ///< counts where the body has given no counter
+  int level = 0;
+  CurrentContext current;
+};
+
+// Compiled with -ftls-model=initial-exec: one load relative to the thread pointer, no call, on every GL call.
+// Its few dozen bytes fit into the room that glibc keeps for libraries that are opened late.
+extern constinit thread_local DoorThread door_thread __attribute__((visibility("hidden")));
+
+/// In scope while the thread is within the real driver.
+class InsideDriver {
+ public:
+  InsideDriver() : table_(door_thread.state.table) {
+    door_thread.state.table = nullptr;
+    ++door_thread.level;
+  }
+  ~InsideDriver() {
+    --door_thread.level;
+    door_thread.state.table = table_;
+  }
+  InsideDriver(const InsideDriver&) = delete;
+  InsideDriver& operator=(const InsideDriver&) = delete;
+
+ private:
+  const spu::DispatchTable* table_;
+};
+
+/// In scope while the thread is within the body, which may change the thread's table.
+class InsideBody {
+ public:
+  InsideBody() { ++door_thread.level; }
+  ~InsideBody() { --door_thread.level; }
+  InsideBody(const InsideBody&) = delete;
+  InsideBody& operator=(const InsideBody&) = delete;
+};
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,155 @@
+// The EGL functions that say which context is current, end a frame, or hand out addresses. The others are
+// generated.
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+
+#include <cstring>
+
+#include "interceptor/life_cycle.h"
+#include "interceptor/real_function.h"
+
+namespace understudy::interceptor {
+namespace {
+
+std::uintptr_t number(const void* handle) {
+  return reinterpret_cast<std::uintptr_t>(handle);
+}
+
+constexpr WindowSystem egl = WindowSystem::egl;
+
+/// EGL_OPENGL_API, EGL_OPENGL_ES_API, EGL_OPENVG_API; 0 when it is not known.
+EGLint client_type(EGLDisplay display, EGLContext context) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLContext, EGLint, EGLint*)> query{
+      egl, "eglQueryContext"};
+  EGLint type = 0;
+  return query(display, context, EGL_CONTEXT_CLIENT_TYPE, &type) == EGL_TRUE ? type : 0;
+}
+
+EGLBoolean make_current_egl(EGLDisplay display, EGLSurface draw, EGLSurface read, EGLContext context) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLSurface, EGLContext)> real{
+      egl, "eglMakeCurrent"};
+  const auto real_call = [&] { return real(display, draw, read, context); };
+  if (!on_stage()) return real_call();
+  WantedContext wanted{egl, number(display), number(context), number(draw), number(read)};
+  if (context != EGL_NO_CONTEXT && !is_noted({egl, wanted.display, wanted.handle})) {
+    // A wrong handle makes this query fail and leave an error behind; the real call then leaves the same one.
+    const EGLint type = client_type(display, context);
+    if (type == EGL_OPENVG_API) return real_call();  // current beside OpenGL, not instead of it
+    wanted.desktop_gl_if_new = type == EGL_OPENGL_API;
+  }
+  return make_current(wanted, real_call);
+}
+
+}  // namespace
+}  // namespace understudy::interceptor
+
+using namespace understudy::interceptor;
+using VoidFunction = void (*)();
+
+UNDERSTUDY_ENTRY EGLContext eglCreateContext(EGLDisplay display, EGLConfig config, EGLContext share,
+                                             const EGLint* attributes) {
+  static constinit RealFunction<EGLContext (*)(EGLDisplay, EGLConfig, EGLContext, const EGLint*)> real{
+      egl, "eglCreateContext"};
+  static constinit RealFunction<EGLenum (*)()> query_api{egl, "eglQueryAPI"};
+  const bool told = on_stage();
+  const EGLenum api = told ? query_api() : EGL_NONE;
+  EGLContext context = real(display, config, share, attributes);
+  if (told && context != EGL_NO_CONTEXT && api != EGL_OPENVG_API) {
+    note_created({egl, number(display), number(context)}, number(share), api == EGL_OPENGL_API);
+    report_gone();
+  }
+  return context;
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglDestroyContext(EGLDisplay display, EGLContext context) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLContext)> real{egl, "eglDestroyContext"};
+  const bool told = on_stage();
+  const ContextKey key{egl, number(display), number(context)};
+  if (told) before_destroy(key);
+  const EGLBoolean destroyed = real(display, context);
+  if (told && destroyed == EGL_TRUE) after_destroy(key);
+  return destroyed;
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglMakeCurrent(EGLDisplay display, EGLSurface draw, EGLSurface read,
+                                           EGLContext context) {
+  return make_current_egl(display, draw, read, context);
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglReleaseThread() {
+  static constinit RealFunction<EGLBoolean (*)()> real{egl, "eglReleaseThread"};
+  return make_current({egl, 0, 0, 0, 0}, [&] { return real(); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglTerminate(EGLDisplay display) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay)> real{egl, "eglTerminate"};
+  const bool told = on_stage();
+  const CurrentContext& current = door_thread.current;
+  if (told && current.system == egl && current.display == number(display)) before_frame_end(FrameEnd::destroy);
+  const EGLBoolean terminated = real(display);
+  if (told && terminated == EGL_TRUE) {
+    note_display_closed(egl, number(display));
+    report_gone();
+  }
+  return terminated;
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffers(EGLDisplay display, EGLSurface surface) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface)> real{egl, "eglSwapBuffers"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffersWithDamageKHR(EGLDisplay display, EGLSurface surface,
+                                                        const EGLint* rects, EGLint count) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, const EGLint*, EGLint)> real{
+      egl, "eglSwapBuffersWithDamageKHR"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface, rects, count); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglSwapBuffersWithDamageEXT(EGLDisplay display, EGLSurface surface,
+                                                        const EGLint* rects, EGLint count) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, const EGLint*, EGLint)> real{
+      egl, "eglSwapBuffersWithDamageEXT"};
+  return end_frame(FrameEnd::swap, [&] { return real(display, surface, rects, count); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglCopyBuffers(EGLDisplay display, EGLSurface surface, EGLNativePixmapType target) {
+  static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLNativePixmapType)> real{
+      egl, "eglCopyBuffers"};
+  return end_frame(FrameEnd::wait, [&] { return real(display, surface, target); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglWaitClient() {
+  static constinit RealFunction<EGLBoolean (*)()> real{egl, "eglWaitClient"};
+  return end_frame(FrameEnd::wait, [&] { return real(); });
+}
+
+UNDERSTUDY_ENTRY EGLBoolean eglWaitGL() {
+  static constinit RealFunction<EGLBoolean (*)()> real{egl, "eglWaitGL"};
+  return end_frame(FrameEnd::wait, [&] { return real(); });
+}
+
+UNDERSTUDY_ENTRY VoidFunction eglGetProcAddress(const char* name) {
+  void* real = real_proc_address(egl, name);
+  if (real == nullptr || door_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
+  const bool ours = std::strncmp(name, "gl", 2) == 0 || std::strncmp(name, "egl", 3) == 0;
+  void* own = ours ? own_entry(name) : nullptr;
+  return reinterpret_cast<VoidFunction>(own != nullptr ? own : real);
+}
+
+// As in glx.cc: while EGL's library is not open, nothing of it is current.
+
+UNDERSTUDY_ENTRY EGLContext eglGetCurrentContext() {
+  static constinit RealFunction<EGLContext (*)()> real{egl, "eglGetCurrentContext"};
+  return driver_is_open(egl) ? real() : EGL_NO_CONTEXT;
+}
+
+UNDERSTUDY_ENTRY EGLDisplay eglGetCurrentDisplay() {
+  static constinit RealFunction<EGLDisplay (*)()> real{egl, "eglGetCurrentDisplay"};
+  return driver_is_open(egl) ? real() : EGL_NO_DISPLAY;
+}
+
+UNDERSTUDY_ENTRY EGLSurface eglGetCurrentSurface(EGLint which) {
+  static constinit RealFunction<EGLSurface (*)(EGLint)> real{egl, "eglGetCurrentSurface"};
+  return driver_is_open(egl) ? real(which) : EGL_NO_SURFACE;
+}

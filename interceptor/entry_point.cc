@@ -1,0 +1,31 @@
+#include "interceptor/entry_point.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+#include <atomic>
+
+#include "interceptor/open_body.h"
+#include "interceptor/real_driver.h"
+
+namespace understudy::interceptor {
+
+const spu::DispatchTable& enter_without_context() {
+  DoorThread& thread = door_thread;
+  if (thread.level == 0) {
+    if (thread.state.calls != nullptr) ++*thread.state.calls;
+    // Nobody will ever want this thread's calls: let the next ones take the short way.
+    if (body_is_out()) thread.state = {&driver_table(), &thread.spare_calls};
+  }
+  return driver_table();
+}
+
+void report_missing(const char* name) {
+  static constinit std::atomic_flag said{};
+  if (said.test_and_set()) return;
+  dprintf(STDERR_FILENO,
+          "understudy: the application calls %s, which this OpenGL driver lacks; such calls do nothing\n",
+          name);
+}
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,34 @@
+// What every exported gl* function does before it forwards (the functions themselves are generated).
+#pragma once
+
+#include "dispatch/call_id.h"
+#include "interceptor/door_thread.h"
+
+#define UNDERSTUDY_ENTRY extern "C" __attribute__((visibility("default")))
+
+namespace understudy::interceptor {
+
+/// The way of calls on threads without a context, of calls that the driver makes, and of a thread's first call.
+const spu::DispatchTable& enter_without_context();
+
+/// Counts the call and answers with the table that it goes to.
+inline const spu::DispatchTable& entered_table() {
+  ThreadState& state = door_thread.state;
+  if (state.table != nullptr) [[likely]] {
+    ++*state.calls;
+    return *state.table;
+  }
+  return enter_without_context();
+}
+
+/// Says once that the driver lacks what the application called.
+void report_missing(const char* name);
+
+/// A call that the driver lacks does nothing and returns zero.
+template <class Result>
+Result missing(spu::CallId call) {
+  report_missing(spu::call_name(call));
+  return Result();
+}
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,105 @@
+#include "interceptor/life_cycle.h"
+
+#include "interceptor/real_driver.h"
+
+namespace understudy::interceptor {
+namespace {
+
+/// Lets the body set the thread's table for a context that is current on the driver.
+void enter(const BodyServices& services, const KnownContext& known, const CurrentContext& current) {
+  DoorThread& thread = door_thread;
+  if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
+  const InsideBody inside;
+  services.context_current(known.context, known.share, current.system, known.desktop_gl, current.draw);
+  if (thread.state.table == nullptr) thread.state.table = &driver_table();
+  if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
+}
+
+bool same_attachment(const WantedContext& wanted, const CurrentContext& current) {
+  return current.context != 0 && wanted.system == current.system && wanted.handle == current.handle &&
+         wanted.draw == current.draw && wanted.read == current.read;
+}
+
+/// Only a context of the same window system is released by its make-current.
+bool touches_current(const WantedContext& wanted, const CurrentContext& current) {
+  return current.context != 0 && (wanted.handle != 0 || wanted.system == current.system);
+}
+
+}  // namespace
+
+void before_make_current(const WantedContext& wanted) {
+  DoorThread& thread = door_thread;
+  const BodyServices* services = body();
+  if (services == nullptr || !touches_current(wanted, thread.current)) return;
+  const InsideBody inside;
+  services->before_frame_end(FrameEnd::make_current);
+  if (!same_attachment(wanted, thread.current)) services->context_leaving();
+}
+
+void after_make_current(const WantedContext& wanted, bool succeeded) {
+  DoorThread& thread = door_thread;
+  const bool same = same_attachment(wanted, thread.current);
+  if (!succeeded) {
+    // The old context is still current: the body, which was told that it leaves, takes it up again.
+    const BodyServices* services = body();
+    if (services != nullptr && !same && touches_current(wanted, thread.current)) {
+      enter(*services, known_context(thread.current.context), thread.current);
+    }
+    return;
+  }
+  if (same) return;
+  if (wanted.handle == 0 && !touches_current(wanted, thread.current)) return;
+
+  if (thread.current.context != 0) note_not_current(thread.current.context);
+  thread.current = {};
+  thread.state.table = nullptr;
+  if (wanted.handle != 0) {
+    if (const BodyServices* services = open_body()) {
+      const KnownContext known =
+          note_current({wanted.system, wanted.display, wanted.handle}, wanted.desktop_gl_if_new);
+      if (known.context != 0) {
+        thread.current = {known.context, wanted.system, wanted.display,
+                          wanted.handle, wanted.draw,   wanted.read};
+        enter(*services, known, thread.current);
+      }
+    }
+  }
+  report_gone();
+}
+
+void before_frame_end(FrameEnd kind) {
+  const BodyServices* services = body();
+  if (services == nullptr || door_thread.level > 0 || door_thread.current.context == 0) return;
+  const InsideBody inside;
+  services->before_frame_end(kind);
+}
+
+void after_frame_end(FrameEnd kind) {
+  const BodyServices* services = body();
+  if (services == nullptr || door_thread.level > 0 || door_thread.current.context == 0) return;
+  const InsideBody inside;
+  services->after_frame_end(kind);
+}
+
+void before_destroy(const ContextKey& key) {
+  const CurrentContext& current = door_thread.current;
+  if (current.context != 0 && current.system == key.system && current.handle == key.handle) {
+    before_frame_end(FrameEnd::destroy);
+  }
+}
+
+void after_destroy(const ContextKey& key) {
+  note_destroyed(key);
+  report_gone();
+}
+
+void report_gone() {
+  const BodyServices* services = body();
+  if (services == nullptr) return;
+  while (const std::uintptr_t context = next_gone()) {
+    const InsideBody inside;
+    services->context_destroyed(context);
+  }
+}
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,64 @@
+// What GLX and EGL have in common: a context becomes current, a frame ends. Tells the body, around the real
+// calls.
+#pragma once
+
+#include <cstdint>
+
+#include "interceptor/context_ledger.h"
+#include "interceptor/door_thread.h"
+#include "interceptor/open_body.h"
+
+namespace understudy::interceptor {
+
+/// True when the call came from the application and a body may want to know of it.
+inline bool on_stage() {
+  return door_thread.level == 0 && !body_is_out();
+}
+
+/// What a make-current call asks for; `handle` 0 releases the current context.
+struct WantedContext {
+  WindowSystem system;
+  std::uintptr_t display;
+  std::uintptr_t handle;
+  std::uintptr_t draw;
+  std::uintptr_t read;
+  bool desktop_gl_if_new = true;  ///< for a context whose creation was not seen
+};
+
+/// The two halves of a make-current call. `succeeded` false leaves everything as it was.
+void before_make_current(const WantedContext& wanted);
+void after_make_current(const WantedContext& wanted, bool succeeded);
+
+template <class RealCall>
+auto make_current(const WantedContext& wanted, RealCall real_call) {
+  if (!on_stage()) return real_call();
+  before_make_current(wanted);
+  const auto result = real_call();
+  after_make_current(wanted, result != 0);
+  return result;
+}
+
+/// Tells the body that this thread's frame is about to end, or has ended. Nothing without a body and a context.
+void before_frame_end(FrameEnd kind);
+void after_frame_end(FrameEnd kind);
+
+/// A call that ends or publishes a frame: what is pending must be in the framebuffer before it.
+template <class RealCall>
+auto end_frame(FrameEnd kind, RealCall real_call) {
+  struct Ended {
+    FrameEnd kind;
+    ~Ended() { after_frame_end(kind); }
+  };
+  before_frame_end(kind);
+  const Ended ended{kind};
+  return real_call();
+}
+
+/// Destroys a context: what it has pending is finished first if it is this thread's.
+void before_destroy(const ContextKey& key);
+void after_destroy(const ContextKey& key);
+
+/// Tells the body which contexts are gone.
+void report_gone();
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,118 @@
+#include "interceptor/open_body.h"
+
+#include <dlfcn.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <atomic>
+
+#include "interceptor/context_ledger.h"
+#include "interceptor/door_thread.h"
+#include "interceptor/real_driver.h"
+
+namespace understudy::interceptor {
+
+constinit thread_local DoorThread door_thread;
+
+namespace {
+
+constinit std::atomic<const BodyServices*> opened = nullptr;
+constinit std::atomic<bool> out = false;
+constinit pid_t opened_by = 0;
+constinit pthread_mutex_t opening = PTHREAD_MUTEX_INITIALIZER;
+
+ThreadState* state_of_this_thread() {
+  return &door_thread.state;
+}
+
+/// The body's threads stay in the parent, so the child must not enter it: even a context that it inherits is
+/// the driver's own affair from here on, and its calls must not be counted in memory that the parent shares
+/// with the launcher.
+void leave_body_after_fork() {
+  opening = PTHREAD_MUTEX_INITIALIZER;
+  reset_driver_locks_after_fork();
+  reset_ledger_after_fork();
+  out.store(true);
+  door_thread.state = {&driver_table(), &door_thread.spare_calls};
+  door_thread.current = {};
+}
+
+bool switched_off() {
+  const char* value = getenv("UNDERSTUDY_DISABLE");
+  return value != nullptr && *value != '\0' && strcmp(value, "0") != 0;
+}
+
+bool complete(const BodyServices& services) {
+  return services.abi == body_abi && services.context_current != nullptr &&
+         services.context_leaving != nullptr && services.context_destroyed != nullptr &&
+         services.before_frame_end != nullptr && services.after_frame_end != nullptr;
+}
+
+const BodyServices* load_body() {
+  if (switched_off()) return nullptr;
+
+  static constinit DoorServices door;
+  door.driver = &driver_table(/*complete=*/true);
+  door.thread_state = &state_of_this_thread;
+
+  char path[PATH_MAX];
+  const int length = snprintf(path, sizeof path, "%s/libunderstudy-body.so", own_folder());
+  if (length < 0 || length >= static_cast<int>(sizeof path)) return nullptr;
+  const InsideBody inside;
+  void* library = real_dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    dprintf(STDERR_FILENO, "understudy: its body cannot be opened, so the application draws by itself: %s\n",
+            dlerror());
+    return nullptr;
+  }
+  const auto open = reinterpret_cast<OpenBody>(dlsym(library, open_body_symbol));
+  const BodyServices* services = open != nullptr ? open(&door) : nullptr;
+  if (services == nullptr || !complete(*services)) {
+    dprintf(STDERR_FILENO,
+            "understudy: %s declined or is of another version (this door speaks version %u), so the "
+            "application draws "
+            "by itself\n",
+            path, body_abi);
+    return nullptr;
+  }
+  return services;
+}
+
+}  // namespace
+
+bool body_is_out() {
+  return out.load(std::memory_order_acquire);
+}
+
+const BodyServices* body() {
+  return body_is_out() ? nullptr : opened.load(std::memory_order_acquire);
+}
+
+const BodyServices* open_body() {
+  if (body_is_out()) return nullptr;
+  if (const BodyServices* services = opened.load(std::memory_order_acquire)) {
+    // fork runs the handler below; a bare clone() does not.
+    if (opened_by == getpid()) return services;
+    leave_body_after_fork();
+    return nullptr;
+  }
+  pthread_mutex_lock(&opening);
+  if (!out.load() && opened.load() == nullptr) {
+    const BodyServices* services = load_body();
+    if (services != nullptr) {
+      opened_by = getpid();
+      pthread_atfork(nullptr, nullptr, &leave_body_after_fork);
+      opened.store(services, std::memory_order_release);
+    } else {
+      out.store(true, std::memory_order_release);
+    }
+  }
+  pthread_mutex_unlock(&opening);
+  return body();
+}
+
+}  // namespace understudy::interceptor

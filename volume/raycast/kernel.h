@@ -40,4 +40,7 @@ using Kernel = void (*)(const Scene& scene, const RayStrip& strip, float* rgba, 
 
 void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 
+/// Texels u8 and Operator::over alone.
+void u8_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+
 }  // namespace understudy::volume

@@ -187,7 +187,8 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.rounding = setup.rounding;
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
-  const Kernel kernel = generic_kernel;
+  const bool common = store.description().type == TexelType::u8 && request.op == Operator::over;
+  const Kernel kernel = common ? u8_kernel : generic_kernel;
 
   tbb::combinable<FrameCounts> partial;
   const auto render_tile = [&](int x, int y, int width, int height) {

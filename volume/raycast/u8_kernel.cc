@@ -1,0 +1,363 @@
+// The common case fast: bytes, `over`, linear or nearest filter, on the vector instructions of the machine it
+// runs on.
+//
+// A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q, row
+// g.
+//  - The eight corners of a cell lie in two pieces of 16 bytes of its block: two loads, a byte shuffle and one
+//  16-bit
+//    multiply-add interpolate four edges along x, with weights of 15 bits; y and z follow in float. No gather.
+//  - Table entries are loaded as RGBA and blended ray by ray, four rays' components side by side.
+//  - Early termination and empty blocks are looked at once per eight samples, so that addresses never wait for
+//  colours.
+#include <array>
+#include <cmath>
+
+#include "volume/raycast/kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volume/raycast/u8_kernel.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace understudy::volume {
+namespace HWY_NAMESPACE {
+
+// The multiply-add below must sum neighbouring products, which Highway leaves open; so x86 alone takes this
+// path.
+#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || \
+    HWY_TARGET == HWY_AVX3_DL
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::ScalableTag<float>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+using ByteTag = hn::Repartition<std::uint8_t, FloatTag>;
+using ShortTag = hn::Repartition<std::int16_t, FloatTag>;
+using Floats = hn::Vec<FloatTag>;
+using Ints = hn::Vec<IntTag>;
+using Bytes = hn::Vec<ByteTag>;
+
+constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
+constexpr std::size_t rows = lanes / 4;
+static_assert(strip_height % rows == 0 && tile_width % 4 == 0);
+
+/// 128 bits from each of the addresses from[q], from[q + 4], ..., `offset` elements on.
+template <std::size_t q, class D, typename T = hn::TFromD<D>>
+HWY_INLINE hn::Vec<D> load_column(D d, const T* const* from, std::size_t offset) {
+  if constexpr (rows == 1) {
+    return hn::LoadU(d, from[q] + offset);
+  } else {
+    const hn::Half<D> half;
+    if constexpr (rows == 2) {
+      return hn::Combine(d, hn::LoadU(half, from[q + 4] + offset), hn::LoadU(half, from[q] + offset));
+    } else {
+      const hn::Half<decltype(half)> quarter;
+      const auto low =
+          hn::Combine(half, hn::LoadU(quarter, from[q + 4] + offset), hn::LoadU(quarter, from[q] + offset));
+      const auto high = hn::Combine(half, hn::LoadU(quarter, from[q + 12] + offset),
+                                    hn::LoadU(quarter, from[q + 8] + offset));
+      return hn::Combine(d, high, low);
+    }
+  }
+}
+
+struct Edges {
+  Floats low_y_low_z, high_y_low_z, low_y_high_z, high_y_high_z;
+};
+
+/// The four edges along x of column q's cells, times -2^15: one 128-bit block per ray.
+template <std::size_t q>
+HWY_INLINE Ints edges_of_column(const std::uint8_t* const* corners, Ints weights) {
+  const ByteTag d;
+  // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, upper slice
+  // second.
+  alignas(16) static constexpr std::uint8_t lower[16] = {0,   128, 1,   128, 9,   128, 10,  128,
+                                                         128, 128, 128, 128, 128, 128, 128, 128};
+  alignas(16) static constexpr std::uint8_t upper[16] = {128, 128, 128, 128, 128, 128, 128, 128,
+                                                         0,   128, 1,   128, 9,   128, 10,  128};
+  static_assert(BrickStore::block_row == 9);
+  const Bytes near = load_column<q>(d, corners, 0), far = load_column<q>(d, corners, BrickStore::block_slice);
+  const Bytes eight = hn::Or(hn::TableLookupBytesOr0(near, hn::LoadDup128(d, lower)),
+                             hn::TableLookupBytesOr0(far, hn::LoadDup128(d, upper)));
+  Ints unused = hn::Zero(IntTag());
+  return hn::ReorderWidenMulAccumulate(IntTag(), hn::BitCast(ShortTag(), eight),
+                                       hn::BitCast(ShortTag(), hn::Broadcast<q>(weights)), hn::Zero(IntTag()),
+                                       unused);
+}
+
+/// Four vectors of one ray per block become four vectors of one edge each.
+HWY_INLINE Edges transposed(Ints e0, Ints e1, Ints e2, Ints e3) {
+  const FloatTag f;
+  const hn::Repartition<std::int64_t, FloatTag> wide;
+  const IntTag narrow;
+  const auto a = hn::BitCast(wide, hn::InterleaveLower(narrow, e0, e1)),
+             b = hn::BitCast(wide, hn::InterleaveUpper(narrow, e0, e1)),
+             c = hn::BitCast(wide, hn::InterleaveLower(narrow, e2, e3)),
+             d = hn::BitCast(wide, hn::InterleaveUpper(narrow, e2, e3));
+  return {hn::ConvertTo(f, hn::BitCast(narrow, hn::InterleaveLower(wide, a, c))),
+          hn::ConvertTo(f, hn::BitCast(narrow, hn::InterleaveUpper(wide, a, c))),
+          hn::ConvertTo(f, hn::BitCast(narrow, hn::InterleaveLower(wide, b, d))),
+          hn::ConvertTo(f, hn::BitCast(narrow, hn::InterleaveUpper(wide, b, d)))};
+}
+
+HWY_INLINE Floats mix(Floats a, Floats b, Floats s) {
+  return hn::MulAdd(s, hn::Sub(b, a), a);
+}
+
+/// Composites one table entry per ray of column q: pixel += (1 - alpha) (entry + fraction * slope).
+template <std::size_t q>
+HWY_INLINE Floats composed(Floats pixel, const float* const* entries, Floats fraction) {
+  const FloatTag f;
+  const Floats colour =
+      hn::MulAdd(load_column<q>(f, entries, 4), hn::Broadcast<q>(fraction), load_column<q>(f, entries, 0));
+  const Floats room = hn::Sub(hn::Set(f, 1.0F), hn::Broadcast<3>(pixel));
+  return hn::MulAdd(room, colour, pixel);
+}
+
+/// A packet's rays, and where on them we are.
+struct Packet {
+  std::array<Floats, 3> start, step;
+  Ints k, last;
+};
+
+/// Sample positions, each product and sum rounded by itself as everywhere.
+struct Position {
+  std::array<Floats, 3> free, clamped;
+};
+
+HWY_INLINE Position position_of(const Packet& rays, const Scene& scene) {
+  const FloatTag f;
+  // Rays at their end stay on the last sample, where it is safe to read.
+  const Floats k = hn::ConvertTo(f, hn::Min(rays.k, rays.last));
+  Position p;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    p.free[axis] = hn::Add(hn::Mul(k, rays.step[axis]), rays.start[axis]);
+    p.clamped[axis] = hn::Min(hn::Max(p.free[axis], hn::Zero(f)), hn::Set(f, scene.top[axis]));
+  }
+  return p;
+}
+
+/// Index among the blocks held, from block coordinates in the lattice.
+HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Scene& scene) {
+  const IntTag d;
+  const auto& counts = scene.store->block_counts();
+  const auto& first = scene.store->first_block();
+  const int first_index = (first[2] * counts[1] + first[1]) * counts[0] + first[0];
+  const Ints row = hn::Add(hn::Mul(z, hn::Set(d, counts[1])), y);
+  return hn::Sub(hn::Add(hn::Mul(row, hn::Set(d, counts[0])), x), hn::Set(d, first_index));
+}
+
+/// Moves every ray out of empty blocks, to its next sample in a block that shows something or past its last
+/// sample.
+HWY_INLINE void skip_empty(Packet& rays, const Scene& scene) {
+  const FloatTag f;
+  const IntTag d;
+  std::array<Floats, 3> direction, steps_per_cell;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    direction[axis] = hn::CopySign(hn::Set(f, 1.0F), rays.step[axis]);
+    steps_per_cell[axis] =
+        hn::Div(hn::Set(f, 1 - 1e-6F), hn::Max(hn::Abs(rays.step[axis]), hn::Set(f, 1e-20F)));
+  }
+  for (;;) {
+    const Position p = position_of(rays, scene);
+    std::array<Floats, 3> in_block;
+    std::array<Ints, 3> block;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
+      block[axis] = hn::ConvertTo(d, blocks);
+      in_block[axis] = hn::Sub(blocks, hn::ConvertTo(f, block[axis]));
+    }
+    const Ints index = block_index(block[0], block[1], block[2], scene);
+    const auto* map = reinterpret_cast<const std::int32_t*>(scene.skip->distances());
+    const Ints distance = hn::And(hn::GatherOffset(d, map, index), hn::Set(d, 255));
+    const auto empty = hn::AndNot(hn::Gt(rays.k, rays.last), hn::Gt(distance, hn::Zero(d)));
+    if (hn::AllFalse(d, empty)) return;
+    // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
+    const Floats half = hn::Set(f, 0.5F);
+    const Floats reach = hn::Sub(hn::ConvertTo(f, distance), half);
+    Floats steps = hn::Set(f, 1e9F);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Floats blocks = hn::NegMulAdd(direction[axis], hn::Sub(in_block[axis], half), reach);
+      const Floats cells =
+          hn::MulSub(blocks, hn::Set(f, float(BrickStore::block_cells)), hn::Set(f, scene.rounding[axis]));
+      steps = hn::Min(steps, hn::Mul(cells, steps_per_cell[axis]));
+    }
+    const Ints leap = hn::Add(hn::ConvertTo(d, hn::Max(steps, hn::Zero(f))), hn::Set(d, 1));
+    rays.k = hn::IfThenElse(empty, hn::Add(rays.k, leap), rays.k);
+  }
+}
+
+template <bool with_border, bool nearest>
+HWY_INLINE void sample(const Packet& rays, const Scene& scene, std::array<Floats, 4>& pixels) {
+  const FloatTag f;
+  const IntTag d;
+  const Position p = position_of(rays, scene);
+  std::array<Ints, 3> cell;
+  std::array<Floats, 3> fraction;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cell[axis] = hn::ConvertTo(d, p.clamped[axis]);
+    fraction[axis] = hn::Sub(p.clamped[axis], hn::ConvertTo(f, cell[axis]));
+    if (nearest)
+      fraction[axis] = hn::IfThenElseZero(hn::Ge(fraction[axis], hn::Set(f, 0.5F)), hn::Set(f, 1.0F));
+  }
+
+  const Ints block =
+      block_index(hn::ShiftRight<3>(cell[0]), hn::ShiftRight<3>(cell[1]), hn::ShiftRight<3>(cell[2]), scene);
+  const Ints seven = hn::Set(d, BrickStore::block_cells - 1);
+  const Ints yz = hn::Or(hn::And(cell[1], seven), hn::ShiftLeft<16>(hn::And(cell[2], seven)));
+  Ints unused = hn::Zero(d);
+  const Ints corner =
+      hn::Add(hn::And(cell[0], seven),
+              hn::ReorderWidenMulAccumulate(
+                  d, hn::BitCast(ShortTag(), yz),
+                  hn::BitCast(ShortTag(), hn::Set(d, BrickStore::block_row | BrickStore::block_slice << 16)),
+                  hn::Zero(d), unused));
+  alignas(64) std::int32_t blocks[lanes], corners_in_block[lanes];
+  hn::Store(block, d, blocks);
+  hn::Store(corner, d, corners_in_block);
+  const std::byte* const* data = scene.store->block_data().data();
+  const std::uint8_t* corners[lanes];
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    corners[lane] = reinterpret_cast<const std::uint8_t*>(data[blocks[lane]]) + corners_in_block[lane];
+
+  // Weights along x as negative 16-bit integers, -2^15 (1 - s) and -2^15 s: one is representable that way, and
+  // a power of two leaves texel values exact.
+  const Ints high = hn::NearestInt(hn::Mul(fraction[0], hn::Set(f, 32768.0F)));
+  const Ints weights = hn::Sub(hn::Xor(high, hn::Set(d, 0x8000)), hn::ShiftLeft<16>(high));
+  const Edges e = transposed(edges_of_column<0>(corners, weights), edges_of_column<1>(corners, weights),
+                             edges_of_column<2>(corners, weights), edges_of_column<3>(corners, weights));
+  Floats value = mix(mix(e.low_y_low_z, e.high_y_low_z, fraction[1]),
+                     mix(e.low_y_high_z, e.high_y_high_z, fraction[1]), fraction[2]);
+  if (with_border) {
+    Floats weight = hn::Set(f, 1.0F);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Floats beyond = hn::Abs(hn::Sub(p.free[axis], p.clamped[axis]));
+      const Floats inside = hn::Max(hn::Sub(hn::Set(f, 1.0F), beyond), hn::Zero(f));
+      weight = hn::Mul(weight, scene.has_border[axis] ? inside : hn::Set(f, 1.0F));
+    }
+    value = mix(hn::Set(f, -32768.0F * scene.store->border()[0]), value, weight);
+  }
+
+  const TransferTable& table = *scene.table;
+  const Floats place =
+      hn::MulAdd(value, hn::Set(f, table.scale() / -32768.0F), hn::Set(f, -table.low() * table.scale()));
+  const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), hn::Set(f, table.last()));
+  const Ints entry = hn::ConvertTo(d, kept);
+  const Floats between = hn::Sub(kept, hn::ConvertTo(f, entry));
+  const auto ended = hn::Gt(rays.k, rays.last);
+  alignas(64) std::int32_t entry_of[lanes];
+  hn::Store(hn::ShiftLeft<3>(hn::IfThenElse(ended, hn::Set(d, std::int32_t(table.entries())), entry)), d,
+            entry_of);
+  const float* entries[lanes];
+  for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = table.rows() + entry_of[lane];
+  pixels[0] = composed<0>(pixels[0], entries, between);
+  pixels[1] = composed<1>(pixels[1], entries, between);
+  pixels[2] = composed<2>(pixels[2], entries, between);
+  pixels[3] = composed<3>(pixels[3], entries, between);
+}
+
+/// Alpha of every ray, from the blended layout to one lane per ray.
+HWY_INLINE Floats alphas(const std::array<Floats, 4>& pixels) {
+  const FloatTag f;
+  const hn::Repartition<double, FloatTag> wide;
+  const auto pair01 = hn::BitCast(wide, hn::InterleaveUpper(f, pixels[0], pixels[1]));
+  const auto pair23 = hn::BitCast(wide, hn::InterleaveUpper(f, pixels[2], pixels[3]));
+  return hn::BitCast(f, hn::InterleaveUpper(wide, pair01, pair23));
+}
+
+template <bool with_border, bool nearest>
+void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  const FloatTag f;
+  const IntTag d;
+  const bool skips = scene.skip->empty_blocks() > 0;
+  Ints taken = hn::Zero(d);
+  for (std::size_t y = 0; y < strip_height; y += rows)
+    for (std::size_t x = 0; x < tile_width; x += 4) {
+      const auto load = [&](auto tag, const auto& values) HWY_ATTR {
+        alignas(64) std::remove_cvref_t<decltype(values[0])> packed[lanes];
+        for (std::size_t row = 0; row < rows; ++row)
+          for (std::size_t q = 0; q < 4; ++q) packed[4 * row + q] = values[(y + row) * tile_width + x + q];
+        return hn::Load(tag, packed);
+      };
+      Packet rays;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        rays.start[axis] = load(f, strip.start[axis]);
+        rays.step[axis] = load(f, strip.step[axis]);
+      }
+      rays.k = load(d, strip.first);
+      rays.last = load(d, strip.last);
+      std::array<Floats, 4> pixels;
+      pixels.fill(hn::Zero(f));
+
+      while (!hn::AllTrue(d, hn::Gt(rays.k, rays.last))) {
+        if (skips) {
+          skip_empty(rays, scene);
+          if (hn::AllTrue(d, hn::Gt(rays.k, rays.last))) break;
+        }
+        const Ints left = hn::Add(hn::Sub(rays.last, rays.k), hn::Set(d, 1));
+        taken = hn::Add(taken, hn::Min(hn::Max(left, hn::Zero(d)), hn::Set(d, samples_between_tests)));
+        for (int i = 0; i < samples_between_tests; ++i) {
+          sample<with_border, nearest>(rays, scene, pixels);
+          rays.k = hn::Add(rays.k, hn::Set(d, 1));
+        }
+        const Floats room = hn::Sub(hn::Set(f, 1.0F), alphas(pixels));
+        const auto opaque = hn::AndNot(hn::Gt(rays.k, rays.last),
+                                       hn::RebindMask(d, hn::Lt(room, hn::Set(f, scene.termination))));
+        counts.rays_terminated += hn::CountTrue(d, opaque);
+        rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, hn::Set(d, 1)), rays.k);
+      }
+
+      for (std::size_t q = 0; q < 4; ++q) {
+        alignas(64) float column[lanes];
+        hn::Store(pixels[q], f, column);
+        for (std::size_t row = 0; row < rows; ++row)
+          for (std::size_t k = 0; k < 4; ++k)
+            rgba[4 * ((y + row) * tile_width + x + q) + k] = column[4 * row + k];
+      }
+    }
+  alignas(64) std::int32_t taken_by_lane[lanes];
+  hn::Store(taken, d, taken_by_lane);
+  for (const std::int32_t n : taken_by_lane) counts.samples_taken += std::uint64_t(n);
+}
+
+void u8_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  const auto& border = scene.has_border;
+  if (scene.filter == Filter::nearest)
+    walk_strip<false, true>(scene, strip, rgba, counts);
+  else if (border[0] || border[1] || border[2])
+    walk_strip<true, false>(scene, strip, rgba, counts);
+  else
+    walk_strip<false, false>(scene, strip, rgba, counts);
+}
+
+#else
+
+void u8_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  generic_kernel(scene, strip, rgba, counts);
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace understudy::volume
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::volume {
+
+HWY_EXPORT(u8_kernel);
+
+void u8_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(u8_kernel)(scene, strip, rgba, counts);
+}
+
+const char* instruction_set() {
+  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(usable & -usable);  // the best has the lowest bit
+}
+
+}  // namespace understudy::volume
+#endif  // HWY_ONCE

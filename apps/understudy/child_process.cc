@@ -104,12 +104,16 @@ void ChildProcess::signal(int number) const {
   if (!ending_) kill(own_group_ ? -pid_ : pid_, number);
 }
 
-void ChildProcess::end(int patience_ms) {
+std::optional<Ending> ChildProcess::wait_for_ending(int patience_ms) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::milliseconds(patience_ms);
-  signal(SIGTERM);
   while (!poll_ending() && Clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  if (poll_ending()) return;
+  return ending_;
+}
+
+void ChildProcess::end(int patience_ms) {
+  signal(SIGTERM);
+  if (wait_for_ending(patience_ms)) return;
   signal(SIGKILL);
   int status = 0;
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {

@@ -42,6 +42,8 @@ class ChildProcess {
   pid_t pid() const { return pid_; }
   /// Empty while it runs.
   std::optional<Ending> poll_ending();
+  /// The same, after waiting at most that long.
+  std::optional<Ending> wait_for_ending(int patience_ms);
   void signal(int number) const;
   /// Sends SIGTERM, waits up to `patience_ms`, then SIGKILL; returns when the child is reaped.
   void end(int patience_ms);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +18,9 @@ namespace {
 
 constexpr std::chrono::milliseconds housekeeping{
     1000};  ///< the broker drops silent strangers at such intervals
+constexpr int patience_with_nodes_ms = 2000;
 constexpr int patience_with_mpirun_ms = 5000;
+constexpr std::chrono::seconds patience_with_lost_group{5};
 constexpr std::uintmax_t max_log_read = 65536;
 
 void say(const std::string& line) {
@@ -63,8 +64,7 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
                        "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
                        // Its session files go when the run's folder goes, whatever happens to it.
                        "--mca", "orte_tmpdir_base", plan.folder.string(), installation.node().string(),
-                       "--control",
-                       plan.socket.string()};
+                       "--control", plan.socket.string()};
   command.environment = node_environment(current_environment(), installation);
   command.output = log_of(plan);
   command.own_group = true;
@@ -93,8 +93,12 @@ NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan
 }
 
 NodeGroup::~NodeGroup() {
+  if (!mpirun_) return;
+  // A group whose connection closes ends by itself, and sooner than mpirun ends one that it must signal.
+  const bool ends_by_itself = broker_.node_group_ready();
   broker_.dismiss_node_group();
-  if (mpirun_) mpirun_->end(patience_with_mpirun_ms);
+  if (ends_by_itself && mpirun_->wait_for_ending(patience_with_nodes_ms)) return;
+  mpirun_->end(patience_with_mpirun_ms);
 }
 
 void NodeGroup::start() {
@@ -124,8 +128,13 @@ void NodeGroup::wait_and_serve(int other) {
   poll(descriptors.data(), descriptors.size(), static_cast<int>(wait.count()));
   const bool lost_before = broker_.lost();
   broker_.step(std::chrono::milliseconds(0));
-  // Without its rank 0 the rest of the group is of no use; its end comes as a signal (look_after_children).
-  if (broker_.lost() && !lost_before && mpirun_) mpirun_->signal(SIGTERM);
+  if (broker_.lost() && !lost_before) lost_at_ = Clock::now();
+  // A group that lost its rank 0 is ended by mpirun, which crashes when it is signalled in the midst of that
+  // (4.1.4): only one that does not get anywhere is ended from here. Its end is seen in look_after_children.
+  if (broker_.lost() && mpirun_ && Clock::now() > lost_at_ + patience_with_lost_group) {
+    mpirun_->end(patience_with_mpirun_ms);
+    look_after_children();
+  }
   start_when_due();
 }
 

@@ -56,6 +56,7 @@ class NodeGroup {
   compositor::Broker broker_;
   std::optional<ChildProcess> mpirun_;
   std::uintmax_t log_start_ = 0;  ///< where the present group's lines begin
+  Clock::time_point lost_at_;
   int restarts_ = 0;
   std::optional<Clock::time_point> next_start_;
 };

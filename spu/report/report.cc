@@ -89,15 +89,6 @@ Json median_times(Processes processes) {
           {report_key::application_median, median(std::move(application))}};
 }
 
-volume::FrameCounts operator+(volume::FrameCounts sum, const volume::FrameCounts& more) {
-  sum.samples += more.samples;
-  sum.samples_taken += more.samples_taken;
-  sum.rays_terminated += more.rays_terminated;
-  sum.blocks_empty += more.blocks_empty;
-  sum.nodes_idle += more.nodes_idle;
-  return sum;
-}
-
 Json left_out(const volume::FrameCounts& counts) {
   return {{report_key::samples_skipped, counts.samples - std::min(counts.samples, counts.samples_taken)},
           {report_key::rays_ended_early, counts.rays_terminated},
@@ -172,7 +163,7 @@ Totals totals_of(Processes processes) {
     totals.frames_left += process->frames_left.load();
     // Not a sum: all processes of a run share one node group.
     totals.nodes = std::max(totals.nodes, process->nodes);
-    totals.counts = totals.counts + process->total;
+    totals.counts += process->total;
     for (const VolumeCounters& volume : volumes_of(*process)) {
       ++totals.volumes;
       for (const auto& [reason, count] : reasons_of(volume)) totals.reasons[reason] += count;

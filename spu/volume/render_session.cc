@@ -46,7 +46,9 @@ void RenderSession::forget(volume::VolumeId id) {
 }
 
 void RenderSession::lost(const std::string& what) {
-  if (service_) {
+  // The launcher that started the nodes says it itself, with what became of them.
+  const bool launcher_says_it = options_.nodes > 0 && !options_.run_dir.empty();
+  if (service_ && !launcher_says_it) {
     fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
   }
   service_.reset();

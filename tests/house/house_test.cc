@@ -141,7 +141,9 @@ TEST(House, EveryRoomAndEveryProgramSaysWhatItIs) {
 
 TEST(House, NoSourceFileIsTooLongToRead) {
   for (const SourceFile& file : files()) {
-    if (is_code(file) || file.path.ends_with(".py")) EXPECT_LE(file.text.size(), max_source_bytes) << file.path;
+    if (is_code(file) || file.path.ends_with(".py")) {
+      EXPECT_LE(file.text.size(), max_source_bytes) << file.path;
+    }
   }
 }
 

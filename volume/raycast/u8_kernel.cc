@@ -9,8 +9,8 @@
 //  - Table entries are loaded as RGBA and blended ray by ray, four rays' components side by side.
 //  - Early termination and empty blocks are looked at once per eight samples, so that addresses never wait for
 //  colours.
+#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "volume/raycast/kernel.h"
 
@@ -115,10 +115,55 @@ HWY_INLINE Floats composed(Floats pixel, const float* const* entries, Floats fra
   return hn::MulAdd(room, colour, pixel);
 }
 
-/// A packet's rays, and where on them we are.
+/// Truncation of values that are known to fit, without the care for others that ConvertTo takes.
+HWY_INLINE Ints truncated(Floats v) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return Ints{_mm512_cvttps_epi32(v.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return Ints{_mm256_cvttps_epi32(v.raw)};
+#else
+  return Ints{_mm_cvttps_epi32(v.raw)};
+#endif
+}
+
+/// What stays the same for all samples of a frame, in vectors.
+struct Constants {
+  explicit Constants(const Scene& scene)
+      : blocks(scene.store->block_data().data()),
+        distances(reinterpret_cast<const std::int32_t*>(scene.skip->distances())),
+        entries(scene.table->rows()) {
+    const FloatTag f;
+    const IntTag d;
+    const auto& counts = scene.store->block_counts();
+    const auto& first = scene.store->first_block();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      top[axis] = hn::Set(f, scene.top[axis]);
+      rounding[axis] = hn::Set(f, scene.rounding[axis]);
+      border_weight[axis] = hn::Set(f, scene.has_border[axis] ? 1.0F : 0.0F);
+    }
+    blocks_x = hn::Set(d, counts[0]);
+    blocks_y = hn::Set(d, counts[1]);
+    first_block = hn::Set(d, (first[2] * counts[1] + first[1]) * counts[0] + first[0]);
+    const TransferTable& table = *scene.table;
+    table_scale = hn::Set(f, table.scale() / -32768.0F);
+    table_offset = hn::Set(f, -table.low() * table.scale());
+    table_last = hn::Set(f, table.last());
+    clear_entry = hn::Set(d, std::int32_t(table.entries()));
+    border = hn::Set(f, -32768.0F * scene.store->border()[0]);
+  }
+
+  const std::byte* const* blocks;
+  const std::int32_t* distances;  // a byte each; four are gathered
+  const float* entries;
+  std::array<Floats, 3> top, rounding, border_weight;
+  Ints blocks_x, blocks_y, first_block, clear_entry;
+  Floats table_scale, table_offset, table_last, border;
+};
+
+/// A packet's rays, and the next sample of each (a whole number).
 struct Packet {
   std::array<Floats, 3> start, step;
-  Ints k, last;
+  Floats k, last;
 };
 
 /// Sample positions, each product and sum rounded by itself as everywhere.
@@ -126,131 +171,132 @@ struct Position {
   std::array<Floats, 3> free, clamped;
 };
 
-HWY_INLINE Position position_of(const Packet& rays, const Scene& scene) {
-  const FloatTag f;
+HWY_INLINE Position position_of(const Packet& rays, const Constants& constants) {
   // Rays at their end stay on the last sample, where it is safe to read.
-  const Floats k = hn::ConvertTo(f, hn::Min(rays.k, rays.last));
+  const Floats k = hn::Min(rays.k, rays.last);
   Position p;
+#pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis) {
     p.free[axis] = hn::Add(hn::Mul(k, rays.step[axis]), rays.start[axis]);
-    p.clamped[axis] = hn::Min(hn::Max(p.free[axis], hn::Zero(f)), hn::Set(f, scene.top[axis]));
+    p.clamped[axis] = hn::Min(hn::Max(p.free[axis], hn::Zero(FloatTag())), constants.top[axis]);
   }
   return p;
 }
 
 /// Index among the blocks held, from block coordinates in the lattice.
-HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Scene& scene) {
-  const IntTag d;
-  const auto& counts = scene.store->block_counts();
-  const auto& first = scene.store->first_block();
-  const int first_index = (first[2] * counts[1] + first[1]) * counts[0] + first[0];
-  const Ints row = hn::Add(hn::Mul(z, hn::Set(d, counts[1])), y);
-  return hn::Sub(hn::Add(hn::Mul(row, hn::Set(d, counts[0])), x), hn::Set(d, first_index));
+HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Constants& constants) {
+  const Ints row = hn::Add(hn::Mul(z, constants.blocks_y), y);
+  return hn::Add(hn::Mul(row, constants.blocks_x), hn::Sub(x, constants.first_block));
 }
 
 /// Moves every ray out of empty blocks, to its next sample in a block that shows something or past its last
 /// sample.
-HWY_INLINE void skip_empty(Packet& rays, const Scene& scene) {
+HWY_INLINE void skip_empty(Packet& rays, const Constants& constants) {
   const FloatTag f;
   const IntTag d;
   std::array<Floats, 3> direction, steps_per_cell;
+#pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis) {
     direction[axis] = hn::CopySign(hn::Set(f, 1.0F), rays.step[axis]);
     steps_per_cell[axis] =
         hn::Div(hn::Set(f, 1 - 1e-6F), hn::Max(hn::Abs(rays.step[axis]), hn::Set(f, 1e-20F)));
   }
   for (;;) {
-    const Position p = position_of(rays, scene);
+    const Position p = position_of(rays, constants);
     std::array<Floats, 3> in_block;
     std::array<Ints, 3> block;
+#pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
-      block[axis] = hn::ConvertTo(d, blocks);
+      block[axis] = truncated(blocks);
       in_block[axis] = hn::Sub(blocks, hn::ConvertTo(f, block[axis]));
     }
-    const Ints index = block_index(block[0], block[1], block[2], scene);
-    const auto* map = reinterpret_cast<const std::int32_t*>(scene.skip->distances());
-    const Ints distance = hn::And(hn::GatherOffset(d, map, index), hn::Set(d, 255));
-    const auto empty = hn::AndNot(hn::Gt(rays.k, rays.last), hn::Gt(distance, hn::Zero(d)));
-    if (hn::AllFalse(d, empty)) return;
+    const Ints index = block_index(block[0], block[1], block[2], constants);
+    const Floats distance =
+        hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
+    const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Le(rays.k, rays.last));
+    if (hn::AllFalse(f, empty)) return;
     // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
     const Floats half = hn::Set(f, 0.5F);
-    const Floats reach = hn::Sub(hn::ConvertTo(f, distance), half);
+    const Floats reach = hn::Sub(distance, half);
     Floats steps = hn::Set(f, 1e9F);
+#pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Floats blocks = hn::NegMulAdd(direction[axis], hn::Sub(in_block[axis], half), reach);
       const Floats cells =
-          hn::MulSub(blocks, hn::Set(f, float(BrickStore::block_cells)), hn::Set(f, scene.rounding[axis]));
+          hn::MulSub(blocks, hn::Set(f, float(BrickStore::block_cells)), constants.rounding[axis]);
       steps = hn::Min(steps, hn::Mul(cells, steps_per_cell[axis]));
     }
-    const Ints leap = hn::Add(hn::ConvertTo(d, hn::Max(steps, hn::Zero(f))), hn::Set(d, 1));
+    const Floats leap = hn::Add(hn::Floor(hn::Max(steps, hn::Zero(f))), hn::Set(f, 1.0F));
     rays.k = hn::IfThenElse(empty, hn::Add(rays.k, leap), rays.k);
   }
 }
 
 template <bool with_border, bool nearest>
-HWY_INLINE void sample(const Packet& rays, const Scene& scene, std::array<Floats, 4>& pixels) {
+HWY_INLINE void sample(const Packet& rays, const Constants& constants, std::array<Floats, 4>& pixels) {
   const FloatTag f;
   const IntTag d;
-  const Position p = position_of(rays, scene);
+  const Position p = position_of(rays, constants);
   std::array<Ints, 3> cell;
   std::array<Floats, 3> fraction;
+#pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    cell[axis] = hn::ConvertTo(d, p.clamped[axis]);
+    cell[axis] = truncated(p.clamped[axis]);
     fraction[axis] = hn::Sub(p.clamped[axis], hn::ConvertTo(f, cell[axis]));
     if (nearest)
       fraction[axis] = hn::IfThenElseZero(hn::Ge(fraction[axis], hn::Set(f, 0.5F)), hn::Set(f, 1.0F));
   }
 
-  const Ints block =
-      block_index(hn::ShiftRight<3>(cell[0]), hn::ShiftRight<3>(cell[1]), hn::ShiftRight<3>(cell[2]), scene);
+  const Ints block = block_index(hn::ShiftRight<3>(cell[0]), hn::ShiftRight<3>(cell[1]),
+                                 hn::ShiftRight<3>(cell[2]), constants);
   const Ints seven = hn::Set(d, BrickStore::block_cells - 1);
   const Ints yz = hn::Or(hn::And(cell[1], seven), hn::ShiftLeft<16>(hn::And(cell[2], seven)));
+  const Ints strides = hn::Set(d, BrickStore::block_row | BrickStore::block_slice << 16);
   Ints unused = hn::Zero(d);
   const Ints corner =
       hn::Add(hn::And(cell[0], seven),
-              hn::ReorderWidenMulAccumulate(
-                  d, hn::BitCast(ShortTag(), yz),
-                  hn::BitCast(ShortTag(), hn::Set(d, BrickStore::block_row | BrickStore::block_slice << 16)),
-                  hn::Zero(d), unused));
-  alignas(64) std::int32_t blocks[lanes], corners_in_block[lanes];
-  hn::Store(block, d, blocks);
-  hn::Store(corner, d, corners_in_block);
-  const std::byte* const* data = scene.store->block_data().data();
+              hn::ReorderWidenMulAccumulate(d, hn::BitCast(ShortTag(), yz), hn::BitCast(ShortTag(), strides),
+                                            hn::Zero(d), unused));
+  alignas(64) std::uint32_t block_of[lanes], corner_of[lanes];
+  const hn::RebindToUnsigned<IntTag> u;
+  hn::Store(hn::BitCast(u, block), u, block_of);
+  hn::Store(hn::BitCast(u, corner), u, corner_of);
   const std::uint8_t* corners[lanes];
+#pragma GCC unroll 16
   for (std::size_t lane = 0; lane < lanes; ++lane)
-    corners[lane] = reinterpret_cast<const std::uint8_t*>(data[blocks[lane]]) + corners_in_block[lane];
+    corners[lane] = reinterpret_cast<const std::uint8_t*>(constants.blocks[block_of[lane]]) + corner_of[lane];
 
   // Weights along x as negative 16-bit integers, -2^15 (1 - s) and -2^15 s: one is representable that way, and
   // a power of two leaves texel values exact.
-  const Ints high = hn::NearestInt(hn::Mul(fraction[0], hn::Set(f, 32768.0F)));
+  const Ints high = truncated(hn::MulAdd(fraction[0], hn::Set(f, 32768.0F), hn::Set(f, 0.5F)));
   const Ints weights = hn::Sub(hn::Xor(high, hn::Set(d, 0x8000)), hn::ShiftLeft<16>(high));
   const Edges e = transposed(edges_of_column<0>(corners, weights), edges_of_column<1>(corners, weights),
                              edges_of_column<2>(corners, weights), edges_of_column<3>(corners, weights));
   Floats value = mix(mix(e.low_y_low_z, e.high_y_low_z, fraction[1]),
                      mix(e.low_y_high_z, e.high_y_high_z, fraction[1]), fraction[2]);
   if (with_border) {
-    Floats weight = hn::Set(f, 1.0F);
+    // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
+    // multiply.
+    const Floats one = hn::Set(f, 1.0F);
+    Floats weight = one;
+#pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Floats beyond = hn::Abs(hn::Sub(p.free[axis], p.clamped[axis]));
-      const Floats inside = hn::Max(hn::Sub(hn::Set(f, 1.0F), beyond), hn::Zero(f));
-      weight = hn::Mul(weight, scene.has_border[axis] ? inside : hn::Set(f, 1.0F));
+      const Floats beyond = hn::Min(hn::Abs(hn::Sub(p.free[axis], p.clamped[axis])), one);
+      weight = hn::Mul(weight, hn::NegMulAdd(beyond, constants.border_weight[axis], one));
     }
-    value = mix(hn::Set(f, -32768.0F * scene.store->border()[0]), value, weight);
+    value = mix(constants.border, value, weight);
   }
 
-  const TransferTable& table = *scene.table;
-  const Floats place =
-      hn::MulAdd(value, hn::Set(f, table.scale() / -32768.0F), hn::Set(f, -table.low() * table.scale()));
-  const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), hn::Set(f, table.last()));
-  const Ints entry = hn::ConvertTo(d, kept);
+  const Floats place = hn::MulAdd(value, constants.table_scale, constants.table_offset);
+  const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);
+  const Ints entry = truncated(kept);
   const Floats between = hn::Sub(kept, hn::ConvertTo(f, entry));
-  const auto ended = hn::Gt(rays.k, rays.last);
-  alignas(64) std::int32_t entry_of[lanes];
-  hn::Store(hn::ShiftLeft<3>(hn::IfThenElse(ended, hn::Set(d, std::int32_t(table.entries())), entry)), d,
-            entry_of);
+  const auto ended = hn::RebindMask(d, hn::Gt(rays.k, rays.last));
+  alignas(64) std::uint32_t entry_of[lanes];
+  hn::Store(hn::BitCast(u, hn::ShiftLeft<3>(hn::IfThenElse(ended, constants.clear_entry, entry))), u, entry_of);
   const float* entries[lanes];
-  for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = table.rows() + entry_of[lane];
+#pragma GCC unroll 16
+  for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = constants.entries + entry_of[lane];
   pixels[0] = composed<0>(pixels[0], entries, between);
   pixels[1] = composed<1>(pixels[1], entries, between);
   pixels[2] = composed<2>(pixels[2], entries, between);
@@ -270,50 +316,55 @@ template <bool with_border, bool nearest>
 void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
   const FloatTag f;
   const IntTag d;
+  const Constants constants(scene);
   const bool skips = scene.skip->empty_blocks() > 0;
+  const Floats one = hn::Set(f, 1.0F);
   Ints taken = hn::Zero(d);
   for (std::size_t y = 0; y < strip_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4) {
-      const auto load = [&](auto tag, const auto& values) HWY_ATTR {
-        alignas(64) std::remove_cvref_t<decltype(values[0])> packed[lanes];
+      const auto load = [&](const auto& values) HWY_ATTR {
+        alignas(64) float packed[lanes];
         for (std::size_t row = 0; row < rows; ++row)
-          for (std::size_t q = 0; q < 4; ++q) packed[4 * row + q] = values[(y + row) * tile_width + x + q];
-        return hn::Load(tag, packed);
+          for (std::size_t q = 0; q < 4; ++q)
+            packed[4 * row + q] = float(values[(y + row) * tile_width + x + q]);
+        return hn::Load(f, packed);
       };
       Packet rays;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        rays.start[axis] = load(f, strip.start[axis]);
-        rays.step[axis] = load(f, strip.step[axis]);
-      }
-      rays.k = load(d, strip.first);
-      rays.last = load(d, strip.last);
+      rays.k = load(strip.first);
+      rays.last = load(strip.last);
       std::array<Floats, 4> pixels;
       pixels.fill(hn::Zero(f));
+      const auto done = [&]() HWY_ATTR { return hn::AllTrue(f, hn::Gt(rays.k, rays.last)); };
+      if (!done())
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          rays.start[axis] = load(strip.start[axis]);
+          rays.step[axis] = load(strip.step[axis]);
+        }
 
-      while (!hn::AllTrue(d, hn::Gt(rays.k, rays.last))) {
+      while (!done()) {
         if (skips) {
-          skip_empty(rays, scene);
-          if (hn::AllTrue(d, hn::Gt(rays.k, rays.last))) break;
+          skip_empty(rays, constants);
+          if (done()) break;
         }
-        const Ints left = hn::Add(hn::Sub(rays.last, rays.k), hn::Set(d, 1));
-        taken = hn::Add(taken, hn::Min(hn::Max(left, hn::Zero(d)), hn::Set(d, samples_between_tests)));
+        const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
+        const Floats block = hn::Set(f, float(samples_between_tests));
+        taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
         for (int i = 0; i < samples_between_tests; ++i) {
-          sample<with_border, nearest>(rays, scene, pixels);
-          rays.k = hn::Add(rays.k, hn::Set(d, 1));
+          sample<with_border, nearest>(rays, constants, pixels);
+          rays.k = hn::Add(rays.k, one);
         }
-        const Floats room = hn::Sub(hn::Set(f, 1.0F), alphas(pixels));
-        const auto opaque = hn::AndNot(hn::Gt(rays.k, rays.last),
-                                       hn::RebindMask(d, hn::Lt(room, hn::Set(f, scene.termination))));
-        counts.rays_terminated += hn::CountTrue(d, opaque);
-        rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, hn::Set(d, 1)), rays.k);
+        const Floats room = hn::Sub(one, alphas(pixels));
+        const auto opaque = hn::And(hn::Lt(room, hn::Set(f, scene.termination)), hn::Le(rays.k, rays.last));
+        counts.rays_terminated += hn::CountTrue(f, opaque);
+        rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
       }
 
+#pragma GCC unroll 4
       for (std::size_t q = 0; q < 4; ++q) {
         alignas(64) float column[lanes];
         hn::Store(pixels[q], f, column);
         for (std::size_t row = 0; row < rows; ++row)
-          for (std::size_t k = 0; k < 4; ++k)
-            rgba[4 * ((y + row) * tile_width + x + q) + k] = column[4 * row + k];
+          std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + q));
       }
     }
   alignas(64) std::int32_t taken_by_lane[lanes];

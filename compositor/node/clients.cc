@@ -8,15 +8,10 @@
 
 namespace understudy::compositor {
 
-namespace {
-
-// How soon a stalled message is noticed.
-constexpr int stall_check_ms = 1000;
-
-}  // namespace
-
-Clients::Clients(const std::string& control_path, int ranks)
-    : launcher_(connect_to(control_path, Clock::now() + limits::send_patience)), ranks_(ranks) {
+Clients::Clients(const std::string& control_path, int ranks, std::chrono::milliseconds stall_patience)
+    : launcher_(connect_to(control_path, Clock::now() + limits::send_patience)),
+      ranks_(ranks),
+      stall_patience_(stall_patience) {
   launcher_.send(MessageType::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
 }
 
@@ -43,7 +38,8 @@ Clients::Event Clients::next() {
     add(behind, clients_.end());
     add(clients_.begin(), behind);
 
-    ::poll(fds.data(), fds.size(), unfinished ? stall_check_ms : -1);
+    // A message may be stalled for up to twice the patience before that is seen.
+    ::poll(fds.data(), fds.size(), unfinished ? int(stall_patience_.count()) : -1);
     if (fds.front().revents != 0 && !hear_launcher()) return Ended{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       Client& client = clients_.at(numbers[i]);
@@ -52,7 +48,7 @@ Clients::Event Clients::next() {
           last_heard_ = numbers[i];
           return Request{numbers[i], std::move(*message)};
         }
-      } else if (client.connection.stalled()) {
+      } else if (client.connection.stalled(stall_patience_)) {
         drop(numbers[i], "stopped in the middle of a message");
       }
     }

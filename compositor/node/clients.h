@@ -31,7 +31,8 @@ class Clients {
   using Event = std::variant<Request, Departed, Ended>;
 
   /// Connects to the launcher at `control_path` and says hello for `ranks` ranks. Throws std::runtime_error.
-  Clients(const std::string& control_path, int ranks);
+  /// An application may pause for `stall_patience` in the middle of a message.
+  Clients(const std::string& control_path, int ranks, std::chrono::milliseconds stall_patience);
 
   /// Waits for the next event.
   Event next();
@@ -55,6 +56,7 @@ class Clients {
 
   Connection launcher_;
   int ranks_;
+  std::chrono::milliseconds stall_patience_;
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_number_ = 0;  // numbers are never used twice
   std::uint64_t last_heard_ = 0;   // the next turn begins behind this one

@@ -42,7 +42,7 @@ class Node {
  public:
   explicit Node(Link& link) : link_(link), renderer_(link.rank(), link.size()) {}
 
-  bool lead(const std::string& control_path);
+  bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
 
  private:
@@ -83,10 +83,10 @@ volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
   return total;
 }
 
-bool Node::lead(const std::string& control_path) {
+bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall_patience) {
   std::optional<Clients> clients;
   try {
-    clients.emplace(control_path, link_.size());
+    clients.emplace(control_path, link_.size(), stall_patience);
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "understudy-node: no launcher: {}\n", error.what());
   }
@@ -229,9 +229,9 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
 
 }  // namespace
 
-bool run_node(Link& link, const std::string& control_path) {
+bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience) {
   Node node(link);
-  if (link.rank() == 0) return node.lead(control_path);
+  if (link.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;
 }

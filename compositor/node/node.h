@@ -3,9 +3,11 @@
 // application's memory.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "compositor/exchange/link.h"
+#include "compositor/service/limits.h"
 
 namespace understudy::compositor {
 
@@ -14,8 +16,11 @@ namespace understudy::compositor {
 /// that has been said on stderr, and the other ranks return as well.
 ///
 /// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
-/// application gets a refusal. Anything else that fails, such as memory in the middle of an exchange, is
-/// thrown: the caller then must end the group with link.abandon(), or the other ranks would wait for ever.
-bool run_node(Link& link, const std::string& control_path);
+/// application gets a refusal. Applications that pause for longer than
+/// `stall_patience` in the middle of a message are dropped. Anything else that fails, such as memory in the
+/// middle of an exchange, is thrown: the caller then must end the group with link.abandon(), or the other ranks
+/// would wait for ever.
+bool run_node(Link& link, const std::string& control_path,
+              std::chrono::milliseconds stall_patience = limits::stall_patience);
 
 }  // namespace understudy::compositor

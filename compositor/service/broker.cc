@@ -30,8 +30,11 @@ bool stirs(const Connection& connection) {
 
 }  // namespace
 
-Broker::Broker(std::string path, Say say)
-    : path_(std::move(path)), say_(std::move(say)), listener_(listen_at(path_)) {
+Broker::Broker(std::string path, Say say, std::chrono::milliseconds hello_patience)
+    : path_(std::move(path)),
+      say_(std::move(say)),
+      hello_patience_(hello_patience),
+      listener_(listen_at(path_)) {
   if (!say_) say_ = [](const std::string& line) { fmt::print(stderr, "understudy: {}\n", line); };
   struct stat file {};
   if (::lstat(path_.c_str(), &file) == 0) {
@@ -82,7 +85,7 @@ void Broker::accept_all() {
       send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
       continue;
     }
-    newcomers_.push_back({std::move(connection), Clock::now() + limits::hello_patience});
+    newcomers_.push_back({std::move(connection), Clock::now() + hello_patience_});
   }
 }
 

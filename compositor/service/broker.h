@@ -22,7 +22,8 @@ class Broker {
 
   /// Listens at `path` (mode 0600). `say` gets one line about everything that goes wrong later; by default it
   /// is written to stderr. Throws std::runtime_error when the path is taken or cannot be.
-  explicit Broker(std::string path, Say say = {});
+  explicit Broker(std::string path, Say say = {},
+                  std::chrono::milliseconds hello_patience = limits::hello_patience);
   /// Closes all connections, which ends the node group, and removes the socket file.
   ~Broker();
   Broker(const Broker&) = delete;
@@ -66,6 +67,7 @@ class Broker {
 
   std::string path_;
   Say say_;
+  std::chrono::milliseconds hello_patience_;
   FileDescriptor listener_;
   dev_t device_ = 0;  // of the socket file, so that only our own is removed
   ino_t inode_ = 0;

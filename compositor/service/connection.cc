@@ -95,8 +95,8 @@ Message Connection::receive(Deadline deadline) {
   }
 }
 
-bool Connection::stalled() const {
-  return unfinished() && Clock::now() - last_progress_ > limits::stall_patience;
+bool Connection::stalled(std::chrono::milliseconds patience) const {
+  return unfinished() && Clock::now() - last_progress_ > patience;
 }
 
 void Connection::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, Deadline deadline,

@@ -46,8 +46,8 @@ class Connection {
   Message receive(Deadline deadline);
   /// The beginning of a message is here.
   bool unfinished() const { return received_ > 0; }
-  /// And the rest has not come for limits::stall_patience.
-  bool stalled() const;
+  /// And nothing more of it has come for `patience`.
+  bool stalled(std::chrono::milliseconds patience) const;
 
   /// Sends a header and the payload made of `parts`, with a descriptor attached when `attach` is one. Throws
   /// ConnectionLost, also at the deadline; a deadline that has passed means: now or never.

@@ -1,6 +1,7 @@
 #include "compositor/service/rank_renderer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -43,10 +44,14 @@ auto refusing(Call call) {
   }
 }
 
-void keep_limits(const VolumeDescription& description) {
+std::uint64_t physical_memory() {
+  return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void keep_limits(const VolumeDescription& description, int ranks) {
   std::array<std::uint64_t, 3> stored{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int extent = description.stored.high[axis] - description.stored.low[axis];
+    const std::int64_t extent = std::int64_t(description.stored.high[axis]) - description.stored.low[axis];
     if (extent <= 0 || extent > max_axis_texels)
       throw RequestRefused(fmt::format("volume {} stores {} texels along axis {}, not 1 to {}", description.id,
                                        extent, axis, max_axis_texels));
@@ -57,6 +62,13 @@ void keep_limits(const VolumeDescription& description) {
     throw RequestRefused(fmt::format(
         "volume {} of {} x {} x {} texels is over the limit of {} MiB a slice or {} GiB", description.id,
         stored[0], stored[1], stored[2], limits::max_slice_bytes >> 20, limits::max_volume_bytes >> 30));
+  // Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
+  const std::uint64_t share = slice * stored[2] / std::uint64_t(ranks);
+  if (const std::uint64_t here = physical_memory(); share > here / 3 * 2)
+    throw RequestRefused(fmt::format(
+        "a node's share of volume {} is {} MiB and half as much again in bricks, but this machine has {} "
+        "MiB: use more nodes",
+        description.id, share >> 20, here >> 20));
 }
 
 }  // namespace
@@ -80,7 +92,7 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
 }
 
 void RankRenderer::begin(std::uint64_t client, const VolumeDescription& description) {
-  keep_limits(description);
+  keep_limits(description, ranks_);
   const VolumeKey key{client, description.id};
   const auto held =
       std::ranges::count_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });

@@ -1,0 +1,100 @@
+// A volume and its requests, for tests that compare services, and a launcher that steps its broker on a thread.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "compositor/service.h"
+#include "compositor/service/broker.h"
+#include "tests/compositor/scratch_folder.h"
+#include "tests/volume/scenes.h"
+
+namespace understudy::compositor::testing {
+
+using volume::testing::Texture;
+
+/// 41 x 37 x 29 texels: no extent is a multiple of a block or of eight bytes.
+inline Texture some_texture(volume::VolumeId id = 7, volume::TexelType type = volume::TexelType::u8) {
+  volume::VolumeDescription description = volume::testing::describe({41, 37, 29}, type);
+  description.id = id;
+  return volume::testing::sampled(description, volume::testing::marschner_lobb_field());
+}
+
+inline volume::RenderRequest some_request(const Texture& texture,
+                                          volume::Operator op = volume::Operator::over) {
+  volume::RenderRequest request =
+      volume::testing::request_for(texture, volume::testing::usual_camera(160, 120), 160, 120, 50);
+  request.op = op;
+  return request;
+}
+
+/// In slabs of three slices.
+inline void upload(RenderService& service, const Texture& texture) {
+  const volume::VolumeDescription& d = texture.description;
+  service.begin_volume(d);
+  const int slices = d.stored.high[2] - d.stored.low[2];
+  const std::size_t slice_bytes = texture.texels.size() / std::size_t(slices);
+  for (int z = 0; z < slices; z += 3) {
+    const int now = std::min(3, slices - z);
+    service.add_slices(
+        d.id, d.stored.low[2] + z, now,
+        std::span(texture.texels).subspan(std::size_t(z) * slice_bytes, std::size_t(now) * slice_bytes));
+  }
+  service.end_volume(d.id);
+}
+
+/// A picture that outlives the next call, over the request's whole window, so that pictures can be compared.
+inline volume::Image whole_picture(const Rendered& rendered, const volume::RenderRequest& request) {
+  volume::Image picture(request.window);
+  const float neutral = request.op == volume::Operator::min ? std::numeric_limits<float>::max() : 0.0F;
+  std::ranges::fill(picture.rgba, neutral);
+  const volume::Rect& rect = rendered.image.rect;
+  for (int y = 0; y < rect.height; ++y)
+    std::ranges::copy(
+        rendered.image.rgba.subspan(4 * std::size_t(y) * std::size_t(rect.width), 4 * std::size_t(rect.width)),
+        picture.at(rect.x, rect.y + y));
+  return picture;
+}
+
+inline volume::Image picture_of(RenderService& service, const volume::RenderRequest& request) {
+  return whole_picture(service.render(request), request);
+}
+
+inline double largest_difference(const volume::Image& a, const volume::Image& b) {
+  return a.rect == b.rect ? volume::testing::difference(a, b).max : 1e300;
+}
+
+/// The launcher's part, on a thread of its own.
+class Launcher {
+ public:
+  explicit Launcher(const std::string& path)
+      : broker_(path, [this](const std::string& line) { said_.push_back(line); }),
+        thread_([this](std::stop_token stop) {
+          while (!stop.stop_requested()) {
+            const std::lock_guard lock(mutex_);
+            broker_.step(std::chrono::milliseconds(1));
+          }
+        }) {}
+
+  template <class Ask>
+  auto ask(Ask ask) {
+    const std::lock_guard lock(mutex_);
+    return ask(broker_);
+  }
+  bool wait_for_group() {
+    return eventually([&] { return ask([](Broker& b) { return b.node_group_ready(); }); });
+  }
+  bool wait_for_loss() {
+    return eventually([&] { return ask([](Broker& b) { return b.lost(); }); });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> said_;
+  Broker broker_;
+  std::jthread thread_;
+};
+
+}  // namespace understudy::compositor::testing

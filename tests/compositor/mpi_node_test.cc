@@ -1,0 +1,157 @@
+// The real thing: mpirun, understudy-node processes, and what happens when one of them is killed.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compositor/service/linked.h"
+#include "tests/compositor/group_scene.h"
+
+extern char** environ;
+
+namespace understudy::compositor {
+namespace {
+
+using namespace testing;
+
+// One mpirun and its ranks.
+class MpiGroup {
+ public:
+  MpiGroup(int ranks, const std::string& path) {
+    std::vector<std::string> words{MPIEXEC,
+                                   "-n",
+                                   std::to_string(ranks),
+                                   "--oversubscribe",
+                                   "--bind-to",
+                                   "none",
+                                   "--mca",
+                                   "mpi_yield_when_idle",
+                                   "1",
+                                   UNDERSTUDY_NODE,
+                                   "--control",
+                                   path};
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    // OpenMPI keeps memory until the end; that is not what the sanitizer looks for here.
+    for (const char* setting :
+         {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "ASAN_OPTIONS=detect_leaks=0"})
+      ::putenv(const_cast<char*>(setting));
+    EXPECT_EQ(::posix_spawn(&mpirun_, MPIEXEC, nullptr, nullptr, arguments.data(), environ), 0);
+  }
+  ~MpiGroup() {
+    if (mpirun_ > 0) {
+      ::kill(mpirun_, SIGTERM);
+      wait();
+    }
+  }
+  MpiGroup(const MpiGroup&) = delete;
+  MpiGroup& operator=(const MpiGroup&) = delete;
+
+  int wait() {
+    int status = 0;
+    ::waitpid(std::exchange(mpirun_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::vector<pid_t> ranks() const {
+    std::vector<pid_t> result;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream stat(entry.path() / "stat");
+      pid_t pid = 0, parent = 0;
+      std::string name, state;
+      if (stat >> pid >> name >> state >> parent && parent == mpirun_ && name.starts_with("(understudy"))
+        result.push_back(pid);
+    }
+    return result;
+  }
+
+ private:
+  pid_t mpirun_ = -1;
+};
+
+TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
+  const auto embedded = embedded_service();
+  const Texture texture = some_texture();
+  upload(*embedded, texture);
+  for (const int ranks : {1, 2, 3, 4, 7}) {
+    const ScratchFolder folder;
+    const std::string path = folder / "control";
+    auto launcher = std::make_unique<Launcher>(path);
+    MpiGroup group(ranks, path);
+    const auto linked = linked_service(path, 60'000);
+    EXPECT_EQ(linked->nodes(), ranks);
+    upload(*linked, texture);
+    double worst = 0;
+    volume::FrameCounts counts;
+    for (const volume::Operator op : {volume::Operator::over, volume::Operator::max}) {
+      const volume::RenderRequest request = some_request(texture, op);
+      const Rendered rendered = linked->render(request);
+      counts = rendered.counts;
+      worst =
+          std::max(worst, largest_difference(whole_picture(rendered, request), picture_of(*embedded, request)));
+    }
+    std::printf(
+        "%d ranks: at most %.2g apart; last frame %.2f ms to render, %.2f ms to composite, %llu bytes\n", ranks,
+        worst, counts.render_ms, counts.composite_ms, static_cast<unsigned long long>(counts.bytes_exchanged));
+    EXPECT_LE(worst, 1e-5);
+    // All ranks end, in peace, when the launcher lets go.
+    launcher.reset();
+    EXPECT_EQ(group.wait(), 0);
+  }
+}
+
+TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {
+  const ScratchFolder folder;
+  const std::string path = folder / "control";
+  Launcher launcher(path);
+  const Texture texture = some_texture();
+  const volume::RenderRequest request = some_request(texture);
+  volume::Image before;
+  {
+    MpiGroup group(3, path);
+    const auto linked = linked_service(path, 60'000);
+    upload(*linked, texture);
+    before = picture_of(*linked, request);
+    const std::vector<pid_t> ranks = group.ranks();
+    ASSERT_EQ(ranks.size(), 3U);
+    ::kill(ranks.back(), SIGKILL);
+    // The group may answer a few more times before MPI notices; it must never hang.
+    EXPECT_THROW(for (;;) picture_of(*linked, request), ServiceLost);
+    EXPECT_TRUE(launcher.wait_for_loss());
+    EXPECT_NE(group.wait(), 0);
+  }
+  MpiGroup next(2, path);
+  const auto linked = linked_service(path, 60'000);
+  upload(*linked, texture);
+  EXPECT_LE(largest_difference(picture_of(*linked, request), before), 1e-5);
+}
+
+TEST(MpiNode, AHangingRankEndsInServiceLostWithinTheTimeLimit) {
+  const ScratchFolder folder;
+  const std::string path = folder / "control";
+  Launcher launcher(path);
+  const Texture texture = some_texture();
+  MpiGroup group(2, path);
+  const auto linked = linked_service(path, Patience{.render = std::chrono::milliseconds(2000)});
+  upload(*linked, texture);
+  linked->render(some_request(texture));
+  const std::vector<pid_t> ranks = group.ranks();
+  ASSERT_EQ(ranks.size(), 2U);
+  for (const pid_t rank : ranks) ::kill(rank, SIGSTOP);
+  EXPECT_THROW(linked->render(some_request(texture)), ServiceLost);
+  for (const pid_t rank : ranks) ::kill(rank, SIGCONT);
+}
+
+TEST(MpiNode, ALauncherThatIsNotThereEndsTheGroupWithAMessage) {
+  MpiGroup group(2, "/nowhere/at/all");
+  EXPECT_NE(group.wait(), 0);
+}
+
+}  // namespace
+}  // namespace understudy::compositor

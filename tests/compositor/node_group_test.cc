@@ -1,0 +1,499 @@
+// Whole node groups in one process: ranks are threads, sockets are real.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "compositor/exchange/thread_link.h"
+#include "compositor/node/node.h"
+#include "compositor/service/image_memory.h"
+#include "compositor/service/linked.h"
+#include "compositor/service/rank_renderer.h"
+#include "tests/compositor/forwarding_link.h"
+#include "tests/compositor/group_scene.h"
+
+namespace understudy::compositor {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace testing;
+using std::chrono::milliseconds;
+using volume::Operator;
+using volume::TexelType;
+
+Deadline soon() {
+  return Clock::now() + std::chrono::seconds(20);
+}
+
+// Ranks on threads, which end when the launcher closes its connection.
+class Group {
+ public:
+  using Wrap = std::function<void(Link&, const std::function<void(Link&)>&)>;
+
+  Group(int ranks, const std::string& path, milliseconds stall_patience = limits::stall_patience,
+        Wrap wrap = {})
+      : thread_([=, this] {
+          try {
+            run_ranks(ranks, [&](Link& link) {
+              const auto run = [&](Link& l) { run_node(l, path, stall_patience); };
+              wrap ? wrap(link, run) : run(link);
+            });
+          } catch (const std::exception& error) {
+            std::printf("node group: %s\n", error.what());
+          }
+          ended_ = true;
+        }) {}
+  bool ended() const { return ended_; }
+
+ private:
+  std::atomic<bool> ended_ = false;
+  std::jthread thread_;
+};
+
+class NodeGroupTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    // The launcher goes first: its groups then end, and are joined.
+    launcher_.reset();
+    groups_.clear();
+  }
+
+  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, Group::Wrap wrap = {}) {
+    groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap));
+    EXPECT_TRUE(launcher_->wait_for_group());
+    return *groups_.back();
+  }
+  std::unique_ptr<RenderService> connect() { return linked_service(path_, 20'000); }
+  // An application that knows the protocol but has no manners.
+  std::unique_ptr<Connection> raw_client() {
+    auto result = std::make_unique<Connection>(connect_to(path_, soon()));
+    result->send(MessageType::hello_client, 1, Bytes{}, soon());
+    EXPECT_EQ(result->receive(soon()).type, MessageType::welcome);
+    return result;
+  }
+
+  ScratchFolder folder_;
+  std::string path_ = folder_ / "control";
+  std::unique_ptr<Launcher> launcher_ = std::make_unique<Launcher>(path_);
+  std::vector<std::unique_ptr<Group>> groups_;
+};
+
+TEST_F(NodeGroupTest, LinkedEqualsEmbeddedForAnyRankCountOperatorAndTexelType) {
+  for (const int ranks : {1, 2, 3, 4, 7}) {
+    Group& group = start(ranks);
+    const auto linked = connect(), embedded = embedded_service();
+    EXPECT_EQ(linked->nodes(), ranks);
+    EXPECT_EQ(embedded->nodes(), 0);
+    double worst = 0;
+    for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8}) {
+      const Texture texture = some_texture(1 + std::uint64_t(type), type);
+      upload(*linked, texture);
+      upload(*embedded, texture);
+      for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add}) {
+        const volume::RenderRequest request = some_request(texture, op);
+        const volume::Image expected = picture_of(*embedded, request);
+        worst = std::max(worst, largest_difference(picture_of(*linked, request), expected));
+        // The scene must be one in which something is to be seen.
+        ASSERT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
+      }
+    }
+    std::printf("%d ranks: at most %.2g apart\n", ranks, worst);
+    EXPECT_LE(worst, 1e-5);
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group.ended(); }));
+  }
+}
+
+TEST_F(NodeGroupTest, CountsAreSummedOverRanks) {
+  start(4);
+  const auto linked = connect(), embedded = embedded_service();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  upload(*embedded, texture);
+  const volume::FrameCounts one = embedded->render(some_request(texture)).counts;
+  const volume::FrameCounts four = linked->render(some_request(texture)).counts;
+  EXPECT_EQ(four.samples, one.samples);
+  EXPECT_GE(four.rays, one.rays);
+  EXPECT_GT(four.bytes_exchanged, 0U);
+  EXPECT_EQ(one.bytes_exchanged, 0U);
+  EXPECT_EQ(four.nodes_idle, 0U);
+}
+
+TEST_F(NodeGroupTest, RanksWithNothingToShowAreIdleAndExchangeNothing) {
+  start(3);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  volume::RenderRequest request = some_request(texture);
+  std::ranges::fill(std::get<volume::TransferFunction>(request.classification).entries, volume::Rgba{});
+  const Rendered rendered = linked->render(request);
+  EXPECT_TRUE(rendered.image.rect.empty());
+  EXPECT_EQ(rendered.counts.nodes_idle, 3U);
+  EXPECT_EQ(rendered.counts.bytes_exchanged, 0U);
+}
+
+TEST_F(NodeGroupTest, PicturesFollowAWindowThatGrowsAndShrinks) {
+  start(2);
+  const auto linked = connect(), embedded = embedded_service();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  upload(*embedded, texture);
+  for (const int side : {1, 40, 300, 10, 700, 120}) {
+    const auto request =
+        volume::testing::request_for(texture, volume::testing::usual_camera(side, side), side, side, 40);
+    EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5) << side;
+  }
+}
+
+TEST_F(NodeGroupTest, EachApplicationHasItsOwnVolumeIds) {
+  start(3);
+  const auto first = connect(), second = connect();
+  const Texture lobes = some_texture(7);
+  Texture flat = lobes;
+  std::ranges::fill(flat.texels, std::byte(200));
+  upload(*first, lobes);
+  upload(*second, flat);
+  const auto alone = embedded_service();
+  upload(*alone, lobes);
+  const volume::RenderRequest request = some_request(lobes);
+  const volume::Image expected = picture_of(*alone, request);
+  EXPECT_LE(largest_difference(picture_of(*first, request), expected), 1e-5);
+  EXPECT_GT(largest_difference(picture_of(*second, request), expected), 0.05);
+  second->forget_volume(7);
+  EXPECT_THROW(second->render(request), RequestRefused);
+  EXPECT_LE(largest_difference(picture_of(*first, request), expected), 1e-5);
+}
+
+TEST_F(NodeGroupTest, AVolumeThatIsBegunAgainIsReplaced) {
+  start(2);
+  const auto linked = connect(), embedded = embedded_service();
+  Texture texture = some_texture();
+  upload(*linked, texture);
+  std::ranges::fill(texture.texels, std::byte(90));
+  texture.description.version = 1;
+  upload(*linked, texture);
+  upload(*embedded, texture);
+  volume::RenderRequest request = some_request(texture);
+  EXPECT_THROW(linked->render(request), RequestRefused);  // asks for the old version
+  request.version = 1;
+  EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
+}
+
+// What makes no sense is refused alike by both services, with a reason, and both go on serving.
+TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
+  start(3);
+  for (const auto& service : {connect(), embedded_service()}) {
+    const Texture texture = some_texture();
+    const volume::RenderRequest good = some_request(texture);
+    EXPECT_THROW(service->render(good), RequestRefused);  // unknown volume
+
+    service->begin_volume(texture.description);
+    EXPECT_THROW(service->render(good), RequestRefused);  // incomplete
+    EXPECT_THROW(service->end_volume(texture.description.id), RequestRefused);
+
+    service->begin_volume(texture.description);
+    EXPECT_THROW(service->add_slices(texture.description.id, 0, 1, std::span(texture.texels).first(5)),
+                 RequestRefused);
+
+    volume::VolumeDescription senseless = texture.description;
+    senseless.size = {0, 1, 1};
+    EXPECT_THROW(service->begin_volume(senseless), RequestRefused);
+    senseless.size = {16384, 16384, 16384};
+    senseless.stored = {{0, 0, 0}, senseless.size};
+    senseless.type = TexelType::rgba8;
+    EXPECT_THROW(service->begin_volume(senseless), RequestRefused);
+
+    upload(*service, texture);
+    volume::RenderRequest bad = good;
+    bad.texture_to_clip.fill(0);
+    EXPECT_THROW(service->render(bad), RequestRefused);
+    bad = good;
+    bad.texture_to_clip[5] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(service->render(bad), RequestRefused);
+    bad = good;
+    bad.window = {0, 0, 100'000, 100'000};
+    EXPECT_THROW(service->render(bad), RequestRefused);
+    bad = good;
+    std::get<volume::TransferFunction>(bad.classification).entries.resize(1);
+    EXPECT_THROW(service->render(bad), RequestRefused);
+
+    EXPECT_GT(service->render(good).counts.samples_taken, 0U);
+  }
+}
+
+TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
+  // Rank 1 reads nonsense where the others read the request.
+  std::atomic<bool> armed = false;
+  class Corrupting : public ForwardingLink {
+   public:
+    Corrupting(Link& link, std::atomic<bool>& armed) : ForwardingLink(link), armed_(armed) {}
+    void broadcast(Rank root, std::span<std::byte> bytes) override {
+      ForwardingLink::broadcast(root, bytes);
+      if (rank() == 1 && bytes.size() > 256 && armed_.exchange(false))
+        std::ranges::fill(bytes, std::byte(0xff));
+    }
+
+   private:
+    std::atomic<bool>& armed_;
+  };
+  start(3, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
+    Corrupting corrupting(link, armed);
+    run(corrupting);
+  });
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  armed = true;
+  EXPECT_THROW(linked->render(some_request(texture)), RequestRefused);
+  EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+
+  // A volume of which one rank could not take a slab is not kept half.
+  linked->begin_volume(texture.description);
+  armed = true;
+  EXPECT_THROW(linked->add_slices(texture.description.id, 0, 29, texture.texels), RequestRefused);
+  EXPECT_THROW(linked->end_volume(texture.description.id), RequestRefused);
+  upload(*linked, texture);
+  EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+}
+
+TEST_F(NodeGroupTest, AStuckApplicationHoldsUpNobodyAndIsDroppedInTheEnd) {
+  start(2, milliseconds(200));
+  const auto stuck = raw_client();
+  MessageHeader header{.type = MessageType::render};
+  header.payload_bytes = 1000;
+  ASSERT_GT(::send(stuck->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+  EXPECT_THROW(stuck->receive(soon()), ConnectionLost);
+}
+
+TEST_F(NodeGroupTest, GarbageIsDroppedAndDisturbsNobody) {
+  start(2);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  const auto garbage = raw_client(), wrong_type = raw_client(), huge = raw_client();
+  const std::string text(1000, 'x');
+  ASSERT_GT(::send(garbage->fd(), text.data(), text.size(), MSG_NOSIGNAL), 0);
+  wrong_type->send(MessageType::hello_nodes, 2, encode(Hello{3}), soon());
+  MessageHeader header{.type = MessageType::render};
+  header.payload_bytes = std::uint64_t(1) << 62;
+  ASSERT_GT(::send(huge->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
+  for (const auto& each : {garbage.get(), wrong_type.get(), huge.get()})
+    EXPECT_THROW(each->receive(soon()), ConnectionLost);
+  // A message that only its content betrays is answered.
+  const auto senseless = raw_client();
+  senseless->send(MessageType::render, 2, encode_text("no request"), soon());
+  const Message answer = senseless->receive(soon());
+  EXPECT_EQ(answer.type, MessageType::refused);
+  EXPECT_THAT(decode_text(answer.payload), HasSubstr("render request: field"));
+  EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+}
+
+TEST_F(NodeGroupTest, ImageMemoryThatCouldVanishIsNotUsed) {
+  start(1);
+  const auto client = raw_client();
+  const FileDescriptor unsealed(::memfd_create("unsealed", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  ASSERT_EQ(::ftruncate(unsealed.get(), 4096), 0);
+  client->send(MessageType::image_memory, 2, encode_size(4096), soon(), unsealed.get());
+  EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("sealed"));
+  const ImageMemory small = ImageMemory::create(4096);
+  client->send(MessageType::image_memory, 3, encode_size(8192), soon(), small.fd());
+  EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("smaller"));
+  client->send(MessageType::image_memory, 4, encode_size(4096), soon());
+  EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("no descriptor"));
+}
+
+TEST_F(NodeGroupTest, ALostGroupIsReportedAndANewConnectionWorks) {
+  start(2);
+  const Texture texture = some_texture();
+  auto linked = connect();
+  upload(*linked, texture);
+  const volume::RenderRequest request = some_request(texture);
+  const volume::Image before = picture_of(*linked, request);
+  launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+  EXPECT_TRUE(eventually([&] { return groups_.back()->ended(); }));
+  std::string first;
+  try {
+    linked->render(request);
+    ADD_FAILURE() << "a picture without a group";
+  } catch (const ServiceLost& lost) {
+    first = lost.what();
+    EXPECT_THAT(first, HasSubstr(path_));
+    EXPECT_EQ(first.find('\n'), std::string::npos);
+  }
+  // And so for ever, at once, with the same reason.
+  try {
+    linked->end_volume(1);
+    ADD_FAILURE();
+  } catch (const ServiceLost& lost) {
+    EXPECT_EQ(lost.what(), first);
+  }
+  start(3);
+  linked = connect();
+  EXPECT_EQ(linked->nodes(), 3);
+  EXPECT_THROW(linked->render(request), RequestRefused);  // the new group has to be filled again
+  upload(*linked, texture);
+  EXPECT_LE(largest_difference(picture_of(*linked, request), before), 1e-5);
+}
+
+TEST_F(NodeGroupTest, AnApplicationMayComeBeforeTheGroup) {
+  std::unique_ptr<RenderService> linked;
+  std::jthread application([&] { linked = connect(); });
+  EXPECT_TRUE(eventually([&] { return launcher_->ask([](Broker& b) { return b.clients_waiting() == 1; }); }));
+  start(2);
+  application.join();
+  EXPECT_EQ(linked->nodes(), 2);
+}
+
+TEST_F(NodeGroupTest, WithoutAGroupPatienceEndsInServiceLost) {
+  try {
+    linked_service(path_, 50);
+    ADD_FAILURE();
+  } catch (const ServiceLost& lost) {
+    EXPECT_THAT(lost.what(), HasSubstr("within 50 ms"));
+  }
+  launcher_->ask([](Broker& b) { b.turn_away("MPI is not installed: apt install openmpi-bin"); });
+  try {
+    connect();
+    ADD_FAILURE();
+  } catch (const ServiceLost& lost) {
+    EXPECT_THAT(lost.what(), HasSubstr("apt install openmpi-bin"));
+  }
+  EXPECT_THROW(linked_service("/nowhere/at/all", 50), ServiceLost);
+  EXPECT_THROW(linked_service(std::string(300, 'x'), 50), ServiceLost);
+}
+
+// A node group that takes applications in and then misbehaves.
+class BadGroup {
+ public:
+  BadGroup(const std::string& path, Launcher& launcher) : control_(connect_to(path, soon())) {
+    control_.send(MessageType::hello_nodes, 1, encode(Hello{1}), soon());
+    EXPECT_TRUE(launcher.wait_for_group());
+  }
+  Connection take_in() {
+    Connection client(control_.receive(soon()).attached);
+    client.send(MessageType::welcome, 1, encode(Hello{1}), soon());
+    return client;
+  }
+
+ private:
+  Connection control_;
+};
+
+TEST_F(NodeGroupTest, AGroupThatNeverAnswersIsGivenUp) {
+  BadGroup group(path_, *launcher_);
+  std::unique_ptr<RenderService> linked;
+  std::jthread application([&] { linked = linked_service(path_, {.reply = milliseconds(50)}); });
+  const Connection taken = group.take_in();
+  application.join();
+  try {
+    linked->end_volume(1);
+    ADD_FAILURE();
+  } catch (const ServiceLost& lost) {
+    EXPECT_THAT(lost.what(), HasSubstr("did not answer in time"));
+  }
+}
+
+TEST_F(NodeGroupTest, AGroupThatDoesNotReadIsGivenUp) {
+  BadGroup group(path_, *launcher_);
+  std::unique_ptr<RenderService> linked;
+  std::jthread application([&] { linked = linked_service(path_, {.send = milliseconds(50)}); });
+  const Connection taken = group.take_in();
+  application.join();
+  const std::vector<std::byte> slice(std::size_t(8) << 20);
+  EXPECT_THROW(linked->add_slices(1, 0, 1, slice), ServiceLost);
+}
+
+TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
+  BadGroup group(path_, *launcher_);
+  const volume::RenderRequest request = some_request(some_texture());
+  const std::vector<std::function<void(Connection&, const Message&)>> lies{
+      // A picture outside the window.
+      [](Connection& c, const Message& m) {
+        c.send(MessageType::rendered, m.sequence, encode(RenderedReply{{0, 0, 100, 100}, {}}), soon());
+      },
+      // More pixels than there is memory for.
+      [](Connection& c, const Message& m) {
+        c.send(MessageType::rendered, m.sequence, encode(RenderedReply{{0, 0, 8000, 8000}, {}}), soon());
+      },
+      // The answer to another request, the wrong kind of answer, an empty answer, no message at all.
+      [](Connection& c, const Message& m) {
+        c.send(MessageType::rendered, m.sequence + 1, encode(RenderedReply{}), soon());
+      },
+      [](Connection& c, const Message& m) { c.send(MessageType::done, m.sequence, Bytes{}, soon()); },
+      [](Connection& c, const Message& m) { c.send(MessageType::rendered, m.sequence, Bytes{}, soon()); },
+      [](Connection& c, const Message&) { ::send(c.fd(), "x marks the spot, not a header", 30, MSG_NOSIGNAL); },
+  };
+  for (const auto& lie : lies) {
+    std::jthread liar([&] {
+      Connection client = group.take_in();
+      const Message memory = client.receive(soon());
+      EXPECT_TRUE(memory.attached);
+      client.send(MessageType::done, memory.sequence, Bytes{}, soon());
+      lie(client, client.receive(soon()));
+    });
+    const auto linked = connect();
+    EXPECT_THROW(linked->render(request), ServiceLost);
+    EXPECT_THROW(linked->render(request), ServiceLost);
+  }
+}
+
+TEST(NodeGroup, ALauncherThatIsNotThereEndsAllRanks) {
+  run_ranks(3, [](Link& link) { EXPECT_EQ(run_node(link, "/nowhere/at/all"), link.rank() != 0); });
+}
+
+TEST(NodeGroup, LeavesNoDescriptorBehind) {
+  const auto before = open_descriptors();
+  {
+    const ScratchFolder folder;
+    const std::string path = folder / "control";
+    auto launcher = std::make_unique<Launcher>(path);
+    Group group(2, path);
+    ASSERT_TRUE(launcher->wait_for_group());
+    for (int i = 0; i < 3; ++i) {
+      const auto linked = linked_service(path, 20'000);
+      const Texture texture = some_texture();
+      upload(*linked, texture);
+      for (const int side : {10, 50, 90}) {
+        linked->render(
+            volume::testing::request_for(texture, volume::testing::usual_camera(side, side), side, side, 20));
+      }
+    }
+    launcher.reset();
+  }
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST(RankRenderer, ForgetsWhatAnApplicationLeaves) {
+  RankRenderer renderer(0, 1);
+  for (std::uint64_t client = 1; client <= 2; ++client)
+    for (std::uint64_t id = 1; id <= 3; ++id) renderer.begin(client, some_texture(id).description);
+  EXPECT_EQ(renderer.volumes(), 6U);
+  renderer.forget_client(1);
+  EXPECT_EQ(renderer.volumes(), 3U);
+  renderer.forget({2, 3});
+  renderer.forget({2, 3});
+  EXPECT_EQ(renderer.volumes(), 2U);
+}
+
+TEST(RankRenderer, KeepsNoMoreVolumesOfOneApplicationThanTheLimit) {
+  RankRenderer renderer(0, 1);
+  volume::VolumeDescription tiny = volume::testing::describe({2, 2, 2}, TexelType::u8);
+  for (tiny.id = 0; tiny.id < limits::max_volumes_per_client; ++tiny.id) renderer.begin(1, tiny);
+  EXPECT_THROW(renderer.begin(1, tiny), RequestRefused);
+  EXPECT_NO_THROW(renderer.begin(2, tiny));
+  tiny.id = 0;
+  EXPECT_NO_THROW(renderer.begin(1, tiny));  // replaces one
+}
+
+}  // namespace
+}  // namespace understudy::compositor

@@ -1,0 +1,272 @@
+#include "compositor/service/protocol.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <random>
+
+#include "compositor/service/limits.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::compositor {
+namespace {
+
+using namespace volume;
+
+VolumeDescription some_volume() {
+  VolumeDescription v;
+  v.id = 0xfedcba9876543210;
+  v.version = 3;
+  v.size = {64, 33, 17};
+  v.type = TexelType::u16;
+  v.wrap = {Wrap::edge, Wrap::border, Wrap::repeat};
+  v.border = {0.1F, 0.2F, 0.3F, 0.4F};
+  v.stored = {{1, 2, 3}, {60, 33, 17}};
+  return v;
+}
+
+RenderRequest some_request(bool colours, bool depth) {
+  RenderRequest r;
+  r.volume = 17;
+  r.version = 4;
+  for (std::size_t i = 0; i < 16; ++i) r.texture_to_clip[i] = 0.1 * double(i) - 0.3;
+  r.viewport = {-5, 6, 700, 500};
+  r.window = {0, 6, 300, 20};
+  r.depth_range = {0.25, 0.75};
+  r.planes = {{0.1, -0.2, 0.3}, -1.5, 1.0 / 512, 999};
+  r.op = Operator::min;
+  r.filter = Filter::nearest;
+  r.region = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
+  r.clip_planes = {{{1, 0, 0}, -0.5}, {{0, 1, 2}, 0.25}};
+  if (colours) {
+    LinearMap map;
+    for (std::size_t i = 0; i < 16; ++i) map.matrix[i] = float(i) / 7;
+    map.multiply_by_alpha = false;
+    map.alpha_above = 0.02F;
+    r.classification = map;
+  } else {
+    r.classification = TransferFunction{-0.5F, 2.5F, {{0, 0, 0, 0}, {0.1F, 0.2F, 0.3F, 0.4F}, {9, 9, 9, 1}}};
+  }
+  r.termination = 1e-5F;
+  if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
+  return r;
+}
+
+FrameCounts some_counts() {
+  return {1, 2, 3, 4, 5, 6, 7, 8, 9.5, 10.25};
+}
+
+// Every kind of message, and how it is read.
+struct Kind {
+  const char* name;
+  std::vector<std::byte> bytes;
+  std::function<std::vector<std::byte>(std::span<const std::byte>)> read_and_write_again;
+};
+
+std::vector<std::byte> slices_message(const Slices& slices) {
+  std::vector<std::byte> bytes = encode_slices_head(slices);
+  bytes.insert(bytes.end(), slices.texels.begin(), slices.texels.end());
+  bytes.resize((bytes.size() + 7) / 8 * 8);
+  return bytes;
+}
+
+std::vector<Kind> all_kinds() {
+  static const std::array<std::byte, 13> texels{std::byte(1), std::byte(2), std::byte(3)};
+  const auto request = [](std::span<const std::byte> b) { return encode(decode_request(b)); };
+  return {
+      {"hello", encode(Hello{7}), [](auto b) { return encode(decode_hello(b)); }},
+      {"volume", encode(some_volume()), [](auto b) { return encode(decode_volume(b)); }},
+      {"slices", slices_message({4, 2, 1, texels}), [](auto b) { return slices_message(decode_slices(b)); }},
+      {"request with a table", encode(some_request(false, false)), request},
+      {"request with a map and depth", encode(some_request(true, true)), request},
+      {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
+       [](auto b) { return encode(decode_rendered(b)); }},
+      {"id", encode_id(~std::uint64_t(0)), [](auto b) { return encode_id(decode_id(b)); }},
+      {"size", encode_size(4096), [](auto b) { return encode_size(decode_size(b)); }},
+      {"text", encode_text("why not"), [](auto b) { return encode_text(decode_text(b)); }},
+  };
+}
+
+TEST(Protocol, EveryMessageReadsBackAsWritten) {
+  for (const Kind& kind : all_kinds()) {
+    EXPECT_EQ(kind.read_and_write_again(kind.bytes), kind.bytes) << kind.name;
+    EXPECT_EQ(kind.bytes.size() % 8, 0U) << kind.name;
+  }
+  EXPECT_EQ(decode_volume(encode(some_volume())), some_volume());
+}
+
+TEST(Protocol, EveryFieldOfARequestArrives) {
+  const RenderRequest sent = some_request(false, true), got = decode_request(encode(sent));
+  EXPECT_EQ(got.volume, sent.volume);
+  EXPECT_EQ(got.version, sent.version);
+  EXPECT_EQ(got.texture_to_clip, sent.texture_to_clip);
+  EXPECT_EQ(got.viewport, sent.viewport);
+  EXPECT_EQ(got.window, sent.window);
+  EXPECT_EQ(got.depth_range, sent.depth_range);
+  EXPECT_EQ(got.planes.normal, sent.planes.normal);
+  EXPECT_EQ(got.planes.first, sent.planes.first);
+  EXPECT_EQ(got.planes.spacing, sent.planes.spacing);
+  EXPECT_EQ(got.planes.count, sent.planes.count);
+  EXPECT_EQ(got.op, sent.op);
+  EXPECT_EQ(got.filter, sent.filter);
+  EXPECT_EQ(got.region.low, sent.region.low);
+  EXPECT_EQ(got.region.high, sent.region.high);
+  ASSERT_EQ(got.clip_planes.size(), 2U);
+  EXPECT_EQ(got.clip_planes[1].normal, sent.clip_planes[1].normal);
+  EXPECT_EQ(got.clip_planes[1].offset, sent.clip_planes[1].offset);
+  EXPECT_EQ(got.classification, sent.classification);
+  EXPECT_EQ(got.termination, sent.termination);
+  ASSERT_TRUE(got.depth.has_value());
+  EXPECT_EQ(got.depth->rect, sent.depth->rect);
+  EXPECT_EQ(got.depth->depth, sent.depth->depth);
+  EXPECT_EQ(got.depth->or_equal, sent.depth->or_equal);
+  EXPECT_EQ(decode_request(encode(some_request(true, false))).classification,
+            some_request(true, false).classification);
+}
+
+TEST(Protocol, AMessageCutAnywhereIsRefusedWithFieldAndOffset) {
+  for (const Kind& kind : all_kinds())
+    for (std::size_t size = 0; size < kind.bytes.size(); ++size) {
+      // A copy of just that size, so that reading on is seen by the sanitizer.
+      const std::vector<std::byte> cut(kind.bytes.begin(), kind.bytes.begin() + std::ptrdiff_t(size));
+      try {
+        kind.read_and_write_again(cut);
+        ADD_FAILURE() << kind.name << " cut at " << size << " was believed";
+      } catch (const MalformedMessage& error) {
+        EXPECT_NE(std::string(error.what()).find("offset"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("field '"), std::string::npos) << error.what();
+      }
+    }
+}
+
+TEST(Protocol, BytesLeftOverAreRefused) {
+  for (const Kind& kind : all_kinds()) {
+    std::vector<std::byte> longer = kind.bytes;
+    longer.resize(longer.size() + 8);
+    EXPECT_THROW(kind.read_and_write_again(longer), MalformedMessage) << kind.name;
+  }
+}
+
+TEST(Protocol, AbsurdValuesInAnyPlaceNeverGetPast) {
+  // Each eight bytes in turn become a huge, a negative and a boundary value: refused, or harmless (a
+  // coordinate, an id), never a crash or a large allocation.
+  int refused = 0, harmless = 0;
+  for (const Kind& kind : all_kinds())
+    for (std::size_t at = 0; at + 8 <= kind.bytes.size(); at += 8)
+      for (const std::uint64_t value : {~std::uint64_t(0), std::uint64_t(1) << 63, std::uint64_t(1) << 40,
+                                        std::uint64_t(0x7fffffff), ~std::uint64_t(0) - 6}) {
+        std::vector<std::byte> bytes = kind.bytes;
+        std::memcpy(bytes.data() + at, &value, sizeof value);
+        try {
+          kind.read_and_write_again(bytes);
+          ++harmless;
+        } catch (const MalformedMessage&) {
+          ++refused;
+        }
+      }
+  std::printf("%d refused, %d harmless\n", refused, harmless);
+  EXPECT_GT(refused, 100);
+}
+
+TEST(Protocol, RandomDamageNeverGetsPast) {
+  const unsigned seed = 4711;
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  for (const Kind& kind : all_kinds())
+    for (int trial = 0; trial < 3000; ++trial) {
+      std::vector<std::byte> bytes = kind.bytes;
+      for (unsigned i = 1 + random() % 4; i > 0; --i) bytes[random() % bytes.size()] = std::byte(random());
+      if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+      try {
+        kind.read_and_write_again(bytes);
+      } catch (const MalformedMessage&) {
+        continue;  // anything else fails the test
+      }
+    }
+}
+
+// The limits that a message can cross, each crossed by one.
+TEST(Protocol, LimitsAreKept) {
+  const auto refused = [](const RenderRequest& r) {
+    EXPECT_THROW(decode_request(encode(r)), MalformedMessage);
+  };
+  RenderRequest r = some_request(false, false);
+  r.planes.count = max_planes;
+  EXPECT_NO_THROW(decode_request(encode(r)));
+  r.planes.count = max_planes + 1;
+  refused(r);
+  r = some_request(false, false);
+  r.planes.count = -1;
+  refused(r);
+  r = some_request(false, false);
+  r.clip_planes.resize(limits::max_clip_planes);
+  EXPECT_NO_THROW(decode_request(encode(r)));
+  r.clip_planes.resize(limits::max_clip_planes + 1);
+  refused(r);
+  r = some_request(false, false);
+  r.window = {0, 0, 8193, 8192};
+  refused(r);
+  r = some_request(false, false);
+  r.viewport.width = limits::max_viewport_extent + 1;
+  refused(r);
+  r = some_request(false, false);
+  r.window.width = -1;
+  refused(r);
+  r = some_request(false, false);
+  r.viewport.x = -limits::max_viewport_offset - 1;
+  refused(r);
+  r = some_request(false, false);
+  std::get<TransferFunction>(r.classification).entries.resize(limits::max_table_entries + 1);
+  refused(r);
+  std::get<TransferFunction>(r.classification).entries.resize(1);
+  refused(r);
+  r = some_request(false, true);
+  r.depth->depth.pop_back();
+  refused(r);
+
+  VolumeDescription v = some_volume();
+  v.size[1] = max_axis_texels + 1;
+  EXPECT_THROW(decode_volume(encode(v)), MalformedMessage);
+  v = some_volume();
+  v.size[0] = 0;
+  EXPECT_THROW(decode_volume(encode(v)), MalformedMessage);
+  v = some_volume();
+  v.stored.high[2] = v.size[2] + 1;
+  EXPECT_THROW(decode_volume(encode(v)), MalformedMessage);
+  v = some_volume();
+  v.stored.high[0] = v.stored.low[0];
+  EXPECT_THROW(decode_volume(encode(v)), MalformedMessage);
+
+  EXPECT_THROW(decode_hello(encode(Hello{0})), MalformedMessage);
+  EXPECT_THROW(decode_hello(encode(Hello{limits::max_ranks + 1})), MalformedMessage);
+  EXPECT_THROW(decode_size(encode_size(limits::max_window_pixels * 16 + 1)), MalformedMessage);
+  EXPECT_EQ(decode_text(encode_text(std::string(5000, 'x'))).size(), limits::max_text_bytes);
+}
+
+TEST(Protocol, APeersTextCannotSteerATerminal) {
+  EXPECT_EQ(decode_text(encode_text("no\nway\033[2J")), "no way [2J");
+}
+
+TEST(Protocol, HeadersOfOthersAreRefused) {
+  MessageHeader header;
+  header.type = MessageType::render;
+  EXPECT_NO_THROW(check(header, 100));
+  header.payload_bytes = 101;
+  EXPECT_THROW(check(header, 100), MalformedMessage);
+  header = {.type = MessageType::render};
+  header.magic = 0x20544547;  // "GET "
+  EXPECT_THROW(check(header, 100), MalformedMessage);
+  header = {.type = MessageType::render};
+  ++header.version;
+  EXPECT_THROW(check(header, 100), MalformedMessage);
+  header = {.type = MessageType(0)};
+  EXPECT_THROW(check(header, 100), MalformedMessage);
+  header = {.type = MessageType(int(MessageType::last) + 1)};
+  EXPECT_THROW(check(header, 100), MalformedMessage);
+}
+
+}  // namespace
+}  // namespace understudy::compositor

@@ -232,10 +232,23 @@ HWY_INLINE void skip_empty(Packet& rays, const Constants& constants) {
   }
 }
 
+/// One sample of every ray on its way through the three passes.
+struct Located {
+  alignas(64) std::array<std::uint32_t, lanes> block, corner;  // where the cell's texels are
+  Ints weights;                                                // along x
+  Floats y, z, border_weight;
+};
+
+struct Classified {
+  alignas(64) std::array<std::uint32_t, lanes> entry;  // as an index of floats
+  Floats between;                                      // fraction of the way to the next entry
+};
+
 template <bool with_border, bool nearest>
-HWY_INLINE void sample(const Packet& rays, const Constants& constants, std::array<Floats, 4>& pixels) {
+HWY_INLINE void locate(const Packet& rays, const Constants& constants, Located& out) {
   const FloatTag f;
   const IntTag d;
+  const hn::RebindToUnsigned<IntTag> u;
   const Position p = position_of(rays, constants);
   std::array<Ints, 3> cell;
   std::array<Floats, 3> fraction;
@@ -257,50 +270,81 @@ HWY_INLINE void sample(const Packet& rays, const Constants& constants, std::arra
       hn::Add(hn::And(cell[0], seven),
               hn::ReorderWidenMulAccumulate(d, hn::BitCast(ShortTag(), yz), hn::BitCast(ShortTag(), strides),
                                             hn::Zero(d), unused));
-  alignas(64) std::uint32_t block_of[lanes], corner_of[lanes];
-  const hn::RebindToUnsigned<IntTag> u;
-  hn::Store(hn::BitCast(u, block), u, block_of);
-  hn::Store(hn::BitCast(u, corner), u, corner_of);
-  const std::uint8_t* corners[lanes];
-#pragma GCC unroll 16
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-    corners[lane] = reinterpret_cast<const std::uint8_t*>(constants.blocks[block_of[lane]]) + corner_of[lane];
+  hn::Store(hn::BitCast(u, block), u, out.block.data());
+  hn::Store(hn::BitCast(u, corner), u, out.corner.data());
 
   // Weights along x as negative 16-bit integers, -2^15 (1 - s) and -2^15 s: one is representable that way, and
   // a power of two leaves texel values exact.
   const Ints high = truncated(hn::MulAdd(fraction[0], hn::Set(f, 32768.0F), hn::Set(f, 0.5F)));
-  const Ints weights = hn::Sub(hn::Xor(high, hn::Set(d, 0x8000)), hn::ShiftLeft<16>(high));
-  const Edges e = transposed(edges_of_column<0>(corners, weights), edges_of_column<1>(corners, weights),
-                             edges_of_column<2>(corners, weights), edges_of_column<3>(corners, weights));
-  Floats value = mix(mix(e.low_y_low_z, e.high_y_low_z, fraction[1]),
-                     mix(e.low_y_high_z, e.high_y_high_z, fraction[1]), fraction[2]);
+  out.weights = hn::Sub(hn::Xor(high, hn::Set(d, 0x8000)), hn::ShiftLeft<16>(high));
+  out.y = fraction[1];
+  out.z = fraction[2];
+
   if (with_border) {
     // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
     // multiply.
     const Floats one = hn::Set(f, 1.0F);
-    Floats weight = one;
+    out.border_weight = one;
 #pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Floats beyond = hn::Min(hn::Abs(hn::Sub(p.free[axis], p.clamped[axis])), one);
-      weight = hn::Mul(weight, hn::NegMulAdd(beyond, constants.border_weight[axis], one));
+      out.border_weight = hn::Mul(out.border_weight, hn::NegMulAdd(beyond, constants.border_weight[axis], one));
     }
-    value = mix(constants.border, value, weight);
   }
+}
+
+template <bool with_border>
+HWY_INLINE void classify(const Located& at, const Packet& rays, const Constants& constants, Classified& out) {
+  const FloatTag f;
+  const IntTag d;
+  const std::uint8_t* corners[lanes];
+#pragma GCC unroll 16
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    corners[lane] = reinterpret_cast<const std::uint8_t*>(constants.blocks[at.block[lane]]) + at.corner[lane];
+  const Edges e = transposed(edges_of_column<0>(corners, at.weights), edges_of_column<1>(corners, at.weights),
+                             edges_of_column<2>(corners, at.weights), edges_of_column<3>(corners, at.weights));
+  Floats value =
+      mix(mix(e.low_y_low_z, e.high_y_low_z, at.y), mix(e.low_y_high_z, e.high_y_high_z, at.y), at.z);
+  if (with_border) value = mix(constants.border, value, at.border_weight);
 
   const Floats place = hn::MulAdd(value, constants.table_scale, constants.table_offset);
   const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);
   const Ints entry = truncated(kept);
-  const Floats between = hn::Sub(kept, hn::ConvertTo(f, entry));
+  out.between = hn::Sub(kept, hn::ConvertTo(f, entry));
   const auto ended = hn::RebindMask(d, hn::Gt(rays.k, rays.last));
-  alignas(64) std::uint32_t entry_of[lanes];
-  hn::Store(hn::BitCast(u, hn::ShiftLeft<3>(hn::IfThenElse(ended, constants.clear_entry, entry))), u, entry_of);
+  const hn::RebindToUnsigned<IntTag> u;
+  hn::Store(hn::BitCast(u, hn::ShiftLeft<3>(hn::IfThenElse(ended, constants.clear_entry, entry))), u,
+            out.entry.data());
+}
+
+HWY_INLINE void compose(const Classified& at, const Constants& constants, std::array<Floats, 4>& pixels) {
   const float* entries[lanes];
 #pragma GCC unroll 16
-  for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = constants.entries + entry_of[lane];
-  pixels[0] = composed<0>(pixels[0], entries, between);
-  pixels[1] = composed<1>(pixels[1], entries, between);
-  pixels[2] = composed<2>(pixels[2], entries, between);
-  pixels[3] = composed<3>(pixels[3], entries, between);
+  for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = constants.entries + at.entry[lane];
+  pixels[0] = composed<0>(pixels[0], entries, at.between);
+  pixels[1] = composed<1>(pixels[1], entries, at.between);
+  pixels[2] = composed<2>(pixels[2], entries, at.between);
+  pixels[3] = composed<3>(pixels[3], entries, at.between);
+}
+
+/// Eight samples of every ray. Three passes: within each, samples do not wait for one another, and the
+/// processor's window holds several of them; one after the other, a sample's chain of some hundred cycles would
+/// be all it sees.
+template <bool with_border, bool nearest>
+HWY_INLINE void take_samples(Packet& rays, const Constants& constants, std::array<Floats, 4>& pixels) {
+  const Floats one = hn::Set(FloatTag(), 1.0F);
+  std::array<Located, samples_between_tests> located;
+  std::array<Classified, samples_between_tests> classified;
+  Packet ahead = rays;
+  for (Located& at : located) {
+    locate<with_border, nearest>(ahead, constants, at);
+    ahead.k = hn::Add(ahead.k, one);
+  }
+  for (std::size_t i = 0; i < located.size(); ++i) {
+    classify<with_border>(located[i], rays, constants, classified[i]);
+    rays.k = hn::Add(rays.k, one);
+  }
+  for (const Classified& at : classified) compose(at, constants, pixels);
 }
 
 /// Alpha of every ray, from the blended layout to one lane per ray.
@@ -349,10 +393,7 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
         const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
         const Floats block = hn::Set(f, float(samples_between_tests));
         taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
-        for (int i = 0; i < samples_between_tests; ++i) {
-          sample<with_border, nearest>(rays, constants, pixels);
-          rays.k = hn::Add(rays.k, one);
-        }
+        take_samples<with_border, nearest>(rays, constants, pixels);
         const Floats room = hn::Sub(one, alphas(pixels));
         const auto opaque = hn::And(hn::Lt(room, hn::Set(f, scene.termination)), hn::Le(rays.k, rays.last));
         counts.rays_terminated += hn::CountTrue(f, opaque);

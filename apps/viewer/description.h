@@ -1,0 +1,23 @@
+// Writes down a frame so that somebody else can recompute its picture, in another program and in double
+// precision.
+//
+// Pixels: window coordinates of `viewport`, pixel (0, 0) at the lower left, its centre at (0.5, 0.5).
+// Matrices: 16 floats, column-major, exactly as passed to OpenGL. For each slice in the order given: where the
+// line through a pixel's centre meets the plane dot(normal_texture, t) = offset inside [0,1]^3, sample the
+// volume at t (linear between voxel centres at (i + 0.5) / size, clamped to the edge), take its colour from
+// `classification`, and blend it as colour = alpha * colour_slice + (1 - alpha) * colour. The first slice falls
+// onto the background (or frame and axes).
+#pragma once
+
+#include <string>
+
+#include "apps/viewer/options.h"
+#include "apps/viewer/scene.h"
+
+namespace viewer {
+
+/// Throws Error (bad_file) when the file cannot be written.
+void write_description(const std::string& path, const Options& options, const Scene& scene,
+                       const DrawnFrame& frame, int frame_index);
+
+}  // namespace viewer

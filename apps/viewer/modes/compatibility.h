@@ -1,0 +1,14 @@
+// What the two compatibility-profile modes share: matrix stacks and opaque geometry in immediate mode.
+#pragma once
+
+#include "apps/viewer/camera.h"
+#include "apps/viewer/opaque_geometry.h"
+
+namespace viewer {
+
+void load_matrices(const Matrices& matrices);
+
+/// Fixed function, without textures or program; loads the matrices itself.
+void draw_opaque_immediate(const OpaqueGeometry& geometry, const Matrices& matrices);
+
+}  // namespace viewer

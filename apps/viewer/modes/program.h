@@ -1,0 +1,13 @@
+// Compiles and links a GLSL program of one vertex and one fragment shader.
+#pragma once
+
+#include <string>
+
+#include "apps/viewer/modes/gl_objects.h"
+
+namespace viewer {
+
+/// Throws Error (no_opengl) with the compiler's log; `name` says which program.
+Program link_program(const std::string& name, const char* vertex_source, const char* fragment_source);
+
+}  // namespace viewer

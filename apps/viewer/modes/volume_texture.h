@@ -1,0 +1,33 @@
+// The volume's 3-D texture and the 1-D colour table, both linear and clamped to the edge.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "apps/viewer/modes/gl_objects.h"
+#include "apps/viewer/texels.h"
+#include "apps/viewer/transfer_function.h"
+
+namespace viewer {
+
+struct VolumeTextureFormat {
+  GLint internal_format;
+  GLenum format;
+  GLenum type;
+  std::string_view name;  ///< of the internal format
+};
+
+/// LUMINANCE in a compatibility profile, the RED formats in a core profile (there is no luminance there).
+VolumeTextureFormat luminance_format(TexelFormat format);
+VolumeTextureFormat red_format(TexelFormat format);
+inline constexpr VolumeTextureFormat rgba_format = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, "GL_RGBA8"};
+
+/// Uploads `data`. Throws Error (bad_file), naming `file` and the limit, when the volume does not fit the
+/// driver.
+Texture make_volume_texture(const VolumeTextureFormat& format, const VolumeSize& size, const void* data,
+                            const std::string& file);
+
+Texture make_table_texture();
+void upload_table(const Texture& texture, const Table& table);
+
+}  // namespace viewer

@@ -1,0 +1,140 @@
+#include "apps/viewer/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <map>
+
+#include "apps/viewer/error.h"
+
+namespace viewer {
+
+namespace {
+
+constexpr int max_window_edge = 16384;
+constexpr int max_frames = 1'000'000;
+
+std::string preset_list() {
+  std::string list;
+  int number = 0;
+  for (const Preset& preset : presets())
+    list += fmt::format("\n  {} {}: {}", ++number, preset.name, preset.meaning);
+  return list;
+}
+
+// CLI11 validators answer with a message, or with nothing when the text is right.
+const CLI::Validator is_preset(
+    [](std::string& text) {
+      return find_preset(text) ? std::string()
+                               : fmt::format("no preset '{}'; there are:{}", text, preset_list());
+    },
+    "PRESET");
+
+// CLI::Range lets NaN pass.
+CLI::Validator number_between(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool valid = !text.empty() && *end == '\0' && value >= low && value <= high;
+        return valid ? std::string() : fmt::format("{} is not a number from {} to {}", text, low, high);
+      },
+      fmt::format("FLOAT in [{} - {}]", low, high));
+}
+
+}  // namespace
+
+std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
+  CLI::App app{"Shows a volume as view-aligned slices through a 3-D texture, in a window or off screen."};
+  app.name("understudy-viewer");
+  std::string mode = "table", preset = "engine", type, surface = "any";
+  VolumeSize size{};
+  Vec3 spacing{};
+
+  app.add_option("volume", options.volume_path,
+                 "Volume file: raw voxels (name.XxYxZ, or with --size), also .gz; NRRD; NIfTI")
+      ->required();
+  auto* size_option =
+      app.add_option("--size", size, "Voxels along x, y and z of a raw file")->type_name("X Y Z");
+  auto* type_option = app.add_option("--type", type, "Voxel type of a raw file")
+                          ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "f32"}));
+  app.add_flag("--big-endian", options.hints.big_endian, "The raw file has the most significant byte first");
+  auto* spacing_option = app.add_option("--spacing", spacing, "Distances between voxels, instead of the file's")
+                             ->type_name("X Y Z");
+
+  app.add_option(
+         "--mode", mode,
+         "rgba (colours per voxel, fixed function), table (1-D table in GLSL 1.20) or core (OpenGL 3.3 core)")
+      ->check(CLI::IsMember({"rgba", "table", "core"}))
+      ->capture_default_str();
+  app.add_option("--slices", options.slices,
+                 "Slices across the box's diagonal (default: one per finest voxel edge)")
+      ->check(CLI::Range(1, max_slices));
+  app.add_option("--preset", preset, "Transfer function by name or number:" + preset_list())
+      ->check(is_preset)
+      ->capture_default_str();
+  app.add_flag("!--no-frame", options.frame_and_axes, "Without the box's frame and the axes");
+  app.add_option("--background", options.background, "Background colour, each 0 to 1")
+      ->check(number_between(0.0, 1.0))
+      ->type_name("R G B");
+
+  app.add_option("--azimuth", options.camera.azimuth, "Degrees around the z axis")
+      ->check(number_between(-1e6, 1e6))
+      ->capture_default_str();
+  app.add_option("--elevation", options.camera.elevation, "Degrees above the xy plane")
+      ->check(number_between(-90.0, 90.0))
+      ->capture_default_str();
+  app.add_option("--distance", options.camera.distance, "From the eye to the box's centre, in box diagonals")
+      ->check(number_between(min_distance, max_distance))
+      ->capture_default_str();
+  app.add_flag("--ortho", options.camera.orthographic, "Orthographic instead of perspective");
+  app.add_option("--window-size", options.window_size, "Picture in pixels")
+      ->check(CLI::Range(1, max_window_edge))
+      ->type_name("W H")
+      ->capture_default_str();
+
+  app.add_flag("--offscreen", options.offscreen, "Draw with EGL, without a window or a display");
+  app.add_option("--offscreen-surface", surface, "What to draw into off screen")
+      ->check(CLI::IsMember({"any", "pbuffer", "framebuffer"}))
+      ->capture_default_str();
+  app.add_option(
+         "--frames", options.frames,
+         "Frames to draw before leaving (default: 1 off screen or with a screenshot or description, otherwise "
+         "until the window is closed)")
+      ->check(CLI::Range(1, max_frames));
+  app.add_option("--orbit", options.orbit, "Degrees of azimuth added from each frame to the next")
+      ->check(number_between(-1e6, 1e6));
+  app.add_option("--screenshot", options.screenshot, "Write the last frame as PNG");
+  app.add_option("--screenshot-frames", options.screenshot_folder,
+                 "Write every frame as frame_NNNN.png into a folder");
+  app.add_option("--describe", options.description, "Write as JSON what is needed to recompute the last frame");
+  app.add_flag("--print-times", options.print_times, "Print the milliseconds of each frame, and their median");
+  app.footer(
+      "Drag with the left button to rotate, with the right to zoom (or turn the wheel). Keys: 1 to 5 presets,\n"
+      "o orthographic or perspective, q or Esc quits.\n"
+      "Exit status: 0 done, 1 a file is missing, damaged or does not fit, 2 wrong options, 3 no OpenGL.");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? static_cast<int>(ExitCode::success)
+                                : static_cast<int>(ExitCode::bad_command_line);
+  }
+
+  if (size_option->count() > 0) options.hints.size = size;
+  if (type_option->count() > 0) options.hints.type = scalar_type_named(type);
+  if (spacing_option->count() > 0) options.hints.spacing = spacing;
+  options.mode = *mode_named(mode);
+  options.preset = find_preset(preset);
+  options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},
+                                                            {"pbuffer", OffscreenSurface::pbuffer},
+                                                            {"framebuffer", OffscreenSurface::framebuffer}}
+                        .at(surface);
+  const bool leaves_something =
+      !options.screenshot.empty() || !options.screenshot_folder.empty() || !options.description.empty();
+  if (options.frames == 0 && (options.offscreen || leaves_something)) options.frames = 1;
+  return std::nullopt;
+}
+
+}  // namespace viewer

@@ -1,0 +1,45 @@
+// The viewer's command line.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "apps/viewer/camera.h"
+#include "apps/viewer/modes/mode.h"
+#include "apps/viewer/volume_file.h"
+
+namespace viewer {
+
+enum class OffscreenSurface { any, pbuffer, framebuffer };
+
+struct Options {
+  std::string volume_path;
+  VolumeHints hints;
+
+  ModeKind mode = ModeKind::table;
+  int slices = 0;  ///< across the box's diagonal; 0: one per finest voxel edge
+  const Preset* preset = nullptr;
+  bool frame_and_axes = true;
+  std::array<double, 3> background{0, 0, 0};
+
+  Camera camera;
+  std::array<int, 2> window_size{512, 512};
+
+  bool offscreen = false;
+  OffscreenSurface surface = OffscreenSurface::any;
+
+  int frames = 0;    ///< 0: until the window is closed
+  double orbit = 0;  ///< degrees of azimuth added from each frame to the next
+
+  std::string screenshot;         ///< PNG of the last frame; empty: none
+  std::string screenshot_folder;  ///< PNG of every frame; empty: none
+  std::string description;        ///< JSON of the last frame; empty: none
+  bool print_times = false;
+};
+
+/// Fills `options`; nullopt to go on, otherwise the exit status (after --help, or after a message about a
+/// mistake).
+std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options);
+
+}  // namespace viewer

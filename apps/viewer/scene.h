@@ -1,0 +1,65 @@
+// The volume and everything around it, drawn into the current framebuffer of the current context.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "apps/viewer/modes/mode.h"
+#include "apps/viewer/options.h"
+
+namespace viewer {
+
+/// What stays the same about the volume over all frames; kept when the texels have gone to OpenGL.
+struct VolumeFacts {
+  std::string file;
+  VolumeSize size{};
+  Vec3 spacing{};
+  ScalarType type = ScalarType::u8;
+  TexelFormat texel_format = TexelFormat::unorm8;
+  double value_at_0 = 0;
+  double value_at_1 = 0;
+  std::int64_t not_finite = 0;
+};
+
+/// Everything that determined one frame's picture.
+struct DrawnFrame {
+  Camera camera;
+  Matrices matrices;
+  int width = 0;
+  int height = 0;
+  SliceStack stack;
+};
+
+class Scene {
+ public:
+  /// Needs the mode's context current. `volume` is taken over. Prints one line about the volume, and warnings.
+  Scene(const Options& options, Volume volume);
+
+  /// Clears and draws; does not swap. Throws Error (no_opengl) when OpenGL reports an error.
+  DrawnFrame draw(const Camera& camera, int width, int height);
+
+  void set_preset(const Preset& preset);
+
+  const VolumeFacts& volume() const { return volume_; }
+  const Box& box() const { return box_; }
+  const Preset& preset() const { return *preset_; }
+  const Table& table() const { return table_; }
+  /// Slice spacing over reference distance: the exponent of the opacity correction.
+  double opacity_exponent() const;
+  int slices_across_diagonal() const { return slices_across_diagonal_; }
+  std::string_view texture_format() const { return mode_->texture_format(); }
+
+ private:
+  VolumeFacts volume_;
+  Box box_;
+  int slices_across_diagonal_;
+  bool frame_and_axes_;
+  std::array<double, 3> background_;
+  OpaqueGeometry opaque_;
+  std::unique_ptr<Mode> mode_;
+  const Preset* preset_ = nullptr;
+  Table table_{};
+};
+
+}  // namespace viewer

@@ -1,0 +1,47 @@
+// A scalar volume as it stands in a file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/viewer/vector_math.h"
+
+namespace viewer {
+
+enum class ScalarType { u8, i8, u16, i16, f32 };
+
+/// "u8", "i8", "u16", "i16" or "f32".
+std::string_view name_of(ScalarType type);
+std::optional<ScalarType> scalar_type_named(std::string_view name);
+std::size_t bytes_per_voxel(ScalarType type);
+
+using VolumeSize = std::array<std::int64_t, 3>;
+
+/// No volume with a longer edge or more bytes is read: beyond what any 3-D texture holds.
+inline constexpr std::int64_t max_edge_voxels = 1 << 16;
+inline constexpr std::int64_t max_volume_bytes = std::int64_t{1} << 38;
+
+/// Distances between voxels are believed in this range, from atoms to galaxies: beyond it squares overflow.
+inline constexpr double min_spacing = 1e-30;
+inline constexpr double max_spacing = 1e30;
+
+struct Volume {
+  std::string file;
+  VolumeSize size{};      ///< voxels along x, y, z
+  Vec3 spacing{1, 1, 1};  ///< distance between voxel centres, any unit
+  ScalarType type = ScalarType::u8;
+  std::vector<std::byte> voxels;  ///< x fastest, byte order of this machine
+};
+
+/// "256x256x110"
+std::string text_of(const VolumeSize& size);
+
+/// Bytes of a volume. Throws Error when an edge is below 1 or a limit above is passed; `where` names the file.
+std::int64_t volume_bytes(const VolumeSize& size, ScalarType type, const std::string& where);
+
+}  // namespace viewer

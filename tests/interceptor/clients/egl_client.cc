@@ -1,0 +1,83 @@
+// A program of EGL that needs no display: handles are plain numbers, and the test driver takes them.
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/gl.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../driver/driver.h"
+
+namespace {
+
+EGLDisplay display;
+const auto surface = reinterpret_cast<EGLSurface>(20);
+
+EGLContext create(EGLenum api, EGLContext share = EGL_NO_CONTEXT) {
+  eglBindAPI(api);
+  return eglCreateContext(display, nullptr, share, nullptr);
+}
+bool current(EGLContext context, EGLSurface draw) {
+  return eglMakeCurrent(display, draw, draw, context) == EGL_TRUE;
+}
+
+void one_frame() {
+  EGLContext context = create(EGL_OPENGL_API);
+  current(context, surface);
+  glClear(0);
+  eglSwapBuffers(display, surface);
+  const auto swap =
+      reinterpret_cast<PFNEGLSWAPBUFFERSWITHDAMAGEKHRPROC>(eglGetProcAddress("eglSwapBuffersWithDamageKHR"));
+  swap(display, surface, nullptr, 0);
+  if (current(context, reinterpret_cast<EGLSurface>(bad_drawable))) say("app: should have failed\n");
+  glClear(0);
+  eglReleaseThread();
+  eglDestroyContext(display, context);
+}
+
+void opengl_es() {
+  EGLContext context = create(EGL_OPENGL_ES_API);
+  current(context, surface);
+  glClear(0);
+  eglSwapBuffers(display, surface);
+}
+
+void terminated() {
+  EGLContext first = create(EGL_OPENGL_API);
+  create(EGL_OPENGL_API, first);
+  current(first, surface);
+  current(EGL_NO_CONTEXT, EGL_NO_SURFACE);
+  eglTerminate(display);
+}
+
+void libraries() {
+  current(create(EGL_OPENGL_API), surface);
+  FILE* maps = fopen("/proc/self/maps", "r");
+  bool glx = false;
+  bool egl = false;
+  char line[4096];
+  while (maps != nullptr && fgets(line, sizeof line, maps) != nullptr) {
+    glx |= strstr(line, "/driver/libGLX.so.0") != nullptr;
+    egl |= strstr(line, "/driver/libEGL.so.1") != nullptr;
+  }
+  say("app: driver's GLX %s, EGL %s\n", glx ? "loaded" : "not loaded", egl ? "loaded" : "not loaded");
+}
+
+struct Scene {
+  const char* name;
+  void (*play)();
+};
+constexpr Scene scenes[] = {
+    {"one_frame", one_frame}, {"opengl_es", opengl_es}, {"terminated", terminated}, {"libraries", libraries}};
+
+}  // namespace
+
+int main(int, char** arguments) {
+  display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
+  for (const Scene& scene : scenes) {
+    if (strcmp(arguments[1], scene.name) == 0) {
+      scene.play();
+      return 0;
+    }
+  }
+  return 2;
+}

@@ -1,0 +1,75 @@
+// A body for tests: it says what the door tells it, and which calls reach its table.
+#include "interceptor/body.h"
+
+#include <cstdlib>
+
+#include "driver.h"
+
+using namespace understudy::interceptor;
+using understudy::spu::DispatchTable;
+
+namespace {
+
+DoorServices door;
+DispatchTable table;
+thread_local std::uint64_t calls = 0;
+
+const char* text(FrameEnd kind) {
+  switch (kind) {
+    case FrameEnd::swap:
+      return "swap";
+    case FrameEnd::wait:
+      return "wait";
+    case FrameEnd::make_current:
+      return "make_current";
+    case FrameEnd::destroy:
+      return "destroy";
+  }
+  return "?";
+}
+
+void clear(GLbitfield mask) {
+  say("body: glClear\n");
+  door.driver->Clear(mask);
+}
+void flush() {
+  say("body: glFlush\n");
+  door.driver->Flush();
+}
+
+void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
+                     std::uintptr_t drawable) {
+  say("body: current %lu share %lu %s %s drawable %lu\n", context, share,
+      system == WindowSystem::glx ? "glx" : "egl", desktop_gl ? "desktop" : "es", drawable);
+  ThreadState& thread = *door.thread_state();
+  thread.table = desktop_gl ? &table : door.driver;
+  thread.calls = &calls;
+}
+void context_leaving() {
+  say("body: leaving after %lu calls\n", calls);
+  calls = 0;
+}
+void context_destroyed(std::uintptr_t context) {
+  say("body: destroyed %lu\n", context);
+}
+void before_frame_end(FrameEnd kind) {
+  say("body: before %s\n", text(kind));
+}
+void after_frame_end(FrameEnd kind) {
+  say("body: after %s\n", text(kind));
+}
+
+const BodyServices services{body_abi,           &context_current,  &context_leaving,
+                            &context_destroyed, &before_frame_end, &after_frame_end};
+
+}  // namespace
+
+DRIVER_FUNCTION const BodyServices* understudy_open_body(const DoorServices* services_of_door) {
+  say("body: open\n");
+  if (std::getenv("TEST_BODY_REFUSES") != nullptr) return nullptr;
+  door = *services_of_door;
+  table = *door.driver;
+  table.Clear = &clear;
+  table.Flush = &flush;
+  return &services;
+}

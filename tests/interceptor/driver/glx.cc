@@ -1,0 +1,55 @@
+// libGLX.so.0 of the test driver.
+#include <dlfcn.h>
+#include <string.h>
+
+#include "driver.h"
+
+static Handles handles;
+
+DRIVER_FUNCTION long glXCreateContext(void*, void*, long share, int) {
+  const long handle = handles.take();
+  say("driver: create %ld share %ld\n", handle, share);
+  return handle;
+}
+DRIVER_FUNCTION long glXCreateContextAttribsARB(void*, void*, long share, int, const int*) {
+  const long handle = handles.take();
+  say("driver: create %ld share %ld\n", handle, share);
+  return handle;
+}
+DRIVER_FUNCTION void glXDestroyContext(void*, long handle) {
+  handles.give_back(handle);
+  say("driver: destroy %ld\n", handle);
+}
+DRIVER_FUNCTION int glXMakeCurrent(void*, unsigned long drawable, long handle) {
+  const bool done = drawable != bad_drawable;
+  say("driver: current %ld drawable %lu%s\n", handle, drawable, done ? "" : " refused");
+  return done;
+}
+DRIVER_FUNCTION int glXMakeContextCurrent(void* display, unsigned long draw, unsigned long, long handle) {
+  return glXMakeCurrent(display, draw, handle);
+}
+DRIVER_FUNCTION void glXSwapBuffers(void*, unsigned long drawable) {
+  say("driver: swap %lu\n", drawable);
+  // Some drivers call exported OpenGL functions of their own: whatever stands under that name in this process.
+  if (auto flush = reinterpret_cast<void (*)()>(dlsym(RTLD_DEFAULT, "glFlush"))) flush();
+}
+DRIVER_FUNCTION void glXWaitGL() {
+  say("driver: wait\n");
+}
+DRIVER_FUNCTION long glXGetCurrentContext() {
+  return 0;
+}
+
+static void clear(unsigned) {
+  say("driver: glClear\n");
+}
+static void vendor_function() {
+  say("driver: glVendorFunction\n");
+}
+
+DRIVER_FUNCTION void* glXGetProcAddressARB(const char* name) {
+  if (strcmp(name, "glClear") == 0) return reinterpret_cast<void*>(&clear);
+  if (strcmp(name, "glVendorFunction") == 0) return reinterpret_cast<void*>(&vendor_function);
+  if (strcmp(name, "glXSwapBuffers") == 0) return reinterpret_cast<void*>(&glXSwapBuffers);
+  return nullptr;
+}

@@ -1,0 +1,9 @@
+// libOpenGL.so.0 of the test driver. It has no glAccum: what a driver lacks can be tested.
+#include "driver.h"
+
+DRIVER_FUNCTION void glClear(unsigned) {
+  say("driver: glClear\n");
+}
+DRIVER_FUNCTION void glFlush() {
+  say("driver: glFlush\n");
+}

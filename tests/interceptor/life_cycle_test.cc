@@ -1,0 +1,236 @@
+// What the body hears and what the driver is asked, in order: the door's side of body.h.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "run_program.h"
+
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using understudy::testing::Outcome;
+using understudy::testing::run_program;
+
+Outcome play(const std::string& client, const std::string& scene, std::vector<std::string> environment = {},
+             const std::string& stage = TEST_STAGE) {
+  environment.push_back("LD_LIBRARY_PATH=" + stage + "/door");
+  environment.push_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
+  return run_program(environment, {TEST_CLIENTS "/" + client, scene});
+}
+
+TEST(LifeCycle, AFrameFromTheFirstContextToItsEnd) {
+  const Outcome outcome = play("glx_client", "one_frame");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.lines(),
+              ElementsAre("driver: glClear",  // no context yet: straight to the driver
+                          "driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",  //
+                          "body: glClear", "driver: glClear",                 //
+                          "body: glFlush", "driver: glFlush",                 //
+                          "body: before swap", "driver: swap 10",
+                          "driver: glFlush",   // the driver's own call: not the body's business
+                          "body: after swap",  //
+                          "body: before make_current", "body: leaving after 2 calls",
+                          "driver: current 0 drawable 0",  //
+                          "driver: glClear",               //
+                          "driver: destroy 1", "body: destroyed 1"));
+}
+
+TEST(LifeCycle, AFailedMakeCurrentLeavesTheOldContextToTheBody) {
+  EXPECT_THAT(play("glx_client", "failed_make_current").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",           //
+                          "body: before make_current", "body: leaving after 0 calls",  //
+                          "driver: current 1 drawable 13 refused",                     //
+                          "body: current 1 share 0 glx desktop drawable 10",           //
+                          "body: glClear", "driver: glClear"));
+}
+
+TEST(LifeCycle, TheSameContextAndDrawableAgainIsNoChange) {
+  EXPECT_THAT(play("glx_client", "same_again").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",             //
+                          "body: before make_current", "driver: current 1 drawable 10",  //
+                          "body: glClear", "driver: glClear",                            //
+                          "body: before make_current", "body: leaving after 1 calls",
+                          "driver: current 1 drawable 11",  // another window is another frame
+                          "body: current 1 share 0 glx desktop drawable 11"));
+}
+
+TEST(LifeCycle, AShareGroupOutlivesItsFirstContext) {
+  EXPECT_THAT(play("glx_client", "share_group").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",  //
+                          "driver: create 2 share 1",                         //
+                          "body: before make_current", "body: leaving after 0 calls",
+                          "driver: current 0 drawable 0",  //
+                          "driver: destroy 1",             // its objects live on in the second
+                          "app: the first is destroyed",   //
+                          "driver: current 2 drawable 10", "body: current 2 share 1 glx desktop drawable 10",
+                          "body: destroyed 1",  //
+                          "body: before make_current", "body: leaving after 0 calls",
+                          "driver: current 0 drawable 0",  //
+                          "driver: destroy 2", "body: destroyed 2"));
+}
+
+TEST(LifeCycle, AHandleThatComesAgainIsAnotherContext) {
+  EXPECT_THAT(play("glx_client", "handle_comes_again").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",           //
+                          "body: before make_current", "body: leaving after 0 calls",  //
+                          "driver: current 0 drawable 0", "driver: destroy 1", "body: destroyed 1",
+                          "driver: create 1 share 0", "driver: current 1 drawable 10",  //
+                          "body: current 2 share 0 glx desktop drawable 10",            //
+                          "body: before make_current", "body: leaving after 0 calls",   //
+                          "driver: current 0 drawable 0", "driver: destroy 1", "body: destroyed 2"));
+}
+
+TEST(LifeCycle, AContextDestroyedWhileCurrentLivesUntilItIsReleased) {
+  EXPECT_THAT(play("glx_client", "destroyed_while_current").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 10",  //
+                          "body: before destroy", "driver: destroy 1",        //
+                          "body: glClear", "driver: glClear", "app: releasing", "body: before make_current",
+                          "body: leaving after 1 calls", "driver: current 0 drawable 0", "body: destroyed 1"));
+}
+
+TEST(LifeCycle, EveryThreadHasItsOwnContextAndCount) {
+  EXPECT_THAT(
+      play("glx_client", "two_threads").lines(),
+      ElementsAre("driver: create 1 share 0", "driver: create 2 share 1",  //
+                  "driver: current 1 drawable 10", "body: open",
+                  "body: current 1 share 0 glx desktop drawable 10", "body: glClear", "driver: glClear",
+                  "driver: current 2 drawable 11", "body: current 2 share 1 glx desktop drawable 11",
+                  "body: glClear", "driver: glClear",  //
+                  "body: before make_current", "body: leaving after 1 calls",
+                  "driver: current 0 drawable 0",      //
+                  "body: glClear", "driver: glClear",  //
+                  "body: before make_current", "body: leaving after 2 calls", "driver: current 0 drawable 0"));
+}
+
+TEST(LifeCycle, GetProcAddressGivesOursWhereTheDriverHasOneAndNothingWhereItHasNone) {
+  EXPECT_THAT(play("glx_client", "addresses").lines(),
+              ElementsAre("app: glClear ours", "app: glXSwapBuffers ours", "app: glAccum null",
+                          "app: glNoSuchFunction null", "driver: glVendorFunction"));
+}
+
+TEST(LifeCycle, AFunctionThatTheDriverLacksIsSaidOnceAndDoesNothing) {
+  const Outcome outcome = play("glx_client", "missing_function");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.lines(),
+              ElementsAre("understudy: the application calls glAccum, which this OpenGL driver lacks; "
+                          "such calls do nothing",
+                          "app: goes on"));
+}
+
+TEST(LifeCycle, AForkedChildGoesStraightToTheDriver) {
+  const Outcome outcome = play("glx_client", "forked");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(
+      outcome.lines(),
+      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                  "body: current 1 share 0 glx desktop drawable 10", "body: glClear", "driver: glClear",
+                  "app: child", "driver: glClear", "driver: swap 10", "driver: glFlush",
+                  "driver: current 1 drawable 11", "driver: create 2 share 0", "driver: current 2 drawable 10",
+                  "driver: glClear",  //
+                  "app: parent, child's status 0", "body: glClear", "driver: glClear",
+                  "body: before make_current", "body: leaving after 2 calls", "driver: current 0 drawable 0"));
+}
+
+const std::vector<std::string> frame_without_body{"driver: glClear",
+                                                  "driver: create 1 share 0",
+                                                  "driver: current 1 drawable 10",
+                                                  "driver: glClear",
+                                                  "driver: glFlush",
+                                                  "driver: swap 10",
+                                                  "driver: glFlush",
+                                                  "driver: current 0 drawable 0",
+                                                  "driver: glClear",
+                                                  "driver: destroy 1"};
+
+TEST(LifeCycle, SwitchedOffTheBodyIsNeverOpenedAndNothingIsSaid) {
+  EXPECT_THAT(play("glx_client", "one_frame", {"UNDERSTUDY_DISABLE=1"}).lines(),
+              ElementsAreArray(frame_without_body));
+}
+
+TEST(LifeCycle, AMissingBodyIsSaidOnceAndTheApplicationDraws) {
+  const Outcome outcome = play("glx_client", "one_frame", {}, TEST_STAGE "/bodiless");
+  EXPECT_EQ(outcome.status, 0);
+  std::vector<std::string> lines = outcome.lines();
+  const auto said = std::stable_partition(lines.begin(), lines.end(),
+                                   [](const std::string& line) { return line.starts_with("driver:"); });
+  ASSERT_EQ(lines.end() - said, 1) << outcome.text;
+  EXPECT_THAT(*said, ::testing::HasSubstr("libunderstudy-body.so"));
+  EXPECT_THAT(*said, ::testing::HasSubstr("the application draws by itself"));
+  EXPECT_TRUE(std::equal(lines.begin(), said, frame_without_body.begin(), frame_without_body.end()))
+      << outcome.text;
+}
+
+TEST(LifeCycle, ABodyThatRefusesIsSaidOnceAndTheApplicationDraws) {
+  const Outcome outcome = play("glx_client", "one_frame", {"TEST_BODY_REFUSES=1"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(outcome.says("declined")) << outcome.text;
+  EXPECT_FALSE(outcome.says("body: glClear")) << outcome.text;
+  EXPECT_TRUE(outcome.says("driver: swap 10")) << outcome.text;
+}
+
+TEST(LifeCycle, AFolderWithoutADriverIsSaidAndTheSystemsIsTaken) {
+  const Outcome outcome =
+      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/door", "UNDERSTUDY_DRIVER_DIR=/nonexistent"},
+                  {TEST_CLIENTS "/glx_client", "addresses"});
+  EXPECT_TRUE(outcome.says("UNDERSTUDY_DRIVER_DIR=/nonexistent holds no libGLX.so.0 or libGL.so.1"))
+      << outcome.text;
+  EXPECT_TRUE(outcome.says("app: glClear ours")) << outcome.text;
+}
+
+// VirtualGL ends the application when the real library turns out to be itself; we look further.
+TEST(LifeCycle, OurselvesAreNoDriver) {
+  const Outcome outcome =
+      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/door", "UNDERSTUDY_DRIVER_DIR=" TEST_STAGE "/door"},
+                  {TEST_CLIENTS "/glx_client", "addresses"});
+  EXPECT_TRUE(outcome.says("not Understudy's own")) << outcome.text;
+  EXPECT_TRUE(outcome.says("app: glClear ours")) << outcome.text;
+}
+
+TEST(LifeCycle, EglsFrame) {
+  const Outcome outcome = play("egl_client", "one_frame");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(
+      outcome.lines(),
+      ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: current 1 drawable 20",
+                  "body: open", "body: current 1 share 0 egl desktop drawable 20", "body: glClear",
+                  "driver: glClear", "body: before swap", "driver: swap 20", "body: after swap",  //
+                  "body: before swap", "driver: swap 20 with damage", "body: after swap",         //
+                  "body: before make_current", "body: leaving after 1 calls",
+                  "driver: current 1 drawable 13 refused", "body: current 1 share 0 egl desktop drawable 20",
+                  "body: glClear", "driver: glClear",  //
+                  "body: before make_current", "body: leaving after 1 calls", "driver: release thread",
+                  "driver: destroy 1", "body: destroyed 1"));
+}
+
+TEST(LifeCycle, AnOpenGlEsContextIsAnnouncedAsSuch) {
+  EXPECT_THAT(play("egl_client", "opengl_es").lines(),
+              ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: current 1 drawable 20",
+                          "body: open", "body: current 1 share 0 egl es drawable 20", "driver: glClear",
+                          "body: before swap", "driver: swap 20", "body: after swap"));
+}
+
+TEST(LifeCycle, EglTerminateEndsTheContextsOfItsDisplay) {
+  EXPECT_THAT(play("egl_client", "terminated").lines(),
+              ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: create 2 share 1",
+                          "driver: current 1 drawable 20", "body: open",
+                          "body: current 1 share 0 egl desktop drawable 20", "body: before make_current",
+                          "body: leaving after 0 calls", "driver: current 0 drawable 0", "driver: terminate",
+                          "body: destroyed 1"));
+}
+
+TEST(LifeCycle, AProgramOfOneWindowSystemLoadsThatOneAlone) {
+  EXPECT_TRUE(play("glx_client", "libraries").says("driver's GLX loaded, EGL not loaded"));
+  EXPECT_TRUE(play("egl_client", "libraries").says("driver's GLX not loaded, EGL loaded"));
+}
+
+}  // namespace

@@ -1,0 +1,9 @@
+// Linked with whichever library the build says, calls glClear.
+#include <stdio.h>
+
+extern "C" void glClear(unsigned mask);
+
+int main() {
+  glClear(0x4000);
+  puts("done");
+}

@@ -1,0 +1,9 @@
+// Linked with libEGL.
+#include <stdio.h>
+
+extern "C" void* eglGetDisplay(void* native);
+
+int main() {
+  eglGetDisplay(nullptr);
+  puts("done");
+}

@@ -1,0 +1,10 @@
+// A program that never touches OpenGL, though it opens a library: says which files are mapped.
+#include <dlfcn.h>
+#include <stdio.h>
+
+int main() {
+  dlopen("libz.so.1", RTLD_NOW);
+  FILE* maps = fopen("/proc/self/maps", "r");
+  for (int c; maps != nullptr && (c = getc(maps)) != EOF;) putchar(c);
+  puts("done");
+}

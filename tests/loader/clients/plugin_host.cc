@@ -1,0 +1,14 @@
+// plugin_host PLUGIN [deep]: opens a plugin, which may have its own OpenGL in front with RTLD_DEEPBIND, and
+// draws.
+#include <dlfcn.h>
+#include <stdio.h>
+
+int main(int count, char** arguments) {
+  void* plugin = dlopen(arguments[1], RTLD_NOW | (count > 2 ? RTLD_DEEPBIND : 0));
+  if (plugin == nullptr) {
+    puts(dlerror());
+    return 3;
+  }
+  reinterpret_cast<void (*)()>(dlsym(plugin, "draw"))();
+  puts("done");
+}

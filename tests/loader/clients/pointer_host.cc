@@ -1,0 +1,8 @@
+#include <stdio.h>
+
+extern "C" void draw();
+
+int main() {
+  draw();
+  puts("done");
+}

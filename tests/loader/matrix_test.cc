@@ -1,0 +1,139 @@
+// The door matrix: which way in is caught by which door. It needs neither X nor a GPU: the driver behind the
+// door (UNDERSTUDY_DRIVER_DIR) says what it is asked; the system's own OpenGL, reached past the door, says
+// nothing.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "doors.h"
+#include "run_program.h"
+
+namespace {
+
+using namespace understudy::testing;
+
+enum class Expected {
+  hit,    ///< the call came through the door
+  miss,   ///< it went to the system's OpenGL as if we were not there, and the application is well
+  crash,  ///< the one pattern that a door cannot serve: README.md of interceptor/ says which and why
+};
+
+struct WayIn {
+  const char* name;
+  std::vector<std::string> command;
+  const char* driver_says;
+  Expected preload;
+  Expected folder;
+  Expected audit;
+
+  Expected expected(Door door) const {
+    switch (door) {
+      case Door::none:
+        return Expected::miss;
+      case Door::preload:
+        return preload;
+      case Door::folder:
+        return folder;
+      case Door::audit:
+        return audit;
+    }
+    return Expected::miss;
+  }
+};
+
+const std::string clients = CLIENTS "/";
+const std::string library_folder = LIBRARY_FOLDER "/";
+constexpr Expected hit = Expected::hit;
+constexpr Expected miss = Expected::miss;
+constexpr Expected crash = Expected::crash;
+const char* const clear = "driver: glClear";
+const char* const display = "driver: eglGetDisplay";
+
+std::vector<std::string> python(const std::string& library) {
+  return {PYTHON, "-c", "import ctypes; ctypes.CDLL('" + library + "').glClear(0x4000); print('done')"};
+}
+
+// clang-format off
+const std::vector<WayIn> ways_in = {
+    // way in                      program                                                         answer   preload folder audit
+    {"LinkedWithLibGL",            {clients + "linked_gl"},                                        clear,   hit,   hit,   hit},
+    {"LinkedWithLibOpenGL",        {clients + "linked_opengl"},                                    clear,   hit,   hit,   hit},
+    {"GetProcAddress",             {clients + "proc_address"},                                     clear,   hit,   hit,   hit},
+    {"OpenedByName",               {clients + "opened", "libGL.so.1", "glClear"},                  clear,   hit,   hit,   hit},
+    {"OpenedByAbsolutePath",       {clients + "opened", library_folder + "libGL.so.1", "glClear"}, clear,   hit,   miss,  hit},
+    {"OpenedByFullFileName",       {clients + "opened", REAL_GL_FILE, "glClear"},                  clear,   hit,   miss,  hit},
+    {"OpenedAsLibOpenGL",          {clients + "opened", "libOpenGL.so.0", "glClear"},              clear,   hit,   hit,   hit},
+    {"PluginWithDeepbind",         {clients + "plugin_host", clients + "libdraws.so", "deep"},     clear,   hit,   hit,   hit},
+    {"PluginOfTheCallersRunpath",  {clients + "runpath_host", "libdraws_by_runpath.so"},           clear,   hit,   hit,   hit},
+    {"GlobalPointerNamedGlClear",  {clients + "pointer_host"},                                     clear,   crash, hit,   hit},
+    {"PythonCtypes",               python("libGL.so.1"),                                           clear,   hit,   hit,   hit},
+    {"PythonCtypesDevelopmentName", python("libGL.so"),                                            clear,   hit,   hit,   hit},
+    {"Plugin",                     {clients + "plugin_host", clients + "libdraws.so"},             clear,   hit,   hit,   hit},
+    {"LinkedWithLibEGL",           {clients + "linked_egl"},                                       display, hit,   hit,   hit},
+    {"OpenedLibEGL",               {clients + "opened", "libEGL.so.1", "eglGetDisplay"},           display, hit,   hit,   hit},
+    {"OpenedLibEGLDevelopmentName", {clients + "opened", "libEGL.so", "eglGetDisplay"},            display, hit,   hit,   hit},
+    {"OpenedLibEGLByAbsolutePath", {clients + "opened", library_folder + "libEGL.so.1", "eglGetDisplay"},
+                                                                                                   display, hit,   miss,  hit},
+};
+// clang-format on
+
+class DoorMatrix : public ::testing::TestWithParam<std::tuple<WayIn, Door>> {};
+
+TEST_P(DoorMatrix, AnswersAsTheTableSays) {
+  const auto& [way, door] = GetParam();
+  if (way.command[0].empty()) GTEST_SKIP() << "no Python here";
+  std::vector<std::string> environment = environment_of(door);
+  environment.push_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
+  const Outcome outcome = run_program(environment, way.command);
+  const std::string cell = std::string(way.name) + " through " + name_of(door) + ": " + outcome.text;
+  switch (way.expected(door)) {
+    case Expected::hit:
+      EXPECT_TRUE(outcome.says(way.driver_says)) << cell;
+      EXPECT_TRUE(outcome.says("done")) << cell;
+      EXPECT_EQ(outcome.status, 0) << cell;
+      break;
+    case Expected::miss:
+      EXPECT_FALSE(outcome.says(way.driver_says)) << cell;
+      EXPECT_TRUE(outcome.says("done")) << cell;
+      EXPECT_EQ(outcome.status, 0) << cell;
+      break;
+    case Expected::crash:
+      EXPECT_EQ(outcome.status, 128 + SIGSEGV) << cell << " (if this works now, say so in the table)";
+      break;
+  }
+}
+
+std::string cell_name(const ::testing::TestParamInfo<DoorMatrix::ParamType>& info) {
+  return std::string(std::get<0>(info.param).name) + "_" + name_of(std::get<1>(info.param));
+}
+
+void PrintTo(const WayIn& way, std::ostream* out) {
+  *out << way.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Doors, DoorMatrix,
+                         ::testing::Combine(::testing::ValuesIn(ways_in),
+                                            ::testing::Values(Door::none, Door::preload, Door::folder,
+                                                              Door::audit)),
+                         cell_name);
+
+class WithoutOpenGl : public ::testing::TestWithParam<Door> {};
+
+TEST_P(WithoutOpenGl, NeitherBodyNorDriverIsLoaded) {
+  const Outcome outcome = run_program(environment_of(GetParam()), {clients + "no_gl"});
+  EXPECT_EQ(outcome.status, 0);
+  ASSERT_TRUE(outcome.says("libz.so") && outcome.says("done")) << outcome.text;
+  for (const char* unwanted : {LIBRARY_FOLDER "/libGL", LIBRARY_FOLDER "/libOpenGL", LIBRARY_FOLDER "/libEGL",
+                               "libGLdispatch", "libunderstudy-body"}) {
+    EXPECT_FALSE(outcome.says(unwanted)) << unwanted << " in\n" << outcome.text;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Doors, WithoutOpenGl, ::testing::Values(Door::preload, Door::folder, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
+}  // namespace

@@ -1,0 +1,95 @@
+// glxinfo and eglinfo ask a driver nearly everything that can be asked. Behind a door they must hear the same.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "doors.h"
+#include "run_program.h"
+
+namespace {
+
+using namespace understudy::testing;
+
+/// An X server for as long as the object lives. Empty display when there is none to be had.
+class VirtualScreen {
+ public:
+  VirtualScreen() {
+    int ready[2];
+    if (pipe(ready) != 0) return;
+    server_ = fork();
+    if (server_ == 0) {
+      close(ready[0]);
+      const std::string descriptor = std::to_string(ready[1]);
+      if (freopen("/dev/null", "w", stderr) == nullptr) _exit(127);
+      // -noreset: else a client that comes just as the last one goes is turned away now and then.
+      execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-noreset", "-screen", "0", "640x480x24",
+             nullptr);
+      _exit(127);
+    }
+    close(ready[1]);
+    std::string number;
+    for (char c; read(ready[0], &c, 1) == 1 && c != '\n';) number += c;
+    close(ready[0]);
+    if (!number.empty()) display_ = ":" + number;
+  }
+  ~VirtualScreen() {
+    if (server_ <= 0) return;
+    kill(server_, SIGTERM);
+    waitpid(server_, nullptr, 0);
+  }
+  VirtualScreen(const VirtualScreen&) = delete;
+  VirtualScreen& operator=(const VirtualScreen&) = delete;
+
+  const std::string& display() const { return display_; }
+
+ private:
+  pid_t server_ = -1;
+  std::string display_;
+};
+
+bool installed(const std::string& program) {
+  return run_program({}, {"sh", "-c", "command -v " + program}).status == 0;
+}
+
+class RealDriver : public ::testing::TestWithParam<Door> {
+ protected:
+  /// What it prints, without Understudy's own lines about a body that is not part of this test.
+  static std::string output(Door door, const std::string& display, const std::vector<std::string>& command) {
+    std::vector<std::string> environment = environment_of(door);
+    environment.push_back("DISPLAY=" + display);
+    environment.push_back("UNDERSTUDY_DISABLE=1");
+    const Outcome outcome = run_program(environment, command);
+    EXPECT_EQ(outcome.status, run_program({"DISPLAY=" + display}, command).status) << outcome.text;
+    return outcome.text;
+  }
+
+  static void expect_same(const std::vector<std::string>& command) {
+    if (!installed("Xvfb")) GTEST_SKIP() << "Xvfb is not installed (Debian: xvfb)";
+    if (!installed(command[0])) GTEST_SKIP() << command[0] << " is not installed (Debian: mesa-utils)";
+    const VirtualScreen screen;
+    ASSERT_FALSE(screen.display().empty()) << "Xvfb does not start";
+    const std::string bare = output(Door::none, screen.display(), command);
+    ASSERT_GT(bare.size(), 500u) << bare;
+    EXPECT_EQ(output(GetParam(), screen.display(), command), bare) << name_of(GetParam());
+  }
+};
+
+TEST_P(RealDriver, GlxinfoSaysTheSame) {
+  expect_same({"glxinfo", "-B"});
+}
+TEST_P(RealDriver, GlxinfoInFullSaysTheSame) {
+  expect_same({"glxinfo", "-l"});
+}
+TEST_P(RealDriver, EglinfoSaysTheSame) {
+  expect_same({"eglinfo"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Doors, RealDriver, ::testing::Values(Door::preload, Door::folder, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
+}  // namespace

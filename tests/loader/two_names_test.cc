@@ -1,0 +1,86 @@
+// Programs that use several names of OpenGL. glibc compares a requested name with the SONAMEs that are loaded
+// already before it asks anyone, so the order decides whether a later name is still ours: every order is tried,
+// on the system's own driver, because it is the real libraries that carry those SONAMEs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "doors.h"
+#include "run_program.h"
+
+namespace {
+
+using namespace understudy::testing;
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+class SeveralNames : public ::testing::TestWithParam<Door> {
+ protected:
+  /// Every name that the program opened must lead to us.
+  static void expect_ours(const std::string& program, const std::vector<std::string>& names) {
+    std::vector<std::string> command{CLIENTS "/" + program};
+    command.insert(command.end(), names.begin(), names.end());
+    const Outcome outcome = run_program(environment_of(GetParam()), command);
+    const std::string which =
+        std::string(name_of(GetParam())) + ": " + program + joined(names) + "\n" + outcome.text;
+    EXPECT_EQ(outcome.status, 0) << which;
+    EXPECT_TRUE(outcome.says("done")) << which;
+    std::size_t ours = 0;
+    for (const std::string& line : outcome.lines()) ours += line.ends_with("/libunderstudy.so") ? 1 : 0;
+    EXPECT_EQ(ours, names.size()) << which;
+  }
+};
+
+const std::vector<std::string> all_names{"libEGL.so.1", "libGL.so.1", "libGLX.so.0", "libOpenGL.so.0"};
+
+TEST_P(SeveralNames, OpenedInEveryOrder) {
+  std::vector<std::string> names = all_names;
+  int orders = 0;
+  do {
+    expect_ours("names", names);
+    ++orders;
+  } while (std::next_permutation(names.begin(), names.end()));
+  EXPECT_EQ(orders, 24);
+}
+
+TEST_P(SeveralNames, LinkedWithOneAndOpeningTheOthersInEveryOrder) {
+  for (const char* linked :
+       {"names_linked_GL", "names_linked_OpenGL", "names_linked_GLX", "names_linked_EGL"}) {
+    std::vector<std::string> names = all_names;
+    do {
+      expect_ours(linked, names);
+    } while (std::next_permutation(names.begin(), names.end()));
+  }
+}
+
+TEST_P(SeveralNames, DevelopmentNamesLeadToTheSame) {
+  expect_ours("names", {"libGL.so", "libGL.so.1", "libEGL.so", "libEGL.so.1", "libGLX.so", "libOpenGL.so"});
+}
+
+TEST_P(SeveralNames, AbsolutePathsAfterNames) {
+  if (GetParam() == Door::folder) GTEST_SKIP() << "a folder of names cannot catch absolute paths";
+  expect_ours("names", {"libGL.so.1", LIBRARY_FOLDER "/libGL.so.1", LIBRARY_FOLDER "/libGLX.so.0",
+                        LIBRARY_FOLDER "/libOpenGL.so.0", LIBRARY_FOLDER "/libEGL.so.1"});
+  expect_ours("names_linked_GL", {LIBRARY_FOLDER "/libGL.so.1", LIBRARY_FOLDER "/libGLX.so.0"});
+}
+
+// The real libGL.so.1 then finds our libGLX.so.0 as its dependency (interceptor/glvnd.cc).
+TEST_P(SeveralNames, ARealLibGlPastTheFolderDoorWorks) {
+  if (GetParam() != Door::folder) GTEST_SKIP() << "only the folder door can be passed by";
+  const Outcome outcome =
+      run_program(environment_of(Door::folder), {CLIENTS "/names", REAL_GL_FILE, "libGLX.so.0"});
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_TRUE(outcome.says(REAL_GL_FILE " from " REAL_GL_FILE)) << outcome.text;
+  EXPECT_TRUE(outcome.says("done")) << outcome.text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Doors, SeveralNames, ::testing::Values(Door::preload, Door::folder, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
+}  // namespace

@@ -176,9 +176,11 @@ std::optional<std::string> describe_texture(const GlContext& context, int unit, 
   if (!context.core) {
     GLfloat scale = 1;
     GLfloat bias = 0;
+    GLboolean mapped = GL_FALSE;
     gl.GetFloatv(GL_RED_SCALE, &scale);
     gl.GetFloatv(GL_RED_BIAS, &bias);
-    if (scale != 1 || bias != 0 || gl.IsEnabled(GL_MAP_COLOR)) return "pixel transfer changes what is read back";
+    gl.GetBooleanv(GL_MAP_COLOR, &mapped);
+    if (scale != 1 || bias != 0 || mapped) return "pixel transfer changes what is read back";
   }
   return std::nullopt;
 }

@@ -138,7 +138,7 @@ struct Constants {
     const auto& first = scene.store->first_block();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       top[axis] = hn::Set(f, scene.top[axis]);
-      rounding[axis] = hn::Set(f, scene.rounding[axis]);
+      rounding[axis] = hn::Set(f, scene.rounding[axis] / BrickStore::block_cells);
       border_weight[axis] = hn::Set(f, scene.has_border[axis] ? 1.0F : 0.0F);
     }
     blocks_x = hn::Set(d, counts[0]);
@@ -155,7 +155,8 @@ struct Constants {
   const std::byte* const* blocks;
   const std::int32_t* distances;  // a byte each; four are gathered
   const float* entries;
-  std::array<Floats, 3> top, rounding, border_weight;
+  std::array<Floats, 3> top, border_weight;
+  std::array<Floats, 3> rounding;  // in blocks
   Ints blocks_x, blocks_y, first_block, clear_entry;
   Floats table_scale, table_offset, table_last, border;
 };
@@ -164,7 +165,16 @@ struct Constants {
 struct Packet {
   std::array<Floats, 3> start, step;
   Floats k, last;
+  std::array<Floats, 3> steps_per_block,
+      direction;  // for leaps: a little too few steps, and the sign of `step`
+
+  bool done() const { return hn::AllTrue(FloatTag(), hn::Gt(k, last)); }
 };
+
+/// Packets side by side that leap together, so that one's chain of instructions fills the gaps of the other's.
+constexpr std::size_t group = 2;
+static_assert(tile_width % (4 * group) == 0);
+using Group = std::array<Packet, group>;
 
 /// Sample positions, each product and sum rounded by itself as everywhere.
 struct Position {
@@ -189,46 +199,44 @@ HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Constants& constants) 
   return hn::Add(hn::Mul(row, constants.blocks_x), hn::Sub(x, constants.first_block));
 }
 
-/// Moves every ray out of empty blocks, to its next sample in a block that shows something or past its last
-/// sample.
-HWY_INLINE void skip_empty(Packet& rays, const Constants& constants) {
+/// Lets the rays that are in an empty block leap; false when there were none.
+HWY_INLINE bool leap(Packet& rays, const Constants& constants) {
   const FloatTag f;
   const IntTag d;
-  std::array<Floats, 3> direction, steps_per_cell;
+  const Floats half = hn::Set(f, 0.5F);
+  const Position p = position_of(rays, constants);
+  std::array<Ints, 3> block;
+  std::array<Floats, 3> steps_to_face;
 #pragma GCC unroll 3
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    direction[axis] = hn::CopySign(hn::Set(f, 1.0F), rays.step[axis]);
-    steps_per_cell[axis] =
-        hn::Div(hn::Set(f, 1 - 1e-6F), hn::Max(hn::Abs(rays.step[axis]), hn::Set(f, 1e-20F)));
+    const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
+    block[axis] = truncated(blocks);
+    // Steps to the face ahead, less one block; rounding must not carry us past it.
+    const Floats in_block = hn::Sub(hn::Sub(blocks, hn::ConvertTo(f, block[axis])), half);
+    const Floats room = hn::Sub(hn::NegMulSub(rays.direction[axis], in_block, half), constants.rounding[axis]);
+    steps_to_face[axis] = hn::Mul(room, rays.steps_per_block[axis]);
   }
-  for (;;) {
-    const Position p = position_of(rays, constants);
-    std::array<Floats, 3> in_block;
-    std::array<Ints, 3> block;
+  const Ints index = block_index(block[0], block[1], block[2], constants);
+  const Floats distance =
+      hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
+  const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Le(rays.k, rays.last));
+  // All blocks fewer than `distance` steps away are empty.
+  Floats steps = hn::Set(f, 1e9F);
 #pragma GCC unroll 3
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
-      block[axis] = truncated(blocks);
-      in_block[axis] = hn::Sub(blocks, hn::ConvertTo(f, block[axis]));
-    }
-    const Ints index = block_index(block[0], block[1], block[2], constants);
-    const Floats distance =
-        hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
-    const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Le(rays.k, rays.last));
-    if (hn::AllFalse(f, empty)) return;
-    // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
-    const Floats half = hn::Set(f, 0.5F);
-    const Floats reach = hn::Sub(distance, half);
-    Floats steps = hn::Set(f, 1e9F);
-#pragma GCC unroll 3
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Floats blocks = hn::NegMulAdd(direction[axis], hn::Sub(in_block[axis], half), reach);
-      const Floats cells =
-          hn::MulSub(blocks, hn::Set(f, float(BrickStore::block_cells)), constants.rounding[axis]);
-      steps = hn::Min(steps, hn::Mul(cells, steps_per_cell[axis]));
-    }
-    const Floats leap = hn::Add(hn::Floor(hn::Max(steps, hn::Zero(f))), hn::Set(f, 1.0F));
-    rays.k = hn::IfThenElse(empty, hn::Add(rays.k, leap), rays.k);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps = hn::Min(steps, hn::MulAdd(distance, rays.steps_per_block[axis], steps_to_face[axis]));
+  const Floats whole = hn::Add(hn::Floor(hn::Max(steps, hn::Zero(f))), hn::Set(f, 1.0F));
+  rays.k = hn::Add(rays.k, hn::IfThenElseZero(empty, whole));
+  return !hn::AllFalse(f, empty);
+}
+
+/// Moves every ray out of empty blocks, to its next sample in a block that shows something or past its last
+/// sample.
+HWY_INLINE void skip_empty(Group& packets, const Constants& constants) {
+  for (bool again = true; again;) {
+    again = false;
+#pragma GCC unroll 2
+    for (Packet& rays : packets) again |= leap(rays, constants);
   }
 }
 
@@ -356,6 +364,29 @@ HWY_INLINE Floats alphas(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveUpper(wide, pair01, pair23));
 }
 
+/// The packet whose lowest left pixel is (x, y) of the strip.
+HWY_INLINE Packet packet_of(const RayStrip& strip, std::size_t x, std::size_t y) {
+  const FloatTag f;
+  const auto load = [&](const auto& values) HWY_ATTR {
+    alignas(64) float packed[lanes];
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t q = 0; q < 4; ++q) packed[4 * row + q] = float(values[(y + row) * tile_width + x + q]);
+    return hn::Load(f, packed);
+  };
+  constexpr float block_cells = BrickStore::block_cells;
+  Packet rays;
+  rays.k = load(strip.first);
+  rays.last = load(strip.last);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    rays.start[axis] = load(strip.start[axis]);
+    rays.step[axis] = load(strip.step[axis]);
+    rays.direction[axis] = hn::CopySign(hn::Set(f, 1.0F), rays.step[axis]);
+    const Floats speed = hn::Max(hn::Abs(rays.step[axis]), hn::Set(f, 1e-20F));
+    rays.steps_per_block[axis] = hn::Div(hn::Set(f, block_cells * (1 - 1e-6F)), speed);
+  }
+  return rays;
+}
+
 template <bool with_border, bool nearest>
 void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
   const FloatTag f;
@@ -365,48 +396,39 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
   const Floats one = hn::Set(f, 1.0F);
   Ints taken = hn::Zero(d);
   for (std::size_t y = 0; y < strip_height; y += rows)
-    for (std::size_t x = 0; x < tile_width; x += 4) {
-      const auto load = [&](const auto& values) HWY_ATTR {
-        alignas(64) float packed[lanes];
-        for (std::size_t row = 0; row < rows; ++row)
-          for (std::size_t q = 0; q < 4; ++q)
-            packed[4 * row + q] = float(values[(y + row) * tile_width + x + q]);
-        return hn::Load(f, packed);
-      };
-      Packet rays;
-      rays.k = load(strip.first);
-      rays.last = load(strip.last);
-      std::array<Floats, 4> pixels;
-      pixels.fill(hn::Zero(f));
-      const auto done = [&]() HWY_ATTR { return hn::AllTrue(f, hn::Gt(rays.k, rays.last)); };
-      if (!done())
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          rays.start[axis] = load(strip.start[axis]);
-          rays.step[axis] = load(strip.step[axis]);
-        }
-
-      while (!done()) {
-        if (skips) {
-          skip_empty(rays, constants);
-          if (done()) break;
-        }
-        const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
-        const Floats block = hn::Set(f, float(samples_between_tests));
-        taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
-        take_samples<with_border, nearest>(rays, constants, pixels);
-        const Floats room = hn::Sub(one, alphas(pixels));
-        const auto opaque = hn::And(hn::Lt(room, hn::Set(f, scene.termination)), hn::Le(rays.k, rays.last));
-        counts.rays_terminated += hn::CountTrue(f, opaque);
-        rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
+    for (std::size_t x = 0; x < tile_width; x += 4 * group) {
+      Group packets;
+      std::array<std::array<Floats, 4>, group> pixels;
+      bool done = true;
+      for (std::size_t g = 0; g < group; ++g) {
+        packets[g] = packet_of(strip, x + 4 * g, y);
+        pixels[g].fill(hn::Zero(f));
+        done = done && packets[g].done();
       }
-
-#pragma GCC unroll 4
-      for (std::size_t q = 0; q < 4; ++q) {
-        alignas(64) float column[lanes];
-        hn::Store(pixels[q], f, column);
-        for (std::size_t row = 0; row < rows; ++row)
-          std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + q));
+      while (!done) {
+        if (skips) skip_empty(packets, constants);
+        done = true;
+        for (std::size_t g = 0; g < group; ++g) {
+          Packet& rays = packets[g];
+          if (rays.done()) continue;
+          const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
+          const Floats block = hn::Set(f, float(samples_between_tests));
+          taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
+          take_samples<with_border, nearest>(rays, constants, pixels[g]);
+          const Floats room = hn::Sub(one, alphas(pixels[g]));
+          const auto opaque = hn::And(hn::Lt(room, hn::Set(f, scene.termination)), hn::Le(rays.k, rays.last));
+          counts.rays_terminated += hn::CountTrue(f, opaque);
+          rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
+          done = done && rays.done();
+        }
       }
+      for (std::size_t g = 0; g < group; ++g)
+        for (std::size_t q = 0; q < 4; ++q) {
+          alignas(64) float column[lanes];
+          hn::Store(pixels[g][q], f, column);
+          for (std::size_t row = 0; row < rows; ++row)
+            std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + 4 * g + q));
+        }
     }
   alignas(64) std::int32_t taken_by_lane[lanes];
   hn::Store(taken, d, taken_by_lane);

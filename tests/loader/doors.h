@@ -1,6 +1,7 @@
 // The three doors, as a user opens them.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ inline const char* name_of(Door door) {
       return "audit";
   }
   return "?";
+}
+
+inline void PrintTo(Door door, std::ostream* out) {
+  *out << name_of(door);
 }
 
 inline std::vector<std::string> environment_of(Door door) {

@@ -63,24 +63,31 @@ TEST_P(SeveralNames, DevelopmentNamesLeadToTheSame) {
   expect_ours("names", {"libGL.so", "libGL.so.1", "libEGL.so", "libEGL.so.1", "libGLX.so", "libOpenGL.so"});
 }
 
-TEST_P(SeveralNames, AbsolutePathsAfterNames) {
-  if (GetParam() == Door::folder) GTEST_SKIP() << "a folder of names cannot catch absolute paths";
-  expect_ours("names", {"libGL.so.1", LIBRARY_FOLDER "/libGL.so.1", LIBRARY_FOLDER "/libGLX.so.0",
-                        LIBRARY_FOLDER "/libOpenGL.so.0", LIBRARY_FOLDER "/libEGL.so.1"});
-  expect_ours("names_linked_GL", {LIBRARY_FOLDER "/libGL.so.1", LIBRARY_FOLDER "/libGLX.so.0"});
+INSTANTIATE_TEST_SUITE_P(Doors, SeveralNames, ::testing::Values(Door::preload, Door::folder, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
+/// The doors that see paths; a folder of names cannot.
+class AbsolutePaths : public SeveralNames {};
+
+TEST_P(AbsolutePaths, LeadToUsEvenWhenTheDriverIsLoadedFromThere) {
+  for (const std::string folder : {LIBRARY_FOLDER, SYSTEM_FOLDER}) {
+    const std::vector<std::string> paths{"libGL.so.1", folder + "/libGL.so.1", folder + "/libGLX.so.0",
+                                         folder + "/libOpenGL.so.0", folder + "/libEGL.so.1"};
+    expect_ours("names", paths);
+    expect_ours("names_linked_GL", paths);
+  }
 }
 
+INSTANTIATE_TEST_SUITE_P(Doors, AbsolutePaths, ::testing::Values(Door::preload, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
 // The real libGL.so.1 then finds our libGLX.so.0 as its dependency (interceptor/glvnd.cc).
-TEST_P(SeveralNames, ARealLibGlPastTheFolderDoorWorks) {
-  if (GetParam() != Door::folder) GTEST_SKIP() << "only the folder door can be passed by";
+TEST(PastTheFolderDoor, ARealLibGlWorks) {
   const Outcome outcome =
       run_program(environment_of(Door::folder), {CLIENTS "/names", REAL_GL_FILE, "libGLX.so.0"});
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_TRUE(outcome.says(REAL_GL_FILE " from " REAL_GL_FILE)) << outcome.text;
   EXPECT_TRUE(outcome.says("done")) << outcome.text;
 }
-
-INSTANTIATE_TEST_SUITE_P(Doors, SeveralNames, ::testing::Values(Door::preload, Door::folder, Door::audit),
-                         [](const auto& info) { return name_of(info.param); });
 
 }  // namespace

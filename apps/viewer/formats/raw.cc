@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <filesystem>
-#include <regex>
 
 #include "apps/viewer/error.h"
 #include "apps/viewer/formats/bytes.h"
@@ -35,24 +35,47 @@ std::string advice_for(const std::string& path, const VolumeSize& size, ScalarTy
   return advice;
 }
 
+// "256x256x110"
+std::optional<VolumeSize> size_in_word(std::string_view word) {
+  VolumeSize size{};
+  const char* at = word.data();
+  const char* const end = at + word.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0 && (at == end || *at++ != 'x')) return std::nullopt;
+    const auto [stop, error] = std::from_chars(at, end, size[axis]);
+    if (error != std::errc()) return std::nullopt;
+    at = stop;
+  }
+  return at == end ? std::optional(size) : std::nullopt;
+}
+
+std::optional<ScalarType> type_in_word(std::string_view word) {
+  for (const auto& [long_name, type] : long_type_names)
+    if (word == long_name) return type;
+  return scalar_type_named(word);
+}
+
 }  // namespace
 
 std::optional<NamedLayout> layout_in_name(const std::string& path) {
-  static const std::regex pattern(
-      R"((?:^|[._-])(\d{1,9})x(\d{1,9})x(\d{1,9})(?:[._-](uint8|int8|uint16|int16|float32|u8|i8|u16|i16|f32))?(?=[._-]|$))");
   const std::string name = std::filesystem::path(path).filename().string();
-  std::smatch match;
-  if (!std::regex_search(name, match, pattern)) return std::nullopt;
+  constexpr std::string_view separators = "._-";
   NamedLayout layout{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::string digits = match[axis + 1];
-    std::from_chars(digits.data(), digits.data() + digits.size(), layout.size[axis]);
+  bool sized = false;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(separators, begin), name.size());
+    const std::string_view word = std::string_view(name).substr(begin, end - begin);
+    if (!sized) {
+      if (const std::optional<VolumeSize> size = size_in_word(word)) {
+        layout.size = *size;
+        sized = true;
+      }
+    } else if (!layout.type) {
+      layout.type = type_in_word(word);
+    }
+    begin = end + 1;
   }
-  const std::string type = match[4];
-  layout.type = scalar_type_named(type);
-  for (const auto& [long_name, scalar_type] : long_type_names)
-    if (type == long_name) layout.type = scalar_type;
-  return layout;
+  return sized ? std::optional(layout) : std::nullopt;
 }
 
 Volume load_raw(const std::string& path, const VolumeHints& hints) {

@@ -105,7 +105,7 @@ TEST(TransferTable, SaysExactlyWhichRangesShow) {
       f.entries.push_back(random() % 6 == 0 ? Rgba{0, random() % 2 ? 0.3F : 0, 0, 0.1F} : Rgba{});
     f.low = trial % 3 ? 0.0F : 0.2F;
     f.high = trial % 2 ? 1.0F : 0.7F;
-    const TransferTable table(f, TexelType::f32);
+    const TransferTable table(f, TexelType::f32, 0);
     for (int range = 0; range < 40; ++range) {
       float low = float(random() % 1000) / 900 - 0.05F, high = float(random() % 1000) / 900 - 0.05F;
       if (low > high) std::swap(low, high);
@@ -143,7 +143,7 @@ TEST(TransferTable, HasExactAnswersForTexelValues) {
   TransferFunction spike;
   spike.entries.assign(256, Rgba{});
   spike.entries[100] = {1, 1, 1, 1};
-  const TransferTable table(spike, TexelType::u8);
+  const TransferTable table(spike, TexelType::u8, 0);
   EXPECT_FALSE(table.shows({0, 99}));
   EXPECT_FALSE(table.shows({101, 255}));
   EXPECT_TRUE(table.shows({100, 100}));

@@ -40,7 +40,7 @@ using Kernel = void (*)(const Scene& scene, const RayStrip& strip, float* rgba, 
 
 void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 
-/// Texels u8 and Operator::over alone.
-void u8_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+/// On the best instruction set of this machine that Highway knows; the generic kernel where it knows none.
+void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 
 }  // namespace understudy::volume

@@ -136,17 +136,18 @@ struct RayCaster::Prepared {
     return SkipMap(store.block_counts(), std::move(visible));
   }
 
-  static std::optional<TransferTable> make_table(const BrickStore& store,
-                                                 const Classification& classification) {
+  static std::optional<TransferTable> make_table(const BrickStore& store, const Classification& classification,
+                                                 bool keeps_clear_samples) {
     const auto* function = std::get_if<TransferFunction>(&classification);
     if (!function) return std::nullopt;
-    return TransferTable(*function, store.description().type);
+    return TransferTable(*function, store.description().type,
+                         neutral_value(keeps_clear_samples ? Operator::min : Operator::over));
   }
 
   Prepared(const BrickStore& store, const Classification& from, bool keeps_clear)
       : classification(from),
         keeps_clear_samples(keeps_clear),
-        table(make_table(store, classification)),
+        table(make_table(store, classification, keeps_clear)),
         skip(skip_map(store, classification, keeps_clear, table)) {}
 };
 
@@ -187,8 +188,6 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.rounding = setup.rounding;
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
-  const bool common = store.description().type == TexelType::u8 && request.op == Operator::over;
-  const Kernel kernel = common ? u8_kernel : generic_kernel;
 
   tbb::combinable<FrameCounts> partial;
   const auto render_tile = [&](int x, int y, int width, int height) {
@@ -204,7 +203,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
           mine.samples += std::uint64_t(strip.last[r] - strip.first[r] + 1);
         }
       KernelCounts done;
-      kernel(scene, strip, rgba.data(), done);
+      vector_kernel(scene, strip, rgba.data(), done);
       mine.samples_taken += done.samples_taken;
       mine.rays_terminated += done.rays_terminated;
       for (int r = 0; r < rows; ++r)

@@ -6,7 +6,7 @@
 
 namespace understudy::volume {
 
-TransferTable::TransferTable(const TransferFunction& function, TexelType type) {
+TransferTable::TransferTable(const TransferFunction& function, TexelType type, float neutral) {
   const double unit = type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
   entries_ = function.entries.size();
   low_ = float(function.low * unit);
@@ -14,6 +14,7 @@ TransferTable::TransferTable(const TransferFunction& function, TexelType type) {
   scale_ = float(std::min(scale, double(std::numeric_limits<float>::max())));
 
   rows_.resize(8 * (entries_ + 1));
+  for (std::size_t k = 0; k < 4; ++k) rows_[8 * entries_ + k] = neutral;
   showing_before_.resize(entries_ + 1);
   for (std::size_t i = 0; i < entries_; ++i) {
     const Rgba& entry = function.entries[i];

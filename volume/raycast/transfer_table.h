@@ -16,7 +16,8 @@ constexpr std::size_t max_table_entries = 65536;
 
 class TransferTable {
  public:
-  TransferTable(const TransferFunction& function, TexelType type);
+  /// `neutral` is what changes nothing in a composite: see neutral_value().
+  TransferTable(const TransferFunction& function, TexelType type, float neutral);
 
   /// Position of a value in the table: clamp((value - low()) * scale(), 0, last()).
   float low() const { return low_; }

@@ -14,7 +14,7 @@ MODES = ["rgba", "table", "core"]
 ROUNDS = 3
 FRAMES = 10
 SETTLE = 4  # frames in which shaders compile, the volume travels and its first frame is verified
-ORBIT = 40
+ORBIT = 4  # degrees a frame
 SIDE = 256
 
 

@@ -18,7 +18,7 @@ FOLDER = viewers.OUT / "demo"
 MODES = {"rgba": "pre-classified voxels, fixed function", "table": "scalar voxels, 1-D table in GLSL",
          "core": "OpenGL 3.3 core profile"}
 FRAMES = 12
-ORBIT = 60  # degrees, over all frames
+ORBIT = 5  # degrees from each frame to the next
 ENGINE_SIZE = (256, 256, 110)
 
 

@@ -63,7 +63,7 @@ def bundled_viewer(prefix, volume, mode, frames, orbit, picture, extra=()):
     """Runs understudy-viewer off screen; the milliseconds of every frame it drew."""
     text = run([*prefix, PROGRAMS / "understudy-viewer", volume, "--offscreen", "--mode", mode, "--frames", frames,
                 "--orbit", orbit, "--screenshot", picture, "--print-times", *extra], SOFTWARE)
-    times = [float(ms) for ms in re.findall(r"^frame\s+\d+\D*?([0-9.]+)\s*ms", text, re.MULTILINE | re.IGNORECASE)]
+    times = [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
     if len(times) != frames:
         raise ViewerFailed(f"understudy-viewer printed {len(times)} frame times instead of {frames}:\n{text[-2000:]}")
     return times

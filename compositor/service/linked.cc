@@ -99,15 +99,17 @@ class LinkedService : public RenderService {
     const std::uint64_t bytes = window.pixels() * 4 * sizeof(float);
     if (bytes <= image_.bytes()) return;
     image_ = {};  // the old one goes first: the picture in it is given up by this call
+    ImageMemory fresh;
     try {
-      image_ = ImageMemory::create(bytes);
+      fresh = ImageMemory::create(bytes);
     } catch (const std::runtime_error& error) {
       throw RequestRefused(error.what());
     }
     const std::vector<std::byte> size = encode_size(bytes);
     const Bytes payload(size);
-    request(MessageType::image_memory, {&payload, 1}, patience_.reply, MessageType::done, image_.fd());
-    image_.close_descriptor();
+    request(MessageType::image_memory, {&payload, 1}, patience_.reply, MessageType::done, fresh.fd());
+    fresh.close_descriptor();
+    image_ = std::move(fresh);  // both sides have it
   }
 
   Message request(MessageType type, const std::vector<std::byte>& payload, milliseconds patience,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the C++ that follows from the Khronos registry: the dispatch table, and everything that has one piece a command.
+"""Writes the C++ that follows from the Khronos registry: the dispatch table, and all that has one piece a command.
 
     generate.py --gl gl.xml --glx glx.xml --egl egl.h --out DIRECTORY
 
@@ -44,6 +44,12 @@ FOREIGN_TYPES = {"DMparams", "DMbuffer", "VLServer", "VLPath", "VLNode"}
 ADDRESS_TYPES = {
     "GLsync", "GLeglImageOES", "GLeglClientBufferEXT", "GLVULKANPROCNV",
     "GLDEBUGPROC", "GLDEBUGPROCARB", "GLDEBUGPROCKHR", "GLDEBUGPROCAMD",
+}
+
+# The registry gives their `name` the length 1; it is a string whose length is another argument.
+WRONG_LENGTHS = {
+    "glProgramNamedParameter4dNV", "glProgramNamedParameter4dvNV",
+    "glProgramNamedParameter4fNV", "glProgramNamedParameter4fvNV",
 }
 
 # In the registry, but not in every <GL/glext.h>. Saying a typedef twice is legal while both say the same.
@@ -102,7 +108,11 @@ class Command:
 
     @property
     def packable(self):
-        return self.result == "void" and all(p.field for p in self.parameters)
+        return (
+            self.result == "void"
+            and self.name not in WRONG_LENGTHS
+            and all(p.field for p in self.parameters)
+        )
 
 
 def read_commands(registry):
@@ -110,7 +120,8 @@ def read_commands(registry):
 
     def text_before_name(element):
         text = "".join(element.itertext())
-        return re.sub(r"\s+", " ", text[: text.rindex(element.find("name").text)]).replace("*", " *").replace("  ", " ").strip()
+        before = text[: text.rindex(element.find("name").text)]
+        return re.sub(r"\s+", " ", before.replace("*", " *")).strip()
 
     commands = []
     for element in ElementTree.parse(registry).getroot().findall("commands/command"):

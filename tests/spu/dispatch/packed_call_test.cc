@@ -118,9 +118,10 @@ TEST(PackedCall, EveryPackableCommandSurvivesPackingReplayAndPackingAgain) {
 }
 
 TEST(PackedCall, CommandsWithAnswersAddressesOrOpenLengthsAreNotPackable) {
-  for (const CallId call : {CallId::GetError, CallId::GenTextures, CallId::TexImage3D, CallId::DrawElements,
-                            CallId::VertexPointer, CallId::DeleteSync, CallId::DebugMessageCallback,
-                            CallId::ShaderSource, CallId::ReadPixels, CallId::TexParameterfv}) {
+  for (const CallId call :
+       {CallId::GetError, CallId::GenTextures, CallId::TexImage3D, CallId::DrawElements, CallId::VertexPointer,
+        CallId::DeleteSync, CallId::DebugMessageCallback, CallId::ShaderSource,
+        CallId::ProgramNamedParameter4fvNV, CallId::ReadPixels, CallId::TexParameterfv}) {
     EXPECT_FALSE(is_packable(call)) << call_name(call);
   }
   EXPECT_FALSE(is_packable(static_cast<CallId>(call_count)));

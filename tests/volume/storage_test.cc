@@ -79,6 +79,8 @@ TEST(BrickStore, RefusesWrongSlabs) {
   d.stored.high[1] = 7;
   EXPECT_THROW(cell_lattice(d), std::invalid_argument);
   EXPECT_THROW(BrickStore(texture.description, {{0, 0, 0}, {5, 5, 6}}), std::invalid_argument);
+  const VolumeDescription vast = describe({max_axis_texels, max_axis_texels, max_axis_texels}, TexelType::u8);
+  EXPECT_THROW(BrickStore(vast, cell_lattice(vast).box()), std::invalid_argument);
 }
 
 TEST(BrickStore, CostsHalfAgainAtMostAndPaddingNothing) {

@@ -70,13 +70,17 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
   }
   slice_seen_.resize(std::size_t(volume.stored.high[2] - volume.stored.low[2]));
   if (!any) return;
-  std::size_t count = 1;
+  std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     first_block_[axis] = (owned_.low[axis] - all.low[axis]) / block_cells;
     const int end = (owned_.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
     block_counts_[axis] = end - first_block_[axis];
-    count *= std::size_t(block_counts_[axis]);
+    count *= std::uint64_t(block_counts_[axis]);
   }
+  if (count > max_blocks)
+    throw std::invalid_argument(
+        fmt::format("volume {}: {} blocks on one rank (at most {} are possible): divide it among more ranks",
+                    volume.id, count, max_blocks));
   blocks_.resize(count);
   ranges_.resize(count * channels_);
   layers_.resize(std::size_t(block_counts_[2]));

@@ -17,6 +17,9 @@
 
 namespace understudy::volume {
 
+/// Most blocks that one store holds (137e9 cells).
+constexpr std::uint64_t max_blocks = std::uint64_t(1) << 28;
+
 class BrickStore {
  public:
   static constexpr int block_cells = 8;

@@ -146,7 +146,11 @@ struct Constants {
     }
     blocks_x = hn::Set(d, counts[0]);
     blocks_y = hn::Set(d, counts[1]);
-    first_block = hn::Set(d, (first[2] * counts[1] + first[1]) * counts[0] + first[0]);
+    // Sums of the lattice's block indices may wrap around; their difference to this is small and right again.
+    const auto wide = [](int v) { return std::uint32_t(v); };
+    first_block = hn::Set(
+        d,
+        std::int32_t((wide(first[2]) * wide(counts[1]) + wide(first[1])) * wide(counts[0]) + wide(first[0])));
     neutral = hn::Set(f, neutral_value(scene.op));
     termination =
         hn::Set(f, scene.op == Operator::over ? scene.termination : -std::numeric_limits<float>::infinity());
@@ -632,6 +636,10 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
   for (const std::int32_t n : taken_by_lane) counts.samples_taken += std::uint64_t(n);
 }
 
+const char* target_name() {
+  return hwy::TargetName(HWY_TARGET);
+}
+
 void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
@@ -646,6 +654,10 @@ void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, Kerne
 }
 
 #else
+
+const char* target_name() {
+  return "scalar";
+}
 
 void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
   generic_kernel(scene, strip, rgba, counts);
@@ -662,14 +674,14 @@ HWY_AFTER_NAMESPACE();
 namespace understudy::volume {
 
 HWY_EXPORT(vector_kernel);
+HWY_EXPORT(target_name);
 
 void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
   HWY_DYNAMIC_DISPATCH(vector_kernel)(scene, strip, rgba, counts);
 }
 
 const char* instruction_set() {
-  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(usable & -usable);  // the best has the lowest bit
+  return HWY_DYNAMIC_DISPATCH(target_name)();
 }
 
 }  // namespace understudy::volume

@@ -1,0 +1,94 @@
+// The same picture on every instruction set that this machine can run, and from the plain kernel that the
+// vector kernel must agree with.
+#include <gmock/gmock.h>
+#include <hwy/targets.h>
+
+#include "tests/volume/scenes.h"
+#include "volume/kd_tree.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+/// Lets Highway know of one instruction set alone.
+class OnlyTarget {
+ public:
+  explicit OnlyTarget(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  ~OnlyTarget() {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  OnlyTarget(const OnlyTarget&) = delete;
+  OnlyTarget& operator=(const OnlyTarget&) = delete;
+};
+
+struct Drawn {
+  std::string instruction_set;
+  Image image;
+  FrameCounts counts;
+};
+
+/// One picture per instruction set, the plain kernel's first.
+std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& request) {
+  const std::int64_t here = hwy::SupportedTargets();
+  std::vector<Drawn> all;
+  for (const std::int64_t target : {HWY_EMU128, HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    if (target != HWY_EMU128 && (here & target) == 0) continue;
+    const OnlyTarget only(target);
+    Drawn drawn{instruction_set(), Image(request.window), {}};
+    raycast(store, request, drawn.image, drawn.counts);
+    all.push_back(std::move(drawn));
+  }
+  return all;
+}
+
+TEST(InstructionSets, AllDrawTheSamePicture) {
+  double worst = 0;
+  std::string seen;
+  for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
+    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add})
+      for (const Filter filter : {Filter::linear, Filter::nearest}) {
+        const Texture texture = sampled(describe({45, 38, 51}, type, Wrap::border), sphere_field(0.3));
+        RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 90);
+        request.op = op;
+        request.filter = filter;
+        TransferFunction table = smooth_table();
+        for (int i = 0; i < 40; ++i) table.entries[std::size_t(i)] = {};
+        if (type != TexelType::rgba8) request.classification = table;
+        const BrickStore store = filled(texture);
+        const auto all = draw_on_all(store, request);
+        for (const Drawn& drawn : all) {
+          const double d = difference(drawn.image, all[0].image).max;
+          worst = std::max(worst, d);
+          EXPECT_LE(d, 3e-5) << drawn.instruction_set;
+          EXPECT_EQ(drawn.counts.samples, all[0].counts.samples) << drawn.instruction_set;
+          EXPECT_EQ(drawn.counts.rays, all[0].counts.rays) << drawn.instruction_set;
+          if (seen.find(drawn.instruction_set) == std::string::npos) seen += drawn.instruction_set + " ";
+        }
+      }
+  std::printf("%s: largest difference %.2e\n", seen.c_str(), worst);
+}
+
+TEST(InstructionSets, MixedRanksStillCountEverySampleOnce) {
+  // Ranks on different machines must agree to the bit whose a sample is.
+  const Texture texture = noise(describe({37, 29, 41}, TexelType::u8), 71);
+  const RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 300);
+  FrameCounts whole, parts;
+  Image image(request.window);
+  raycast(filled(texture), request, image, whole);
+  const KdTree tree(texture.description, 5);
+  const std::int64_t here = hwy::SupportedTargets();
+  const std::int64_t targets[] = {HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_SSSE3, HWY_AVX3};
+  for (int rank = 0; rank < tree.ranks(); ++rank) {
+    const std::int64_t target = targets[rank];
+    const OnlyTarget only(target == HWY_EMU128 || (here & target) ? target : HWY_EMU128);
+    raycast(filled(texture, tree.box(rank)), request, image, parts);
+  }
+  EXPECT_EQ(parts.samples, whole.samples);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

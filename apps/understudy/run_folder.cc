@@ -10,6 +10,7 @@
 #include <ctime>
 #include <string>
 #include <system_error>
+#include <utility>
 
 namespace understudy::launcher {
 namespace {
@@ -52,7 +53,15 @@ RunFolder::RunFolder() {
                             "cannot make a folder for this run in " + parent.string());
   }
   path_ = name;
-  lock_ = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  lock();
+}
+
+RunFolder::RunFolder(std::filesystem::path made_for_it) : path_(std::move(made_for_it)) {
+  lock();
+}
+
+void RunFolder::lock() {
+  lock_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
 }
 

@@ -13,6 +13,8 @@ class RunFolder {
  public:
   /// Also removes what launchers that were killed without warning left behind. Throws std::system_error.
   RunFolder();
+  /// Takes over a folder that was made for it; removed at the end like one of its own.
+  explicit RunFolder(std::filesystem::path made_for_it);
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
   ~RunFolder();
@@ -20,6 +22,8 @@ class RunFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  void lock();
+
   std::filesystem::path path_;
   int lock_ = -1;  ///< held while the launcher lives: how the next one knows a dead launcher's folder
 };

@@ -22,6 +22,7 @@ namespace {
 struct ServeArguments {
   int nodes = 1;
   std::string socket;
+  std::string folder;       ///< empty: one of its own
   pid_t while_process = 0;  ///< 0: until asked to end
 };
 
@@ -32,13 +33,14 @@ bool is_over(const ServeArguments& arguments) {
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
 int serve(const ServeArguments& arguments) {
   const Installation installation = this_installation();
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
+  const RunFolder folder = arguments.folder.empty() ? RunFolder() : RunFolder(arguments.folder);
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
     fmt::print(stderr, "understudy: {}\n", obstacle);
     return 1;
   }
-  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
-  const RunFolder folder;
-  const std::filesystem::path socket = std::filesystem::absolute(arguments.socket);
+  const std::filesystem::path socket =
+      arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
   NodeGroup nodes(installation, {arguments.nodes, socket, folder.path()});
   bool announced = false;
   while (!is_over(arguments)) {
@@ -66,6 +68,11 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->required()
       ->check(CLI::Range(1, spu::max_nodes));
   subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
+  subcommand
+      ->add_option("--folder", arguments->folder,
+                   "take over DIR, with the socket in it, and remove it at the end")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

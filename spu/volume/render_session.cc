@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "spu/volume/own_nodes.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -23,9 +25,7 @@ compositor::RenderService& RenderSession::service() {
     throw compositor::ServiceLost("waiting for a new group of render nodes");
   }
   try {
-    service_ = options_.connect.empty()
-                   ? compositor::embedded_service()
-                   : compositor::linked_service(options_.connect, connected_once_ ? later_patience_ms : first_patience_ms);
+    service_ = connect();
   } catch (const compositor::ServiceLost&) {
     not_before_ = std::chrono::steady_clock::now() + retry_after;
     connected_once_ = true;  // whoever was not there after 30 s is not waited for again
@@ -34,6 +34,12 @@ compositor::RenderService& RenderSession::service() {
   connected_once_ = true;
   ++generation_;
   return *service_;
+}
+
+std::unique_ptr<compositor::RenderService> RenderSession::connect() {
+  if (options_.nodes > 0 && address_.empty() && !connected_once_) address_ = start_own_nodes(options_.nodes);
+  if (address_.empty()) return compositor::embedded_service();
+  return compositor::linked_service(address_, connected_once_ ? later_patience_ms : first_patience_ms);
 }
 
 void RenderSession::forget(volume::VolumeId id) {
@@ -47,7 +53,7 @@ void RenderSession::forget(volume::VolumeId id) {
 
 void RenderSession::lost(const std::string& what) {
   // The launcher that started the nodes says it itself, with what became of them.
-  const bool launcher_says_it = options_.nodes > 0 && !options_.run_dir.empty();
+  const bool launcher_says_it = options_.nodes > 0 && (!options_.run_dir.empty() || options_.connect.empty());
   if (service_ && !launcher_says_it) {
     fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
   }

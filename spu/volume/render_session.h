@@ -1,5 +1,5 @@
-// The process's one way to the render service: made when the first volume is recognised, shared by all contexts, and
-// made again after a node group was lost.
+// The process's one way to the render service: made when the first volume is recognised, shared by all
+// contexts, and made again after a node group was lost.
 #pragma once
 
 #include <chrono>
@@ -15,15 +15,15 @@ namespace understudy::spu {
 
 class RenderSession {
  public:
-  explicit RenderSession(Options options) : options_(std::move(options)) {}
+  explicit RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
 
   const Options& options() const { return options_; }
 
   /// Whoever talks to the service holds this for as long as it looks at what the service returned.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
 
-  /// The service; connects when there is none. Throws compositor::ServiceLost, at once while it is too early to try
-  /// again. Needs the lock.
+  /// The service; connects when there is none. Throws compositor::ServiceLost, at once while it is too early to
+  /// try again. Needs the lock.
   compositor::RenderService& service();
 
   /// Grows whenever a new service begins, which knows no volumes yet.
@@ -32,14 +32,18 @@ class RenderSession {
   /// The service failed: explained once, and the next call of service() connects anew. Needs the lock.
   void lost(const std::string& what);
 
-  /// The service need not keep the volume any longer; a service that is lost has forgotten it anyway. Needs the lock.
+  /// The service need not keep the volume any longer; a service that is lost has forgotten it anyway. Needs the
+  /// lock.
   void forget(volume::VolumeId id);
 
   volume::VolumeId new_volume_id() { return ++last_volume_; }
 
  private:
+  std::unique_ptr<compositor::RenderService> connect();
+
   const Options options_;
   std::mutex mutex_;
+  std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;
   std::uint64_t generation_ = 0;
   volume::VolumeId last_volume_ = 0;

@@ -1,5 +1,6 @@
 #include "spu/volume/client_arrays.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -144,6 +145,10 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
 void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
                    const std::vector<std::uint32_t>& indices) {
   using Role = ClientArray::Role;
+  // Generic attributes alone draw too, but only attribute 0 or the position makes an immediate vertex.
+  const bool positioned = std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const ClientArray& array) {
+    return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);
+  });
   pack_Begin(calls, mode);
   for (const std::uint32_t element : indices) {
     for (const ClientArray& array : sources.arrays) {
@@ -163,6 +168,7 @@ void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
         case Role::vertex: pack_Vertex4f(calls, v[0], v[1], v[2], v[3]); break;
       }
     }
+    if (!positioned) pack_Vertex4f(calls, 0, 0, 0, 1);
   }
   pack_End(calls);
 }

@@ -75,6 +75,7 @@ bool defer_arrays(VolumeUnit& unit, GLenum mode, GLint first, GLsizei count) {
     std::vector<std::uint32_t> indices(static_cast<std::size_t>(count));
     std::iota(indices.begin(), indices.end(), std::uint32_t(first));
     pack_elements(run.calls(), sources, mode, indices);
+    run.expanded_arrays = true;
   } else {
     pack_DrawArrays(run.calls(), mode, first, count);
   }
@@ -126,6 +127,7 @@ bool defer_elements(VolumeUnit& unit, GLenum mode, GLsizei count, GLenum type, c
       elements.push_back(value);
     }
     pack_elements(run.calls(), sources, mode, elements);
+    run.expanded_arrays = true;
   } else {
     return false;
   }

@@ -21,6 +21,13 @@ struct SampledTexture {
   bool operator==(const SampledTexture&) const = default;
 };
 
+/// What the slices leave in the framebuffer's alpha.
+enum class AlphaResult {
+  untouched,    ///< no alpha in the framebuffer, or masked, or factors ZERO, ONE
+  coverage,     ///< factors ONE, 1 - SRC_ALPHA: 1 - T
+  squared_sum,  ///< factors SRC_ALPHA, 1 - SRC_ALPHA: the sum over slices of alpha^2 T
+};
+
 /// The pipeline of a run of slices.
 struct Pipeline {
   GLuint program = 0;            ///< 0: fixed function
@@ -28,6 +35,7 @@ struct Pipeline {
   SampledTexture volume;
   std::vector<SampledTexture> others;  ///< look-up tables of the program
   bool premultiplied = false;    ///< source factor ONE instead of SRC_ALPHA
+  AlphaResult alpha = AlphaResult::coverage;
   bool depth_test = false;
   bool depth_or_equal = false;
   bool depth_write = false;

@@ -16,7 +16,11 @@ constexpr const char* fragment_source =
     "uniform sampler2D picture;\n"
     "uniform ivec2 origin;\n"
     "out vec4 colour;\n"
-    "void main() { colour = texelFetch(picture, ivec2(gl_FragCoord.xy) - origin, 0); }\n";
+    "uniform bool first_as_alpha;\n"
+    "void main() {\n"
+    "  colour = texelFetch(picture, ivec2(gl_FragCoord.xy) - origin, 0);\n"
+    "  if (first_as_alpha) colour.a = colour.r;\n"
+    "}\n";
 
 GLuint compile(const DispatchTable& gl, GLenum stage, bool core, const char* source) {
   const std::string text = std::string(core ? "#version 150\n" : "#version 130\n") + source;
@@ -48,12 +52,20 @@ bool Presenter::prepare() {
     return false;
   }
   origin_ = gl.GetUniformLocation(program_, "origin");
+  first_as_alpha_ = gl.GetUniformLocation(program_, "first_as_alpha");
   gl.GenTextures(1, &texture_);
   gl.GenVertexArrays(1, &vertex_array_);
   return true;
 }
 
-void Presenter::present(const volume::ImageView& image) {
+void Presenter::draw(const volume::ImageView& image) const {
+  const DispatchTable& gl = *context_.gl;
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.rect.width, image.rect.height, 0, GL_RGBA, GL_FLOAT,
+                image.rgba.data());
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Presenter::present(const volume::ImageView& image, AlphaResult result, const volume::ImageView* alpha) {
   if (image.rect.empty()) return;
   const DispatchTable& gl = *context_.gl;
   // The application's scissor and colour mask hold for its slices, so they hold for the picture.
@@ -67,19 +79,27 @@ void Presenter::present(const volume::ImageView& image) {
   gl.BindTexture(GL_TEXTURE_2D, texture_);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.rect.width, image.rect.height, 0, GL_RGBA, GL_FLOAT,
-                image.rgba.data());
   gl.UseProgram(program_);
   gl.Uniform2i(origin_, image.rect.x, image.rect.y);
+  gl.Uniform1i(first_as_alpha_, 0);
   gl.BindVertexArray(vertex_array_);
   // The viewport is the rectangle: exactly its pixels are shaded.
   gl.Viewport(image.rect.x, image.rect.y, image.rect.width, image.rect.height);
   if (scissor) gl.Enable(GL_SCISSOR_TEST);
-  gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
+  const bool over_alpha = mask[3] && result == AlphaResult::coverage;
+  gl.ColorMask(mask[0], mask[1], mask[2], over_alpha);
   gl.Enable(GL_BLEND);
   gl.BlendEquation(GL_FUNC_ADD);
   gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  draw(image);
+  if (!mask[3] || result != AlphaResult::squared_sum || alpha == nullptr) return;
+  // Alpha becomes sum + T * alpha; the blend unit has one source alpha, so: first the product, then the sum.
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+  gl.BlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl.Uniform1i(first_as_alpha_, 1);
+  gl.BlendFunc(GL_ONE, GL_ONE);
+  draw(*alpha);
 }
 
 }  // namespace understudy::spu

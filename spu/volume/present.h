@@ -2,6 +2,7 @@
 #pragma once
 
 #include "spu/volume/context.h"
+#include "spu/volume/pipeline.h"
 #include "volume/image.h"
 
 namespace understudy::spu {
@@ -12,16 +13,20 @@ class Presenter {
  public:
   explicit Presenter(const GlContext& context) : context_(context) {}
 
-  void present(const volume::ImageView& image);
+  /// Colour as the slices would have left it, and alpha as `result` says. The squared sum, where that is the result,
+  /// is the first channel of `alpha`, over the same rectangle as `image`.
+  void present(const volume::ImageView& image, AlphaResult result, const volume::ImageView* alpha);
 
  private:
   bool prepare();
+  void draw(const volume::ImageView& image) const;
 
   const GlContext& context_;
   GLuint program_ = 0;
   GLuint texture_ = 0;
   GLuint vertex_array_ = 0;
   GLint origin_ = -1;  ///< location of the uniform that places the rectangle
+  GLint first_as_alpha_ = -1;
 };
 
 }  // namespace understudy::spu

@@ -1,8 +1,53 @@
 #include "spu/volume/run.h"
 
+#include <array>
+#include <optional>
+
 namespace understudy::spu {
+namespace {
+
+/// The current colour, normal, texture coordinates and generic attributes, as they were.
+class CurrentAttributes {
+ public:
+  explicit CurrentAttributes(const DispatchTable& gl) : gl_(gl) {
+    gl_.GetFloatv(GL_CURRENT_COLOR, colour_.data());
+    gl_.GetFloatv(GL_CURRENT_NORMAL, normal_.data());
+    GLint active = GL_TEXTURE0;
+    gl_.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    for (std::size_t unit = 0; unit < coordinates_.size(); ++unit) {
+      gl_.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+      gl_.GetFloatv(GL_CURRENT_TEXTURE_COORDS, coordinates_[unit].data());
+    }
+    gl_.ActiveTexture(GLenum(active));
+    for (std::size_t i = 0; i < generic_.size(); ++i) {
+      gl_.GetVertexAttribfv(GLuint(i + 1), GL_CURRENT_VERTEX_ATTRIB, generic_[i].data());
+    }
+  }
+  ~CurrentAttributes() {
+    gl_.Color4fv(colour_.data());
+    gl_.Normal3fv(normal_.data());
+    for (std::size_t unit = 0; unit < coordinates_.size(); ++unit) {
+      gl_.MultiTexCoord4fv(GLenum(GL_TEXTURE0 + unit), coordinates_[unit].data());
+    }
+    for (std::size_t i = 0; i < generic_.size(); ++i) gl_.VertexAttrib4fv(GLuint(i + 1), generic_[i].data());
+  }
+  CurrentAttributes(const CurrentAttributes&) = delete;
+  CurrentAttributes& operator=(const CurrentAttributes&) = delete;
+
+ private:
+  using Four = std::array<GLfloat, 4>;
+  const DispatchTable& gl_;
+  Four colour_{};
+  Four normal_{};
+  std::array<Four, 8> coordinates_{};  ///< OpenGL's least number of fixed-function units that carry coordinates
+  std::array<Four, 15> generic_{};     ///< attribute 0 is the vertex
+};
+
+}  // namespace
 
 void Run::replay(const DispatchTable& gl) const {
+  std::optional<CurrentAttributes> current;
+  if (expanded_arrays) current.emplace(gl);
   const auto words = calls_.words();
   std::size_t done = 0;
   for (const ElementDraw& draw : elements_) {

@@ -21,6 +21,8 @@ class Run {
   void draw_elements(GLenum mode, GLsizei count, GLenum type, const void* offset) {
     elements_.push_back({calls_.words().size(), mode, count, type, offset});
   }
+  /// Array draws were kept as immediate calls, which move the current attributes; the arrays would not have.
+  bool expanded_arrays = false;
   bool inside_begin = false;
   std::size_t draws = 0;
 

@@ -99,6 +99,30 @@ void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
   key.push_back(value);
 }
 
+/// Magenta wherever the volume is: a picture that proves where it came from.
+void tint(volume::Image& picture) {
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    const float alpha = picture.rgba[i + 3];
+    picture.rgba[i] = alpha;
+    picture.rgba[i + 1] = 0;
+    picture.rgba[i + 2] = alpha;
+  }
+}
+
+/// The classification whose picture holds, in its first channel, the sum of alpha^2 T: what blending alpha with SRC_ALPHA
+/// leaves in the framebuffer's alpha.
+volume::Classification squared_alpha(const volume::Classification& classification) {
+  if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {
+    volume::TransferFunction squared = *function;
+    for (volume::Rgba& entry : squared.entries) entry = {entry[3] * entry[3], 0, 0, entry[3]};
+    return squared;
+  }
+  volume::LinearMap map = std::get<volume::LinearMap>(classification);
+  for (std::size_t column = 0; column < 4; ++column) map.matrix[column] = map.matrix[12 + column];
+  map.multiply_by_alpha = true;
+  return map;
+}
+
 /// Texels of `size` that samples of `region` read, linear filter included.
 volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& size) {
   volume::TexelBox box;
@@ -187,14 +211,14 @@ KnownVolume& VolumeUnit::known(GLuint texture) {
   return volume;
 }
 
-void VolumeUnit::leave(GLuint texture, const std::string& reason) {
+void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
   KnownVolume& volume = known(texture);
   ++frame_.left;
   volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
   const bool new_reason = volume.last_reason != reason;
   count_reason(*volume.counters, reason);
   volume.last_reason = reason;
-  if (new_reason) {
+  if (new_reason && say) {
     fmt::print(stderr, "understudy: volume {} left to the application: {}\n", texture, reason);
   }
 }
@@ -245,7 +269,8 @@ void VolumeUnit::close_run() {
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
     session_->lost(lost.what());
-    leave(run->pipeline().volume.texture, "the render nodes did not answer");
+    // Said once by whoever started the nodes, or by the session.
+    leave(run->pipeline().volume.texture, "the render nodes did not answer", false);
   } catch (const std::exception& error) {
     leave(run->pipeline().volume.texture, error.what());
   }
@@ -479,28 +504,34 @@ void VolumeUnit::substitute(const Run& run) {
   frame_.render_ms += milliseconds_since(asked);
   verify(s, rendered.image);
 
-  if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
-  if (options.debug_tint) {
-    volume::Image tinted(rendered.image.rect);
-    for (std::size_t i = 0; i < rendered.image.rgba.size(); i += 4) {
-      const float alpha = rendered.image.rgba[i + 3];
-      tinted.rgba[i] = alpha;
-      tinted.rgba[i + 2] = alpha;
-      tinted.rgba[i + 3] = alpha;
-    }
-    presenter_->present(tinted.view());
-  } else {
-    presenter_->present(rendered.image);
+  // The service's picture is gone with its next answer.
+  volume::Image picture;
+  volume::ImageView shown = rendered.image;
+  if (options.debug_tint || s.pipeline.alpha == AlphaResult::squared_sum) {
+    picture.rect = shown.rect;
+    picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
+    shown = picture.view();
   }
+  volume::FrameCounts counts = rendered.counts;
   if (!options.save_frames.empty()) {
-    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, rendered.image);
+    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown);
     if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
+  }
+  if (options.debug_tint) tint(picture);
+  if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
+  if (s.pipeline.alpha == AlphaResult::squared_sum) {
+    s.request.classification = squared_alpha(s.request.classification);
+    const compositor::Rendered squares = service.render(s.request);
+    counts += squares.counts;
+    presenter_->present(shown, s.pipeline.alpha, &squares.image);
+  } else {
+    presenter_->present(shown, s.pipeline.alpha, nullptr);
   }
   if (s.volume.frames == 0 || options.explain) explain(s);
   ++s.volume.frames;
   ++frame_.substituted;
   s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
-  frame_.counts += rendered.counts;
+  frame_.counts += counts;
 }
 
 void VolumeUnit::frame_ended(FrameEnd kind) {

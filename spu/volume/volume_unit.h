@@ -74,7 +74,7 @@ class VolumeUnit final : public Unit {
   void compose_request(Substitution& s);
   void verify(Substitution& s, const volume::ImageView& image);
   void explain(const Substitution& s);
-  void leave(GLuint texture, const std::string& reason);
+  void leave(GLuint texture, const std::string& reason, bool say = true);
   void forget_deleted_volumes();
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
 

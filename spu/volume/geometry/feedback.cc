@@ -79,9 +79,7 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
     if (values >= 0 || buffer.size() >= largest_buffer) break;
     buffer.resize(buffer.size() * 4);
   }
-  if (application_buffer != nullptr) {
-    gl.FeedbackBuffer(application_size, GLenum(application_type), static_cast<GLfloat*>(application_buffer));
-  }
+  gl.FeedbackBuffer(application_size, GLenum(application_type), static_cast<GLfloat*>(application_buffer));
   if (values < 0) return {};
   return parse(std::span(buffer).first(std::size_t(values)), window);
 }

@@ -1,0 +1,65 @@
+// An OpenGL application inside the test: a real driver's context (EGL, no window), and a chain above it exactly as the
+// body would set it up. `gl()` is what the application's calls go through.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "spu/chain.h"
+#include "spu/options.h"
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu::testing {
+
+enum class Profile { compatibility, core };
+
+/// Null when this machine has no EGL that gives such a context.
+class GlApplication {
+ public:
+  static constexpr int size = 96;  ///< of the framebuffer, both ways
+
+  static std::unique_ptr<GlApplication> start(Profile profile, Options options = {});
+  ~GlApplication();
+  GlApplication(const GlApplication&) = delete;
+  GlApplication& operator=(const GlApplication&) = delete;
+
+  /// Through the chain.
+  const DispatchTable& gl() const;
+  /// Past the chain: what the same calls do without Understudy.
+  const DispatchTable& driver() const;
+
+  /// With false the application talks to the driver: the bare run.
+  void use_chain(bool on);
+
+  /// As the door does around glXSwapBuffers.
+  void end_frame();
+
+  std::vector<float> read_pixels();
+  std::vector<float> read_depth();
+  GLenum error() { return driver().GetError(); }
+
+  /// Runs of slices since this application started.
+  std::uint64_t substituted() const;
+  std::uint64_t left() const;
+  std::string last_reason() const;
+
+ private:
+  GlApplication() = default;
+  struct Egl;
+  std::unique_ptr<Egl> egl_;
+  std::unique_ptr<Chain> chain_;
+  std::uint64_t substituted_before_ = 0;
+  std::uint64_t left_before_ = 0;
+};
+
+/// A smooth blob with a hole, 8 bits, non-cubic.
+struct Blob {
+  int x = 24, y = 20, z = 17;
+  std::vector<std::uint8_t> texels() const;
+};
+
+/// PSNR of two pictures in dB.
+double psnr(const std::vector<float>& a, const std::vector<float>& b);
+
+}  // namespace understudy::spu::testing

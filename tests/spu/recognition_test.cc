@@ -1,0 +1,131 @@
+// The volume unit above a real driver: recognised, substituted, and the same picture.
+#include <gtest/gtest.h>
+
+#include "slice_scenes.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+class Recognition : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  void SetUp() override {
+    scene_ = all_slice_scenes()[GetParam()];
+    app_ = GlApplication::start(scene_.profile);
+    if (!app_) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
+    scene_.set_up(*app_);
+  }
+
+  std::vector<float> frame(double angle, bool under) {
+    app_->use_chain(under);
+    scene_.draw(*app_, angle);
+    app_->end_frame();
+    return app_->read_pixels();
+  }
+
+  SliceScene scene_;
+  std::unique_ptr<GlApplication> app_;
+};
+
+TEST_P(Recognition, GivesTheApplicationsPictureFromEveryAngle) {
+  for (const double angle : {0.0, 15.0, -40.0, 55.0}) {
+    const auto before = app_->substituted();
+    const auto under = frame(angle, true);
+    EXPECT_EQ(app_->substituted(), before + 1) << scene_.name << ", angle " << angle << ": " << app_->last_reason();
+    const auto bare = frame(angle, false);
+    const double likeness = psnr(under, bare);
+    std::printf("%s, %g degrees: %.1f dB\n", scene_.name.c_str(), angle, likeness);
+    EXPECT_GE(likeness, 40) << scene_.name << ", angle " << angle;
+    EXPECT_EQ(app_->error(), GLenum(GL_NO_ERROR));
+  }
+}
+
+TEST_P(Recognition, TurnedOffItIsBitIdentical) {
+  const auto first = frame(20, false);
+  const auto second = frame(20, false);
+  EXPECT_EQ(first, second);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Recognition, ::testing::Range<std::size_t>(0, 5));
+
+TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  scene.draw(*app, 10);
+  const auto before = app->read_pixels();
+  const Blob blob;
+  std::vector<std::uint8_t> half(std::size_t(blob.x * blob.y * 8), 200);
+  app->gl().PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 4, blob.x, blob.y, 8, GL_LUMINANCE, GL_UNSIGNED_BYTE, half.data());
+  scene.draw(*app, 10);
+  const auto under = app->read_pixels();
+  app->use_chain(false);
+  scene.draw(*app, 10);
+  const auto bare = app->read_pixels();
+  EXPECT_LT(psnr(before, under), 30) << "the upload changes nothing: the test tests nothing";
+  EXPECT_GE(psnr(under, bare), 40);
+  EXPECT_EQ(app->left(), 0U) << app->last_reason();
+}
+
+TEST(RecognitionOfChanges, ATableUploadedAgainIsSeen) {
+  auto app = GlApplication::start(Profile::core);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = core_batched();
+  scene.set_up(*app);
+  scene.draw(*app, 10);
+  const auto before = app->read_pixels();
+  std::vector<float> table;
+  for (int i = 0; i < 256; ++i) table.insert(table.end(), {1.0F, 0.0F, 0.0F, i > 128 ? 0.3F : 0.0F});
+  app->gl().ActiveTexture(GL_TEXTURE1);
+  app->gl().TexSubImage1D(GL_TEXTURE_1D, 0, 0, 256, GL_RGBA, GL_FLOAT, table.data());
+  app->gl().ActiveTexture(GL_TEXTURE0);
+  scene.draw(*app, 10);
+  const auto under = app->read_pixels();
+  app->use_chain(false);
+  scene.draw(*app, 10);
+  EXPECT_LT(psnr(before, under), 30);
+  EXPECT_GE(psnr(under, app->read_pixels()), 40);
+}
+
+TEST(RecognitionOfDepth, OpaqueGeometryBeforeTheVolumeHidesIt) {
+  for (const bool colours : {false, true}) {
+    auto app = GlApplication::start(Profile::compatibility);
+    if (!app) GTEST_SKIP() << "no EGL context here";
+    const SliceScene scene = colours ? immediate_rgba() : client_arrays_table();
+    scene.set_up(*app);
+    const auto frame = [&](bool under, bool with_quad) {
+      app->use_chain(under);
+      app->gl().ClearColor(0, 0, 0, 0);
+      app->gl().DepthMask(GL_TRUE);
+      app->gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+      app->gl().Enable(GL_DEPTH_TEST);
+      for (const GLenum matrix : {GL_PROJECTION, GL_MODELVIEW}) {
+        app->gl().MatrixMode(matrix);
+        app->gl().LoadIdentity();
+      }
+      app->gl().Begin(GL_QUADS);
+      app->gl().Color4f(1, 1, 0, 1);
+      // In front of everything on the left, behind everything on the right.
+      for (const auto& [x, y, z] : {std::array{-0.9, -0.5, 0.1}, {0.9, -0.5, 0.9}, {0.9, 0.3, 0.9}, {-0.9, 0.3, 0.1}}) {
+        if (with_quad) app->gl().Vertex3d(x, y, z);
+      }
+      app->gl().End();
+      app->gl().DepthMask(GL_FALSE);
+      scene.slices(*app, 25);
+      app->end_frame();
+      return app->read_pixels();
+    };
+    app->gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
+    const auto under = frame(true, true);
+    EXPECT_EQ(app->substituted(), 1U) << app->last_reason();
+    const auto bare = frame(false, true);
+    const auto without = frame(false, false);
+    std::printf("%s, with an opaque quad: %.1f dB\n", scene.name.c_str(), psnr(under, bare));
+    EXPECT_GE(psnr(under, bare), 40);
+    EXPECT_LT(psnr(without, bare), 25) << "the quad hides nothing: the test tests nothing";
+  }
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

@@ -1,0 +1,179 @@
+// Whatever is not understood is left to the application, bit for bit, with its reason.
+#include <gtest/gtest.h>
+
+#include "slice_scenes.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+struct Refusal {
+  const char* what;
+  const char* reason;
+  std::function<void(GlApplication&)> disturb;  ///< state in which no volume may be substituted
+};
+
+std::vector<Refusal> refusals() {
+  return {
+      {"fog", "fog is enabled", [](GlApplication& a) { a.gl().Enable(GL_FOG); }},
+      {"stencil test", "the stencil test is enabled", [](GlApplication& a) { a.gl().Enable(GL_STENCIL_TEST); }},
+      {"logical operation", "a logical operation is enabled", [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},
+      {"lines", "polygons are not filled", [](GlApplication& a) { a.gl().PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
+      {"maximum blending", "the blend equation is not addition", [](GlApplication& a) { a.gl().BlendEquation(GL_MAX); }},
+      {"a depth function that keeps what is farther", "the depth function is neither LESS nor LEQUAL",
+       [](GlApplication& a) {
+         a.gl().Enable(GL_DEPTH_TEST);
+         a.gl().DepthFunc(GL_GEQUAL);
+       }},
+      {"a second texture unit", "more than one texture unit takes part in fixed function",
+       [](GlApplication& a) {
+         a.gl().ActiveTexture(GL_TEXTURE1);
+         a.gl().Enable(GL_TEXTURE_2D);
+         a.gl().ActiveTexture(GL_TEXTURE0);
+       }},
+      {"colour sum", "a secondary colour is added after texturing", [](GlApplication& a) { a.gl().Enable(GL_COLOR_SUM); }},
+      {"mip-mapping", "the texture is mip-mapped or filtered differently when minified",
+       [](GlApplication& a) { a.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR); }},
+      {"an occlusion query", "an occlusion query surrounds the slices",
+       [](GlApplication& a) {
+         GLuint query = 0;
+         a.gl().GenQueries(1, &query);
+         a.gl().BeginQuery(GL_SAMPLES_PASSED, query);
+       }},
+  };
+}
+
+TEST(Refusals, LeaveTheApplicationsPictureBitIdentical) {
+  for (const Refusal& refusal : refusals()) {
+    auto app = GlApplication::start(Profile::compatibility);
+    if (!app) GTEST_SKIP() << "no EGL context here";
+    const SliceScene scene = immediate_rgba();
+    scene.set_up(*app);
+    refusal.disturb(*app);
+    scene.draw(*app, 20);
+    const auto under = app->read_pixels();
+    EXPECT_EQ(app->substituted(), 0U) << refusal.what;
+    EXPECT_GE(app->left(), 1U) << refusal.what;
+    EXPECT_EQ(app->last_reason(), refusal.reason) << refusal.what;
+    app->use_chain(false);
+    scene.draw(*app, 20);
+    EXPECT_EQ(under, app->read_pixels()) << refusal.what;
+    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR)) << refusal.what;
+  }
+}
+
+TEST(Refusals, ShadersWhoseColourDependsOnPositionAreLeft) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  // A gradient over the volume, as lighting would give.
+  const char* source =
+      "#version 120\n"
+      "uniform sampler3D field; uniform sampler1D table;\n"
+      "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r) * gl_TexCoord[0].y; }\n";
+  GLint current = 0;
+  app->gl().UseProgram(1);
+  app->gl().GetIntegerv(GL_CURRENT_PROGRAM, &current);
+  std::array<GLuint, 4> shaders{};
+  GLsizei count = 0;
+  app->gl().GetAttachedShaders(GLuint(current), 4, &count, shaders.data());
+  ASSERT_EQ(count, 1);
+  app->gl().ShaderSource(shaders[0], 1, &source, nullptr);
+  app->gl().CompileShader(shaders[0]);
+  app->gl().LinkProgram(GLuint(current));
+  app->gl().Uniform1i(app->gl().GetUniformLocation(GLuint(current), "table"), 1);
+  app->gl().UseProgram(0);
+  scene.draw(*app, 20);
+  const auto under = app->read_pixels();
+  EXPECT_EQ(app->substituted(), 0U);
+  EXPECT_EQ(app->last_reason(), "the colour depends on more than the sample (position, lighting)");
+  app->use_chain(false);
+  scene.draw(*app, 20);
+  EXPECT_EQ(under, app->read_pixels());
+}
+
+TEST(Refusals, ASingleSliceIsLeft) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  immediate_rgba().set_up(*app);
+  const auto frame = [&](bool under) {
+    app->use_chain(under);
+    app->gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
+    app->gl().Clear(GL_COLOR_BUFFER_BIT);
+    app->gl().Enable(GL_TEXTURE_3D);
+    app->gl().Enable(GL_BLEND);
+    app->gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    app->gl().Begin(GL_QUADS);
+    for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+      app->gl().TexCoord3d(x, y, 0.4);
+      app->gl().Vertex3d(2 * x - 1, 2 * y - 1, 0);
+    }
+    app->gl().End();
+    app->end_frame();
+    return app->read_pixels();
+  };
+  const auto under = frame(true);
+  EXPECT_EQ(app->substituted(), 0U);
+  EXPECT_EQ(under, frame(false));
+}
+
+TEST(Refusals, PlainDrawingIsNeitherCountedNorChanged) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  immediate_rgba().set_up(*app);  // a 3-D texture exists, and is not used
+  const auto left = app->left();
+  const auto frame = [&](bool under) {
+    app->use_chain(under);
+    app->gl().Clear(GL_COLOR_BUFFER_BIT);
+    app->gl().Enable(GL_BLEND);
+    app->gl().Begin(GL_TRIANGLES);
+    app->gl().Color4f(1, 0, 0, 0.5F);
+    app->gl().Vertex2f(-1, -1);
+    app->gl().Vertex2f(1, -1);
+    app->gl().Vertex2f(0, 1);
+    app->gl().End();
+    app->end_frame();
+    return app->read_pixels();
+  };
+  EXPECT_EQ(frame(true), frame(false));
+  EXPECT_EQ(app->left(), left);
+}
+
+TEST(Refusals, ADeferredRunThatTurnsOutOtherwiseIsDrawnAsItWas) {
+  // A material change between glBegin and glEnd: the run is given up half way.
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  const auto frame = [&](bool under) {
+    app->use_chain(under);
+    app->gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
+    app->gl().Clear(GL_COLOR_BUFFER_BIT);
+    app->gl().Enable(GL_TEXTURE_3D);
+    app->gl().Enable(GL_BLEND);
+    app->gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    constexpr std::array<GLfloat, 4> grey{0.5F, 0.5F, 0.5F, 1};
+    for (const double z : {0.3, 0.5, 0.7}) {
+      app->gl().Begin(GL_QUADS);
+      app->gl().TexCoord3d(0, 0, z);
+      app->gl().Vertex3d(-1, -1, 0);
+      app->gl().TexCoord3d(1, 0, z);
+      app->gl().Vertex3d(1, -1, 0);
+      app->gl().Materialfv(GL_FRONT, GL_DIFFUSE, grey.data());
+      app->gl().TexCoord3d(1, 1, z);
+      app->gl().Vertex3d(1, 1, 0);
+      app->gl().TexCoord3d(0, 1, z);
+      app->gl().Vertex3d(-1, 1, 0);
+      app->gl().End();
+    }
+    app->end_frame();
+    return app->read_pixels();
+  };
+  const auto under = frame(true);
+  EXPECT_EQ(app->substituted(), 0U);
+  EXPECT_EQ(under, frame(false));
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

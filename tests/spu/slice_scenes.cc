@@ -1,0 +1,344 @@
+#include "slice_scenes.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace understudy::spu::testing {
+namespace {
+
+constexpr int slices = 40;
+
+double slice_z(int i) { return (i + 0.5) / slices; }
+
+void filter(const DispatchTable& gl, GLenum target, GLenum mode) {
+  gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, GLint(mode));
+  gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, GLint(mode));
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+    gl.TexParameteri(target, axis, GL_CLAMP_TO_EDGE);
+  }
+}
+
+void scalar_texture(const DispatchTable& gl, GLenum internal_format, GLenum format) {
+  const Blob blob;
+  GLuint texture = 0;
+  gl.GenTextures(1, &texture);
+  gl.BindTexture(GL_TEXTURE_3D, texture);
+  filter(gl, GL_TEXTURE_3D, GL_LINEAR);
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), blob.x, blob.y, blob.z, 0, format, GL_UNSIGNED_BYTE,
+                blob.texels().data());
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
+void table_texture(const DispatchTable& gl) {
+  std::vector<float> table;
+  for (int i = 0; i < 256; ++i) {
+    const float s = float(i) / 255;
+    table.insert(table.end(), {s, 0.5F + 0.5F * std::sin(9 * s), 1 - s, 0.2F * s * s});
+  }
+  GLuint texture = 0;
+  gl.GenTextures(1, &texture);
+  gl.ActiveTexture(GL_TEXTURE1);
+  gl.BindTexture(GL_TEXTURE_1D, texture);
+  filter(gl, GL_TEXTURE_1D, GL_LINEAR);
+  gl.TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, 256, 0, GL_RGBA, GL_FLOAT, table.data());
+  gl.ActiveTexture(GL_TEXTURE0);
+}
+
+void fixed_function_camera(const DispatchTable& gl, double angle) {
+  gl.MatrixMode(GL_PROJECTION);
+  gl.LoadIdentity();
+  gl.Frustum(-0.3, 0.3, -0.3, 0.3, 1, 10);
+  gl.MatrixMode(GL_MODELVIEW);
+  gl.LoadIdentity();
+  gl.Translated(0, 0, -3);
+  gl.Rotated(angle, 0.2, 1, 0.1);
+  gl.Translated(-0.5, -0.5, -0.5);
+}
+
+void blend_over(const DispatchTable& gl) {
+  gl.Enable(GL_BLEND);
+  gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+using Matrix = std::array<float, 16>;  // column-major, as OpenGL wants it
+
+Matrix camera_matrix(double angle) {
+  const double c = std::cos(angle * M_PI / 180);
+  const double s = std::sin(angle * M_PI / 180);
+  const double f = 3.3;
+  const double near = 1;
+  const double far = 10;
+  const double zz = (far + near) / (near - far);
+  const double zt = 2 * far * near / (near - far);
+  // projection * translate(0, 0, -3) * rotate_y(angle) * translate(-1/2)
+  const auto column = [&](double x, double y, double z, double w) {
+    const double ex = c * x + s * z;
+    const double ey = y;
+    const double ez = -s * x + c * z - 3 * w;
+    return std::array<float, 4>{float(f * ex), float(f * ey), float(zz * ez + zt * w), float(-ez)};
+  };
+  Matrix m{};
+  const std::array<std::array<float, 4>, 4> columns = {column(1, 0, 0, 0), column(0, 1, 0, 0), column(0, 0, 1, 0),
+                                                       column(-0.5, -0.5, -0.5, 1)};
+  for (std::size_t i = 0; i < 16; ++i) m[i] = columns[i / 4][i % 4];
+  return m;
+}
+
+GLuint program(const DispatchTable& gl, const char* vertex, const char* fragment) {
+  const GLuint name = gl.CreateProgram();
+  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
+    if (source == nullptr) continue;
+    const GLuint shader = gl.CreateShader(GLenum(stage));
+    gl.ShaderSource(shader, 1, &source, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(name, shader);
+    gl.DeleteShader(shader);
+  }
+  gl.BindAttribLocation(name, 3, "corner");
+  gl.LinkProgram(name);
+  return name;
+}
+
+void quad_corners(double z, std::array<GLfloat, 12>& corners) {
+  const auto w = GLfloat(z);
+  corners = {0, 0, w, 1, 0, w, 1, 1, w, 0, 1, w};
+}
+
+}  // namespace
+
+void SliceScene::draw(GlApplication& app, double angle) const {
+  app.gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
+  app.gl().ClearColor(0.1F, 0.2F, 0.3F, 0.0F);
+  app.gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  slices(app, angle);
+}
+
+SliceScene immediate_rgba() {
+  SliceScene scene{"glBegin/glEnd quads, fixed function, RGBA8 voxels"};
+  scene.set_up = [](GlApplication& app) {
+    const Blob blob;
+    std::vector<std::uint8_t> colours;
+    for (const std::uint8_t s : blob.texels()) {
+      colours.insert(colours.end(), {s, std::uint8_t(255 - s), 90, std::uint8_t(s * s / 255 / 5)});
+    }
+    GLuint texture = 0;
+    app.gl().GenTextures(1, &texture);
+    app.gl().BindTexture(GL_TEXTURE_3D, texture);
+    filter(app.gl(), GL_TEXTURE_3D, GL_LINEAR);
+    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, blob.x, blob.y, blob.z, 0, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+  };
+  scene.slices = [](GlApplication& app, double angle) {
+    fixed_function_camera(app.gl(), angle);
+    blend_over(app.gl());
+    app.gl().Enable(GL_TEXTURE_3D);
+    app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
+    app.gl().Color4f(1, 0.8F, 0.9F, 1);
+    for (int i = 0; i < slices; ++i) {
+      app.gl().Begin(GL_QUADS);
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        app.gl().TexCoord3d(x, y, slice_z(i));
+        app.gl().Vertex3d(x, y, slice_z(i));
+      }
+      app.gl().End();
+    }
+    app.gl().Disable(GL_TEXTURE_3D);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene display_list_texgen() {
+  SliceScene scene{"display list, eye-linear texgen, clip planes, lighting, alpha test, padded INTENSITY texture"};
+  auto list = std::make_shared<GLuint>(0);
+  scene.set_up = [list](GlApplication& app) {
+    const Blob blob;
+    const auto texels = blob.texels();
+    std::vector<std::uint8_t> padded(32 * 32 * 32, 0);
+    for (int k = 0; k < blob.z; ++k) {
+      for (int j = 0; j < blob.y; ++j) {
+        for (int i = 0; i < blob.x; ++i) {
+          padded[std::size_t((k * 32 + j) * 32 + i)] = texels[std::size_t((k * blob.y + j) * blob.x + i)];
+        }
+      }
+    }
+    GLuint texture = 0;
+    app.gl().GenTextures(1, &texture);
+    app.gl().BindTexture(GL_TEXTURE_3D, texture);
+    filter(app.gl(), GL_TEXTURE_3D, GL_LINEAR);
+    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_INTENSITY, 32, 32, 32, 0, GL_LUMINANCE, GL_UNSIGNED_BYTE, padded.data());
+    *list = app.gl().GenLists(1);
+    app.gl().NewList(*list, GL_COMPILE);
+    app.gl().Normal3f(0, 0, 1);
+    app.gl().Begin(GL_QUADS);
+    for (int i = 0; i < slices; ++i) {
+      const double z = -0.9 + 1.8 * slice_z(i);
+      for (const auto& [x, y] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+        app.gl().Vertex3d(x, y, z);
+      }
+    }
+    app.gl().End();
+    app.gl().EndList();
+  };
+  scene.slices = [list](GlApplication& app, double angle) {
+    const Blob blob;
+    fixed_function_camera(app.gl(), angle);
+    const std::array<double, 3> used = {blob.x / 32.0, blob.y / 32.0, blob.z / 32.0};
+    constexpr std::array<GLenum, 3> coordinates = {GL_S, GL_T, GL_R};
+    constexpr std::array<GLenum, 3> generators = {GL_TEXTURE_GEN_S, GL_TEXTURE_GEN_T, GL_TEXTURE_GEN_R};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<GLdouble, 4> plane{};
+      plane[k] = used[k];
+      app.gl().TexGeni(coordinates[k], GL_TEXTURE_GEN_MODE, GL_EYE_LINEAR);
+      app.gl().TexGendv(coordinates[k], GL_EYE_PLANE, plane.data());
+      app.gl().Enable(generators[k]);
+      for (const int side : {0, 1}) {
+        std::array<GLdouble, 4> cut{};
+        cut[k] = side == 0 ? 1 : -1;
+        cut[3] = side == 0 ? 0 : 1;
+        app.gl().ClipPlane(GLenum(GL_CLIP_PLANE0 + 2 * int(k) + side), cut.data());
+        app.gl().Enable(GLenum(GL_CLIP_PLANE0 + 2 * int(k) + side));
+      }
+    }
+    // The billboard: the slices face the eye, whatever the volume's rotation was when texgen was set.
+    app.gl().LoadIdentity();
+    app.gl().Translated(0, 0, -3);
+    blend_over(app.gl());
+    app.gl().Enable(GL_ALPHA_TEST);
+    app.gl().AlphaFunc(GL_GREATER, 0.02F);
+    app.gl().Enable(GL_LIGHTING);
+    app.gl().Enable(GL_LIGHT0);
+    app.gl().Enable(GL_TEXTURE_3D);
+    app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
+    app.gl().CallList(*list);
+    for (const GLenum off : {GL_TEXTURE_3D, GL_LIGHTING, GL_ALPHA_TEST, GL_BLEND}) app.gl().Disable(off);
+    for (std::size_t k = 0; k < 3; ++k) app.gl().Disable(generators[k]);
+    for (int i = 0; i < 6; ++i) app.gl().Disable(GLenum(GL_CLIP_PLANE0 + i));
+  };
+  return scene;
+}
+
+SliceScene client_arrays_table() {
+  SliceScene scene{"one client array refilled for every slice, GLSL 1.20 fragments with a 1-D table"};
+  auto name = std::make_shared<GLuint>(0);
+  scene.set_up = [name](GlApplication& app) {
+    scalar_texture(app.gl(), GL_LUMINANCE8, GL_LUMINANCE);
+    table_texture(app.gl());
+    *name = program(app.gl(), nullptr,
+                    "#version 120\n"
+                    "uniform sampler3D field; uniform sampler1D table;\n"
+                    "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r); }\n");
+    app.gl().UseProgram(*name);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "field"), 0);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
+    app.gl().UseProgram(0);
+  };
+  scene.slices = [name](GlApplication& app, double angle) {
+    fixed_function_camera(app.gl(), angle);
+    blend_over(app.gl());
+    app.gl().UseProgram(*name);
+    std::array<GLfloat, 12> corners{};
+    app.gl().EnableClientState(GL_VERTEX_ARRAY);
+    app.gl().EnableClientState(GL_TEXTURE_COORD_ARRAY);
+    app.gl().VertexPointer(3, GL_FLOAT, 0, corners.data());
+    app.gl().TexCoordPointer(3, GL_FLOAT, 0, corners.data());
+    for (int i = 0; i < slices; ++i) {
+      quad_corners(slice_z(i), corners);
+      app.gl().DrawArrays(GL_TRIANGLE_FAN, 0, 4);
+    }
+    app.gl().DisableClientState(GL_VERTEX_ARRAY);
+    app.gl().DisableClientState(GL_TEXTURE_COORD_ARRAY);
+    app.gl().UseProgram(0);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene vertex_shader_varying() {
+  SliceScene scene{"GLSL 1.20 with a varying of its own and a generic attribute"};
+  auto name = std::make_shared<GLuint>(0);
+  scene.set_up = [name](GlApplication& app) {
+    scalar_texture(app.gl(), GL_R8, GL_RED);
+    table_texture(app.gl());
+    *name = program(app.gl(),
+                    "#version 120\n"
+                    "uniform mat4 camera; attribute vec3 corner; varying vec3 place; varying float gain;\n"
+                    "void main() { place = corner; gain = 0.75; gl_Position = camera * vec4(corner, 1.0); }\n",
+                    "#version 120\n"
+                    "uniform sampler3D field; uniform sampler1D table; varying vec3 place; varying float gain;\n"
+                    "void main() { gl_FragColor = gain * texture1D(table, texture3D(field, place).r); }\n");
+    app.gl().UseProgram(*name);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "field"), 0);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
+    app.gl().UseProgram(0);
+  };
+  scene.slices = [name](GlApplication& app, double angle) {
+    blend_over(app.gl());
+    app.gl().UseProgram(*name);
+    const Matrix camera = camera_matrix(angle);
+    app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
+    std::vector<std::array<GLfloat, 12>> quads(slices);
+    for (int i = 0; i < slices; ++i) quad_corners(slice_z(i), quads[std::size_t(i)]);
+    app.gl().EnableVertexAttribArray(3);
+    app.gl().VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, quads.data());
+    app.gl().DrawArrays(GL_QUADS, 0, 4 * slices);
+    app.gl().DisableVertexAttribArray(3);
+    app.gl().UseProgram(0);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene core_batched() {
+  SliceScene scene{"core profile, one batched draw of triangles from a buffer", Profile::core};
+  auto name = std::make_shared<GLuint>(0);
+  auto array = std::make_shared<GLuint>(0);
+  scene.set_up = [name, array](GlApplication& app) {
+    scalar_texture(app.gl(), GL_R8, GL_RED);
+    table_texture(app.gl());
+    *name = program(app.gl(),
+                    "#version 330\n"
+                    "uniform mat4 camera; in vec3 corner; out vec3 place;\n"
+                    "void main() { place = corner; gl_Position = camera * vec4(corner, 1.0); }\n",
+                    "#version 330\n"
+                    "uniform sampler3D field; uniform sampler1D table; in vec3 place; out vec4 colour;\n"
+                    "void main() { colour = texture(table, texture(field, place).r); }\n");
+    app.gl().UseProgram(*name);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "field"), 0);
+    app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
+    std::vector<GLfloat> triangles;
+    for (int i = 0; i < slices; ++i) {
+      std::array<GLfloat, 12> q{};
+      quad_corners(slice_z(i), q);
+      for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) {
+        triangles.insert(triangles.end(), {q[3 * corner], q[3 * corner + 1], q[3 * corner + 2]});
+      }
+    }
+    GLuint buffer = 0;
+    app.gl().GenVertexArrays(1, array.get());
+    app.gl().BindVertexArray(*array);
+    app.gl().GenBuffers(1, &buffer);
+    app.gl().BindBuffer(GL_ARRAY_BUFFER, buffer);
+    app.gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(), GL_STATIC_DRAW);
+    app.gl().EnableVertexAttribArray(3);
+    app.gl().VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  };
+  scene.slices = [name, array](GlApplication& app, double angle) {
+    app.gl().Enable(GL_BLEND);
+    app.gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    app.gl().UseProgram(*name);
+    const Matrix camera = camera_matrix(angle);
+    app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
+    app.gl().BindVertexArray(*array);
+    app.gl().DrawArrays(GL_TRIANGLES, 0, 6 * slices);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+std::vector<SliceScene> all_slice_scenes() {
+  return {immediate_rgba(), display_list_texgen(), client_arrays_table(), vertex_shader_varying(), core_batched()};
+}
+
+}  // namespace understudy::spu::testing

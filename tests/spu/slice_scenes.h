@@ -1,0 +1,37 @@
+// Scenes that draw the same volume by slices, each in another way of speaking OpenGL.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gl_application.h"
+
+namespace understudy::spu::testing {
+
+/// What one application does in a frame, through whatever table it is given.
+struct SliceScene {
+  std::string name;
+  Profile profile = Profile::compatibility;
+  std::function<void(GlApplication&)> set_up;
+  std::function<void(GlApplication&, double angle)> slices;
+
+  /// A whole frame: clears, then draws the slices.
+  void draw(GlApplication& app, double angle) const;
+};
+
+/// glBegin/glEnd quads, fixed function, RGBA8 voxels.
+SliceScene immediate_rgba();
+/// A display list of quads with eye-linear texgen, six clip planes, lighting with a constant normal, an alpha test, and
+/// an INTENSITY texture padded to powers of two: what osgvolume does.
+SliceScene display_list_texgen();
+/// GLSL 1.20 fragment shader on gl_TexCoord[0] with a 1-D table; one client array refilled for every slice.
+SliceScene client_arrays_table();
+/// GLSL 1.20 with a vertex shader and a varying of its own.
+SliceScene vertex_shader_varying();
+/// Core profile, vertex buffer, one batched draw of triangles with uniforms.
+SliceScene core_batched();
+
+std::vector<SliceScene> all_slice_scenes();
+
+}  // namespace understudy::spu::testing

@@ -137,7 +137,7 @@ auto sample(const std::vector<Element>& voxels, const std::array<int, 3>& size, 
     high[axis] = std::clamp(floor + 1, 0, size[axis] - 1);
   }
   const auto at = [&](int x, int y, int z) {
-    return voxels[static_cast<std::size_t>((z * size[1] + y) * size[0] + x)];
+    return voxels[(static_cast<std::size_t>(z) * size[1] + y) * size[0] + x];
   };
   const auto row = [&](int y, int z) { return mix(at(low[0], y, z), at(high[0], y, z), weight[0]); };
   const auto layer = [&](int z) { return mix(row(low[1], z), row(high[1], z), weight[1]); };
@@ -201,6 +201,10 @@ struct Case {
   std::string type;
   bool orthographic;
 };
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.mode << ' ' << c.type << (c.orthographic ? " orthographic" : " perspective");
+}
 
 class Description : public testing::TestWithParam<Case> {};
 

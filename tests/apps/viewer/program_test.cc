@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "tests/apps/viewer/run_viewer.h"
 #include "tests/apps/viewer/temporary_folder.h"
+#include "tests/apps/viewer/virtual_display.h"
 
 namespace viewer_test {
 namespace {
@@ -118,7 +120,7 @@ TEST(Program, FrameAndAxesAreOutsideTheVolumeAndCanBeSwitchedOff) {
 TEST(Program, SolidFrameHidesAndIsHiddenByTheVolume) {
   const TemporaryFolder folder;
   // Opaque throughout, so that only frame lines in front of it can be seen over it.
-  const std::string file = folder.write("block.16x16x16", std::string(16 * 16 * 16, '\xff'));
+  const std::string file = folder.write("block.16x16x16", std::string(std::size_t{16} * 16 * 16, '\xff'));
   const std::vector<std::string> arguments = {file, "--preset", "step"};
   std::vector<std::string> bare = arguments;
   bare.emplace_back("--no-frame");
@@ -144,6 +146,25 @@ TEST(Program, TheSameOptionsGiveTheSamePictureOnBothKindsOfSurface) {
   const Difference d = difference(pbuffer, framebuffer);
   std::printf("pbuffer against framebuffer object: PSNR %.2f dB\n", d.psnr);
   EXPECT_GT(d.psnr, 50);
+}
+
+TEST(Program, AWindowShowsTheSamePicture) {
+  const std::optional<VirtualDisplay> display = VirtualDisplay::start();
+  if (!display) GTEST_SKIP() << "Xvfb is not installed";
+  const TemporaryFolder folder;
+  const std::string file = ball_file(folder);
+  for (const char* mode : {"rgba", "table", "core"}) {
+    SCOPED_TRACE(mode);
+    const std::string png = folder.file("window.png");
+    const Outcome outcome = run_viewer({file, "--mode", mode, "--frames", "2", "--window-size", "128", "128",
+                                        "--screenshot", png, "--print-times"},
+                                       display->name());
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("median: "));
+    const Difference d = difference(read_png(png), picture_of(folder, {file, "--mode", mode}));
+    std::printf("%s: window against off screen: PSNR %.2f dB\n", mode, d.psnr);
+    EXPECT_GT(d.psnr, 50);
+  }
 }
 
 TEST(Program, OrbitTurnsTheLastFrameToWhereTheCameraWouldBe) {
@@ -249,7 +270,7 @@ TEST(Program, WithoutADisplayAWindowEndsWithStatusThreeAndNamesTheWayOut) {
 TEST(Program, NaNVoxelsAreShownAsEmptyWithOneWarning) {
   const TemporaryFolder folder;
   // Fog everywhere: only "empty" can explain a hole.
-  std::vector<float> voxels(16 * 16 * 16, 1.0F);
+  std::vector<float> voxels(std::size_t{16} * 16 * 16, 1.0F);
   voxels[0] = 0.0F;
   const std::string whole = folder.write("whole.raw", std::as_bytes(std::span(voxels)));
   std::fill(voxels.begin() + 1, voxels.end(), std::numeric_limits<float>::quiet_NaN());

@@ -30,14 +30,16 @@ std::string contents(const std::string& path) {
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
   std::vector<char*> result;
+  result.reserve(texts.size() + 1);
   for (std::string& text : texts) result.push_back(text.data());
   result.push_back(nullptr);
   return result;
 }
 
 // The graphics libraries of the system keep memory until the process ends; only our own mistakes should count.
-std::vector<std::string> viewer_environment() {
+std::vector<std::string> viewer_environment(const std::string& display) {
   std::vector<std::string> result = {"LIBGL_ALWAYS_SOFTWARE=1", "ASAN_OPTIONS=detect_leaks=0"};
+  if (!display.empty()) result.push_back("DISPLAY=" + display);
   constexpr std::string_view replaced[] = {
       "LIBGL_ALWAYS_SOFTWARE=", "ASAN_OPTIONS=", "DISPLAY=", "LD_PRELOAD=", "LD_AUDIT="};
   for (char** variable = environ; *variable; ++variable)
@@ -49,14 +51,14 @@ std::vector<std::string> viewer_environment() {
 
 }  // namespace
 
-Outcome run_program(const std::vector<std::string>& command) {
+Outcome run_program(const std::vector<std::string>& command, const std::string& display) {
   const TemporaryFolder folder;
   const std::string out = folder.file("out"), err = folder.file("err");
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
-  std::vector<std::string> arguments = command, environment = viewer_environment();
+  std::vector<std::string> arguments = command, environment = viewer_environment(display);
   pid_t child = 0;
   const int failed = posix_spawnp(&child, command.front().c_str(), &actions, nullptr,
                                   pointers(arguments).data(), pointers(environment).data());
@@ -67,10 +69,10 @@ Outcome run_program(const std::vector<std::string>& command) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(err)};
 }
 
-Outcome run_viewer(const std::vector<std::string>& arguments) {
+Outcome run_viewer(const std::vector<std::string>& arguments, const std::string& display) {
   std::vector<std::string> command = {VIEWER_PROGRAM};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_program(command);
+  return run_program(command, display);
 }
 
 Picture read_png(const std::string& path) {

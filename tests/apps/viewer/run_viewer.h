@@ -13,11 +13,11 @@ struct Outcome {
   std::string err;
 };
 
-/// With LIBGL_ALWAYS_SOFTWARE=1 and without DISPLAY.
-Outcome run_viewer(const std::vector<std::string>& arguments);
+/// With LIBGL_ALWAYS_SOFTWARE=1, and `display` as DISPLAY (none when it is empty).
+Outcome run_viewer(const std::vector<std::string>& arguments, const std::string& display = "");
 
 /// The same for any program found on PATH.
-Outcome run_program(const std::vector<std::string>& command);
+Outcome run_program(const std::vector<std::string>& command, const std::string& display = "");
 
 struct Picture {
   int width = 0;

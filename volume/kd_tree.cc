@@ -78,8 +78,8 @@ void KdTree::walk(int child, const std::array<double, 4>& eye, bool reversed, st
     return;
   }
   const Node& node = nodes_[std::size_t(child)];
-  // A ray crosses the plane towards -(eye - plane * eye.w), whatever the sign of eye.w: no division, so nearly
-  // parallel projections need no care.
+  // A ray crosses the plane towards -(eye - plane * eye.w), whatever the sign of eye.w: no division, so
+  // nearly parallel projections need no care.
   const bool high_first = (eye[node.axis] - node.plane * eye[3] > 0) != reversed;
   walk(high_first ? node.high : node.low, eye, reversed, order);
   walk(high_first ? node.low : node.high, eye, reversed, order);

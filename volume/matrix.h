@@ -42,12 +42,12 @@ inline Vec4 transform_point(const Matrix4& m, const Vec3& p) {
 }
 
 /// Empty when `m` holds a value that is not finite, or is singular to working precision: when a pivot falls
-/// under 1e-14 of its column after rows and columns were scaled to a largest entry of one. Scaling first keeps
-/// honest extremes (anisotropy 1e6, near : far = 1e-12) apart from singular matrices.
+/// under 1e-14 of its column after rows and columns were scaled to a largest entry of one. Scaling first
+/// keeps honest extremes (anisotropy 1e6, near : far = 1e-12) apart from singular matrices.
 std::optional<Matrix4> inverse(const Matrix4& m);
 
-/// The half-space that keeps the image of p under `forward` exactly when `plane` keeps p; wants the inverse of
-/// the affine map `forward`.
+/// The half-space that keeps the image of p under `forward` exactly when `plane` keeps p; wants the inverse
+/// of the affine map `forward`.
 HalfSpace transform_half_space(const Matrix4& inverse_of_forward, const HalfSpace& plane);
 
 }  // namespace understudy::volume

@@ -1,8 +1,8 @@
 // Bricked storage of one rank's share of a volume.
 //
 // Blocks of 8^3 cells keep their 9^3 texels together, so that the eight corners of any cell lie close to each
-// other in one block and sampling needs neither border tests nor a neighbour (x 1.44 memory). A block of equal
-// texels shares one stored block with all others of the same value: padding and air cost no memory.
+// other in one block and sampling needs neither border tests nor a neighbour (x 1.44 memory). A block of
+// equal texels shares one stored block with all others of the same value: padding and air cost no memory.
 #pragma once
 
 #include <cstddef>
@@ -27,14 +27,14 @@ class BrickStore {
   static constexpr int block_slice = block_row * block_row;  ///< texels from one z to the next
   static constexpr int block_texels = block_row * block_slice;
 
-  /// Holds the blocks that meet `owned_cells` (cell coordinates, half-open, inside the lattice; may be empty).
-  /// Throws std::invalid_argument.
+  /// Holds the blocks that meet `owned_cells` (cell coordinates, half-open, inside the lattice; may be
+  /// empty). Throws std::invalid_argument.
   BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells);
 
   /// Texels of the slices [first_slice, first_slice + slices) of `stored` (absolute z), tightly packed, x
-  /// fastest, the slab covering `stored` in x and y. Slabs come once each; in rising order they need the least
-  /// memory. Throws std::invalid_argument when the slab lies outside `stored`, came before, or has the wrong
-  /// size.
+  /// fastest, the slab covering `stored` in x and y. Slabs come once each; in rising order they need the
+  /// least memory. Throws std::invalid_argument when the slab lies outside `stored`, came before, or has the
+  /// wrong size.
   void add_slices(int first_slice, int slices, std::span<const std::byte> texels);
 
   /// To be called after the last slab, before sampling. Throws std::invalid_argument naming a slice that is
@@ -52,11 +52,12 @@ class BrickStore {
   const std::array<int, 3>& block_counts() const { return block_counts_; }
   std::size_t blocks() const { return blocks_.size(); }
 
-  /// Per block its 9^3 texels, x fastest, of the volume's texel type. Sixteen bytes may be read from the lowest
-  /// corner of any cell, and from the corner above it in z.
+  /// Per block its 9^3 texels, x fastest, of the volume's texel type. Sixteen bytes may be read from the
+  /// lowest corner of any cell, and from the corner above it in z.
   std::span<const std::byte* const> block_data() const { return blocks_; }
 
-  /// The values that occur in a block, in units of the texel type (u8: 0..255), NaN left out; none: low > high.
+  /// The values that occur in a block, in units of the texel type (u8: 0..255), NaN left out; none: low >
+  /// high.
   struct Range {
     float low = 0;
     float high = 0;
@@ -71,7 +72,8 @@ class BrickStore {
   /// Everything this store keeps, in bytes.
   std::size_t bytes() const;
 
-  /// Infinite and huge values of a float field are brought into this range, so that no interpolation overflows.
+  /// Infinite and huge values of a float field are brought into this range, so that no interpolation
+  /// overflows.
   static constexpr float largest_value = 4.2535296e37F;  // 2^125
 
  private:

@@ -22,8 +22,8 @@ struct CellLattice {
   TexelBox box() const { return {origin, {origin[0] + cells[0], origin[1] + cells[1], origin[2] + cells[2]}}; }
 };
 
-/// The cells that samples of `volume` can fall in. An axis of one stored texel has one cell, both ends of which
-/// are that texel. Throws std::invalid_argument when size or stored box make no sense.
+/// The cells that samples of `volume` can fall in. An axis of one stored texel has one cell, both ends of
+/// which are that texel. Throws std::invalid_argument when size or stored box make no sense.
 CellLattice cell_lattice(const VolumeDescription& volume);
 
 /// The texel (in texture coordinates) behind lattice point `index` of `axis`, 0 <= index <= cells.

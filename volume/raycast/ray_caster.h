@@ -1,10 +1,10 @@
-// Ray casting on the CPU: composites the samples that the application's own slices would have shown, as far as
-// they fall in the cells that a BrickStore owns.
+// Ray casting on the CPU: composites the samples that the application's own slices would have shown, as far
+// as they fall in the cells that a BrickStore owns.
 //
 // Sample i of a pixel lies where the pixel's ray meets plane i of the request. Every rank computes
 // bit-identical sample positions and counts the samples of its own cells only, so the pictures of all ranks,
-// composed in visibility order, equal the picture of one rank that owns everything (up to the rounding of float
-// composition and the termination threshold).
+// composed in visibility order, equal the picture of one rank that owns everything (up to the rounding of
+// float composition and the termination threshold).
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,9 @@ constexpr float neutral_value(Operator op) {
   return op == Operator::min ? std::numeric_limits<float>::max() : 0.0F;
 }
 
-/// Throws std::invalid_argument when `request` cannot be rendered on `volume`: singular matrix, values that are
-/// not finite, planes without direction, too many planes, a classification that does not fit the texel type.
+/// Throws std::invalid_argument when `request` cannot be rendered on `volume`: singular matrix, values that
+/// are not finite, planes without direction, too many planes, a classification that does not fit the texel
+/// type.
 void validate(const VolumeDescription& volume, const RenderRequest& request);
 
 class RayCaster {
@@ -37,13 +38,13 @@ class RayCaster {
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
 
-  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral. Runs on all
-  /// cores of the calling TBB arena. What depends on the classification alone is kept for the next call.
+  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral. Runs on
+  /// all cores of the calling TBB arena. What depends on the classification alone is kept for the next call.
   ///
-  /// Adds to `counts`: rays with at least one sample in the owned cells, of these the rays that became opaque,
-  /// the samples in the owned cells (had nothing been left out) and those taken, the blocks held and those
-  /// empty under the classification. Sums over ranks: `samples` is the same for every partition, a ray counts
-  /// on every rank it crosses. Leaves bytes and times to the caller. Throws as validate() does, and
+  /// Adds to `counts`: rays with at least one sample in the owned cells, of these the rays that became
+  /// opaque, the samples in the owned cells (had nothing been left out) and those taken, the blocks held and
+  /// those empty under the classification. Sums over ranks: `samples` is the same for every partition, a ray
+  /// counts on every rank it crosses. Leaves bytes and times to the caller. Throws as validate() does, and
   /// std::logic_error on an unfinished store.
   void render(const RenderRequest& request, Image& out, FrameCounts& counts);
 

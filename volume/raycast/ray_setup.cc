@@ -16,8 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Products and sums stay unfused here: every node must round alike, whatever its instruction set.
 
-/// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or is
-/// null.
+/// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or
+/// is null.
 void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
                 std::array<double, 2> depth_range, int x, int y, int width, std::size_t offset,
                 RayStrip& strip) {

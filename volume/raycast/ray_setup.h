@@ -4,8 +4,9 @@
 //     (A0 - X A3) . (t, 1) = 0,   (A1 - Y A3) . (t, 1) = 0,   normal . t = s.
 //
 // Cramer's rule gives t = (h + s c) / det with h, c and det = normal . c linear in X and Y (the products X Y
-// cancel, since A3 x A3 = 0). So are all quantities a ray needs, and every bound on the sample index i (region,
-// near, far and clip planes) has the form (value + i slope) / det >= 0 with value and slope linear in X and Y.
+// cancel, since A3 x A3 = 0). So are all quantities a ray needs, and every bound on the sample index i
+// (region, near, far and clip planes) has the form (value + i slope) / det >= 0 with value and slope linear
+// in X and Y.
 #pragma once
 
 #include <array>
@@ -41,8 +42,8 @@ struct RaySetup {
   double pixel_to_y = 0, first_y = 0;
   int last_plane = 0;
 
-  /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that say
-  /// so.
+  /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that
+  /// say so.
   std::array<float, 3> owned_low{}, owned_high{};
   std::array<bool, 3> low_is_bound{}, high_is_bound{};
   std::array<float, 3> resting_place{};  ///< inside the lowest owned cell
@@ -56,8 +57,9 @@ constexpr int tile_width = 32;
 constexpr int strip_height = 4;
 constexpr int strip_rays = tile_width * strip_height;
 
-/// A strip of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float after
-/// each of the two operations), lattice coordinates; first <= k <= last are its samples in the owned cells.
+/// A strip of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float
+/// after each of the two operations), lattice coordinates; first <= k <= last are its samples in the owned
+/// cells.
 struct RayStrip {
   alignas(64) std::array<std::array<float, strip_rays>, 3> start;
   alignas(64) std::array<std::array<float, strip_rays>, 3> step;

@@ -14,7 +14,8 @@ SkipMap::SkipMap(const std::array<int, 3>& counts, std::vector<bool> shows) {
     }
   if (empty_blocks_ == 0) return;
 
-  // Two sweeps, each with the half of the 26 neighbours that it has passed already, are exact for this metric.
+  // Two sweeps, each with the half of the 26 neighbours that it has passed already, are exact for this
+  // metric.
   const auto relax = [&](int x, int y, int z, int direction) {
     std::uint8_t& here = distances_[(std::size_t(z) * ny + y) * nx + x];
     if (here == 0) return;

@@ -1,13 +1,12 @@
 // All that the generic kernel does, on the vector instructions of the machine it runs on.
 //
-// A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q, row
-// g.
-//  - The corners of a cell lie close together in its block, so that no gather is needed: for bytes two loads of
-//  16 bytes, a
-//    shuffle and one 16-bit multiply-add interpolate four edges along x, with weights of 15 bits.
-//  - Colours are blended ray by ray, components side by side: a table entry is one load.
-//  - Early termination and empty blocks are looked at once per eight samples, so that addresses never wait for
-//  colours.
+// A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q,
+// row g.
+//
+// The corners of a cell lie close together in its block, so that no gather is needed: for bytes two loads of
+// 16 bytes, a shuffle and one 16-bit multiply-add interpolate four edges along x, with weights of 15 bits.
+// Colours are blended ray by ray, components side by side: a table entry is one load. Early termination and
+// empty blocks are looked at once per eight samples, so that addresses never wait for colours.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -72,8 +71,8 @@ HWY_INLINE Ints pairwise_products(Ints a, Ints b) {
                                        unused);
 }
 
-/// Four vectors of one block per ray, an edge in each lane, become four vectors of one edge each, a ray in each
-/// lane.
+/// Four vectors of one block per ray, an edge in each lane, become four vectors of one edge each, a ray in
+/// each lane.
 HWY_INLINE void transpose(std::array<Floats, 4>& v) {
   const FloatTag narrow;
   const hn::Repartition<double, FloatTag> wide;
@@ -102,9 +101,9 @@ HWY_INLINE Ints truncated(Floats v) {
 #endif
 }
 
-/// Texels as the kernel reads them. Interpolation along x in 16-bit integers has the weights -2^15 (1 - s) and
-/// -2^15 s, because one is representable that way, and a power of two leaves texel values exact; `factor` and
-/// `zero` say how its results relate to texel values: result = factor * (value - zero).
+/// Texels as the kernel reads them. Interpolation along x in 16-bit integers has the weights -2^15 (1 - s)
+/// and -2^15 s, because one is representable that way, and a power of two leaves texel values exact; `factor`
+/// and `zero` say how its results relate to texel values: result = factor * (value - zero).
 struct Bytes8 {
   static constexpr bool scalar = true;
   static constexpr std::size_t bytes = 1;
@@ -207,7 +206,8 @@ struct Packet {
   bool done() const { return hn::AllTrue(FloatTag(), hn::Gt(k, last)); }
 };
 
-/// Packets side by side that leap together, so that one's chain of instructions fills the gaps of the other's.
+/// Packets side by side that leap together, so that one's chain of instructions fills the gaps of the
+/// other's.
 constexpr std::size_t group = 2;
 static_assert(tile_width % (4 * group) == 0);
 using Group = std::array<Packet, group>;
@@ -347,8 +347,8 @@ constexpr std::array<std::size_t, 4> edge_offsets{0, BrickStore::block_row, Bric
 template <std::size_t q>
 HWY_INLINE Floats edges_of_column(const Corners& corners, const Located& at, const Constants&, Bytes8) {
   const ByteTag d;
-  // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, upper slice
-  // second.
+  // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, upper
+  // slice second.
   alignas(16) static constexpr std::uint8_t lower[16] = {0,   128, 1,   128, 9,   128, 10,  128,
                                                          128, 128, 128, 128, 128, 128, 128, 128};
   alignas(16) static constexpr std::uint8_t upper[16] = {128, 128, 128, 128, 128, 128, 128, 128,
@@ -407,8 +407,8 @@ HWY_INLINE Floats field_at(const Located& at, const Constants& constants, Source
                        mix_or_choose(edges[2], edges[3], at.y, choose), at.z, choose);
 }
 
-/// What a sample adds to its ray's pixel. Scalars: a place in the table, whose entries are loaded when they are
-/// blended.
+/// What a sample adds to its ray's pixel. Scalars: a place in the table, whose entries are loaded when they
+/// are blended.
 struct TablePlace {
   alignas(64) std::array<std::uint32_t, lanes> entry;  // as an index of floats
   Floats between;                                      // fraction of the way to the next entry
@@ -528,8 +528,8 @@ HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& sam
 }
 
 /// Eight samples of every ray. Three passes: within each, samples do not wait for one another, and the
-/// processor's window holds several of them; one after the other, a sample's chain of some hundred cycles would
-/// be all it sees.
+/// processor's window holds several of them; one after the other, a sample's chain of some hundred cycles
+/// would be all it sees.
 template <typename Source>
 HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
   using Classified = std::conditional_t<Source::scalar, TablePlace, Colours>;

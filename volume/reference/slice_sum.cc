@@ -181,8 +181,8 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
                  far = transform(*clip_to_texture, {X, Y, 1, 1});
       double* pixel = image.rgba.data() + (image.at(x, y) - image.rgba.data());
       for (int i = 0; i < request.planes.count; ++i) {
-        // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or not
-        // at all.
+        // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or
+        // not at all.
         const double plane = request.planes.first + i * request.planes.spacing;
         const auto offset = [&](const Vec4& p) {
           return dot(request.planes.normal, {p[0], p[1], p[2]}) - plane * p[3];

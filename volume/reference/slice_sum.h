@@ -1,6 +1,6 @@
 // What the application's slices mean, literally and in double precision: for every pixel the ordered
-// composition of every plane that its ray meets. Slow, plain and written independently of the ray caster, which
-// is judged by it.
+// composition of every plane that its ray meets. Slow, plain and written independently of the ray caster,
+// which is judged by it.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace understudy::volume {
 using Field = std::function<std::array<double, 4>(const Vec3& t)>;
 
 /// The field of a texture: the texels of `volume.stored`, x fastest, under OpenGL's filter and wrap rules. A
-/// linear sample next to a NaN texel is NaN; infinite texels become huge. Copies the texels.
+/// linear sample whose cell has a NaN corner is NaN; infinite texels become huge. Copies the texels.
 Field texture_field(const VolumeDescription& volume, Filter filter, std::span<const std::byte> texels);
 
 struct ReferenceImage {

@@ -52,8 +52,8 @@ class BrickStore {
   const std::array<int, 3>& block_counts() const { return block_counts_; }
   std::size_t blocks() const { return blocks_.size(); }
 
-  /// Per block its 9^3 texels, x fastest, of the volume's texel type. Sixteen bytes may be read from the
-  /// lowest corner of any cell, and from the corner above it in z.
+  /// Per block its 9^3 texels, x fastest, of the volume's texel type. Sixteen bytes may be read from where any
+  /// edge of a cell along x begins; of u8, from the lower edge of a slice only.
   std::span<const std::byte* const> block_data() const { return blocks_; }
 
   /// The values that occur in a block, in units of the texel type (u8: 0..255), NaN left out; none: low >

@@ -58,6 +58,14 @@ const DispatchTable& Chain::below(const Unit& unit, Phase phase) const {
   return driver_;
 }
 
+const DispatchTable& Chain::face(const Unit& unit, Phase phase) const {
+  if (tables_[int(phase)].empty()) build(phase);
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (units_[u].get() == &unit) return *tables_[int(phase)][u];
+  }
+  return driver_;
+}
+
 void Chain::settle() {
   for (const auto& unit : units_) unit->settle();
 }

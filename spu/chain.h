@@ -19,9 +19,10 @@ enum class Phase {
   plain,      ///< no volume texture exists: nothing is watched but texture uploads, lists and shaders
   watching,   ///< a volume texture exists: draws are looked at
   deferring,  ///< a run of slices is open: every call but more of the same closes it first
+  owing,      ///< watching, and the depth that slices would have written is not there: see volume/depth_debt.h
   compiling,  ///< between glNewList and glEndList: calls are recorded by the driver, not executed
 };
-constexpr int phase_count = 4;
+constexpr int phase_count = 5;
 
 enum class FrameEnd { swap, wait, make_current, destroy };
 
@@ -72,6 +73,8 @@ class Chain {
   /// The table above which `unit` stands, in the current phase and in a given one.
   const DispatchTable& below(const Unit& unit) const { return below(unit, phase_); }
   const DispatchTable& below(const Unit& unit, Phase phase) const;
+  /// The table that calls to `unit` come through.
+  const DispatchTable& face(const Unit& unit, Phase phase) const;
   /// The table the application sees.
   const DispatchTable& head(Phase phase) const;
   const DispatchTable& driver() const { return driver_; }

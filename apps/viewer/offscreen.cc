@@ -50,7 +50,8 @@ std::vector<EGLDisplay> candidate_displays() {
   return displays;
 }
 
-// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has.
+// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha: nobody reads
+// it, as in a window.
 EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
   const EGLint wanted[] = {EGL_SURFACE_TYPE,
                            surface_type,
@@ -62,8 +63,6 @@ EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
                            8,
                            EGL_BLUE_SIZE,
                            8,
-                           EGL_ALPHA_SIZE,
-                           8,
                            EGL_DEPTH_SIZE,
                            24,
                            EGL_NONE};
@@ -72,10 +71,11 @@ EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
   if (!eglChooseConfig(display, wanted, configs.data(), max_configs, &count)) return nullptr;
   for (EGLint i = 0; i < count; ++i) {
     EGLConfig config = configs[static_cast<std::size_t>(i)];
-    EGLint red = 0, samples = 0;
+    EGLint red = 0, alpha = 0, samples = 0;
     eglGetConfigAttrib(display, config, EGL_RED_SIZE, &red);
+    eglGetConfigAttrib(display, config, EGL_ALPHA_SIZE, &alpha);
     eglGetConfigAttrib(display, config, EGL_SAMPLES, &samples);
-    if (red == 8 && samples == 0) return config;
+    if (red == 8 && alpha == 0 && samples == 0) return config;
   }
   return nullptr;
 }

@@ -247,13 +247,14 @@ void APIENTRY call_list_in_list(GLuint list) {
 void Track::begin_list(GLuint list) {
   list_ = list;
   open_list_ = {};
+  phase_before_list_ = chain_.phase();
   chain_.set_phase(Phase::compiling);
 }
 
 void Track::end_list() {
   if (list_ != 0) chain_.group().list_defined(list_, open_list_);
   list_ = 0;
-  chain_.set_phase(resting_phase());
+  chain_.set_phase(phase_before_list_);
 }
 
 void Track::frame_ended(FrameEnd) {

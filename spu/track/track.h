@@ -17,10 +17,6 @@ class Track final : public Unit {
   void fill(Phase phase, DispatchTable& table) override;
   void frame_ended(FrameEnd kind) override;
 
-  /// The phase to be in outside runs and lists. Called at frame ends, so that a 3-D texture that another context of
-  /// the group defined is noticed here too.
-  Phase resting_phase() const { return chain_.group().has_volumes() ? Phase::watching : Phase::plain; }
-
   /// What the list being compiled holds so far.
   ListRecord& open_list() { return open_list_; }
   void begin_list(GLuint list);
@@ -35,6 +31,7 @@ class Track final : public Unit {
  private:
   Chain& chain_;
   GLuint list_ = 0;
+  Phase phase_before_list_ = Phase::plain;
   ListRecord open_list_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "spu/track/track.h"
 #include "spu/volume/depth.h"
+#include "spu/volume/depth_debt.h"
 #include "spu/volume/draw_slots.h"
 #include "spu/volume/geometry/feedback.h"
 #include "spu/volume/save_frames.h"
@@ -196,6 +197,7 @@ const GlContext& VolumeUnit::context() {
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::watching) fill_watching_slots(table);
+  if (phase == Phase::owing) fill_owing_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
 }
 
@@ -251,7 +253,7 @@ bool VolumeUnit::opens_run() {
 void VolumeUnit::close_run() {
   if (!run_) return;
   const std::unique_ptr<Run> run = std::move(run_);
-  chain_.set_phase(Phase::watching);
+  chain_.set_phase(resting_phase());
   if (run->inside_begin) {
     leave(run->pipeline().volume.texture, "calls other than vertices between glBegin and glEnd");
     inside_begin = true;
@@ -527,6 +529,7 @@ void VolumeUnit::substitute(const Run& run) {
   } else {
     presenter_->present(shown, s.pipeline.alpha, nullptr);
   }
+  settle_depth(s);
   if (s.volume.frames == 0 || options.explain) explain(s);
   ++s.volume.frames;
   ++frame_.substituted;
@@ -534,8 +537,28 @@ void VolumeUnit::substitute(const Run& run) {
   frame_.counts += counts;
 }
 
+void VolumeUnit::settle_depth(const Substitution& s) {
+  if (!s.pipeline.depth_test || !s.pipeline.depth_write) return;
+  if (s.volume.frames == 0 || s.volume.depth_looked_at) pay_depth(*context().gl, s.run);
+  if (s.volume.depth_looked_at) return;
+  depth_watched_ = s.pipeline.volume.texture;
+  chain_.set_phase(Phase::owing);
+}
+
+void VolumeUnit::depth_looked_at() {
+  known(depth_watched_).depth_looked_at = true;
+  depth_cleared();
+}
+
+void VolumeUnit::depth_cleared() {
+  depth_watched_ = 0;
+  chain_.set_phase(Phase::watching);
+}
+
 void VolumeUnit::frame_ended(FrameEnd kind) {
   if (kind != FrameEnd::swap) return;
+  // After a swap the depth buffer's contents are undefined.
+  if (depth_watched_ != 0) depth_cleared();
   ++frames_;
   frame_.time_ms = milliseconds_since(frame_started_);
   count_frame(frame_);

@@ -30,6 +30,7 @@ struct KnownVolume {
   std::array<float, 2> range{0, 1};
   std::optional<volume::Classification> classification;
   std::vector<float> classification_inputs;  ///< what the classification was probed under
+  bool depth_looked_at = false;  ///< somebody used the depth that its slices write
   std::string given_back;  ///< why the volume is left to the application for good; empty: it is not
   std::string last_reason;  ///< the last reason for leaving it that was said
   std::uint64_t left_in_frame = ~std::uint64_t(0);
@@ -58,6 +59,10 @@ class VolumeUnit final : public Unit {
   /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of OpenGL.
   bool inside_begin = false;
 
+  /// The depth that the last substituted slices would have written is being used; or is gone, unused.
+  void depth_looked_at();
+  void depth_cleared();
+
   const GlContext& context();
   const DispatchTable& next() const { return chain_.below(*this); }
   Chain& chain() { return chain_; }
@@ -74,6 +79,9 @@ class VolumeUnit final : public Unit {
   void compose_request(Substitution& s);
   void verify(Substitution& s, const volume::ImageView& image);
   void explain(const Substitution& s);
+  /// The phase between runs.
+  Phase resting_phase() const { return depth_watched_ != 0 ? Phase::owing : Phase::watching; }
+  void settle_depth(const Substitution& s);
   void leave(GLuint texture, const std::string& reason, bool say = true);
   void forget_deleted_volumes();
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
@@ -85,6 +93,7 @@ class VolumeUnit final : public Unit {
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>> stages_;  ///< by program, with the link they stem from
+  GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none
   FrameRecord frame_{};
   std::uint64_t frames_ = 0;
   std::uint64_t saved_ = 0;

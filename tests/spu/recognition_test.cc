@@ -127,5 +127,37 @@ TEST(RecognitionOfDepth, OpaqueGeometryBeforeTheVolumeHidesIt) {
   }
 }
 
+TEST(RecognitionOfDepth, WhatTheSlicesWriteIsThereForWhoeverLooks) {
+  for (const bool looks_at_it : {true, false}) {
+    auto app = GlApplication::start(Profile::compatibility);
+    if (!app) GTEST_SKIP() << "no EGL context here";
+    const SliceScene scene = immediate_rgba();
+    scene.set_up(*app);
+    const auto frame = [&](bool under) {
+      app->use_chain(under);
+      app->gl().Enable(GL_DEPTH_TEST);
+      app->gl().DepthMask(GL_TRUE);
+      scene.draw(*app, 25);
+      if (looks_at_it) {
+        // Behind the volume's front: the slices' depth hides it.
+        app->gl().Begin(GL_QUADS);
+        app->gl().Color4f(0, 1, 0, 1);
+        for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) app->gl().Vertex3d(x, y, 0.5);
+        app->gl().End();
+      }
+      const auto picture = app->read_pixels();
+      app->end_frame();
+      return picture;
+    };
+    const auto bare = frame(false);
+    for (int i = 0; i < 3; ++i) {
+      const double likeness = psnr(frame(true), bare);
+      std::printf("%s, frame %d: %.1f dB\n", looks_at_it ? "a quad behind the first slice" : "nothing more", i, likeness);
+      EXPECT_GE(likeness, 40) << "frame " << i;
+    }
+    EXPECT_EQ(app->substituted(), 3U) << app->last_reason();
+  }
+}
+
 }  // namespace
 }  // namespace understudy::spu::testing

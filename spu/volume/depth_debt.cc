@@ -1,0 +1,63 @@
+#include "spu/volume/depth_debt.h"
+
+#include <array>
+#include <string_view>
+
+#include "dispatch/pass_through.h"
+#include "spu/track/calls.h"
+#include "spu/volume/draw_slots.h"
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+VolumeUnit& here() { return *Chain::current()->find<VolumeUnit>(); }
+
+/// A draw with a depth test, or a read: the answer would depend on what is owed.
+struct NoteDepthUse {
+  static const DispatchTable& before(CallId call) {
+    VolumeUnit& unit = here();
+    const bool draw = kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists;
+    if (!draw || unit.context().gl->IsEnabled(GL_DEPTH_TEST)) unit.depth_looked_at();
+    return unit.chain().face(unit, Phase::watching);
+  }
+};
+
+void APIENTRY clear(GLbitfield mask) {
+  VolumeUnit& unit = here();
+  if ((mask & GL_DEPTH_BUFFER_BIT) != 0) unit.depth_cleared();
+  unit.next().Clear(mask);
+}
+
+bool looks_at_depth(CallId call) {
+  if (call == CallId::End || kind_of(call) == CallKind::vertex) return false;
+  if (kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists) return true;
+  const std::string_view name = call_name(call);
+  for (const std::string_view reader : {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glBlit",
+                                        "glDrawPixels", "glBitmap", "glBindFramebuffer"}) {
+    if (name.starts_with(reader)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void pay_depth(const DispatchTable& gl, const Run& run) {
+  std::array<GLboolean, 4> mask{};
+  gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  run.replay(gl);
+  gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
+}
+
+void fill_owing_slots(DispatchTable& table) {
+  fill_watching_slots(table);
+  DispatchTable noting;
+  PassThrough<NoteDepthUse>::fill(noting);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    if (looks_at_depth(CallId(i))) set_slot(table, CallId(i), slot(noting, CallId(i)));
+  }
+  table.Clear = clear;
+}
+
+}  // namespace understudy::spu

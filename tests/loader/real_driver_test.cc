@@ -58,11 +58,11 @@ bool installed(const std::string& program) {
 
 class RealDriver : public ::testing::TestWithParam<Door> {
  protected:
-  /// What it prints, without Understudy's own lines about a body that is not part of this test.
-  static std::string output(Door door, const std::string& display, const std::vector<std::string>& command) {
+  static std::string output(Door door, const std::string& disable, const std::string& display,
+                            const std::vector<std::string>& command) {
     std::vector<std::string> environment = environment_of(door);
     environment.push_back("DISPLAY=" + display);
-    environment.push_back("UNDERSTUDY_DISABLE=1");
+    environment.push_back("UNDERSTUDY_DISABLE=" + disable);
     const Outcome outcome = run_program(environment, command);
     EXPECT_EQ(outcome.status, run_program({"DISPLAY=" + display}, command).status) << outcome.text;
     return outcome.text;
@@ -73,9 +73,12 @@ class RealDriver : public ::testing::TestWithParam<Door> {
     if (!installed(command[0])) GTEST_SKIP() << command[0] << " is not installed (Debian: mesa-utils)";
     const VirtualScreen screen;
     ASSERT_FALSE(screen.display().empty()) << "Xvfb does not start";
-    const std::string bare = output(Door::none, screen.display(), command);
+    const std::string bare = output(Door::none, "0", screen.display(), command);
     ASSERT_GT(bare.size(), 500u) << bare;
-    EXPECT_EQ(output(GetParam(), screen.display(), command), bare) << name_of(GetParam());
+    for (const char* disable : {"0", "1"}) {
+      EXPECT_EQ(output(GetParam(), disable, screen.display(), command), bare)
+          << name_of(GetParam()) << ", UNDERSTUDY_DISABLE=" << disable;
+    }
   }
 };
 

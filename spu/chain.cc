@@ -17,7 +17,9 @@ Chain::~Chain() {
   if (current_chain == this) release_current();
 }
 
-Chain* Chain::current() { return current_chain; }
+Chain* Chain::current() {
+  return current_chain;
+}
 
 void Chain::make_current() {
   current_chain = this;

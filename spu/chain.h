@@ -1,8 +1,9 @@
 // The chain of stream processing units that one OpenGL context's calls run through (Humphreys et al. 2002).
 //
-// A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a unit,
-// starting from a copy of the next unit's: a slot that a unit leaves alone *is* the next unit's pointer, down to the
-// driver's own, and costs nothing. Changing the phase is one store: the thread's entry points read another table.
+// A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a
+// unit, starting from a copy of the next unit's: a slot that a unit leaves alone *is* the next unit's pointer,
+// down to the driver's own, and costs nothing. Changing the phase is one store: the thread's entry points read
+// another table.
 #pragma once
 
 #include <array>
@@ -31,7 +32,8 @@ class Chain;
 class Unit {
  public:
   virtual ~Unit() = default;
-  /// Tells units apart without run-time type information on the way of every call: the address of the type's `tag`.
+  /// Tells units apart without run-time type information on the way of every call: the address of the type's
+  /// `tag`.
   virtual const char* tag_address() const = 0;
   /// Overrides slots of `table`, which holds the next unit's slots of the same phase.
   virtual void fill(Phase phase, DispatchTable& table) = 0;
@@ -49,7 +51,8 @@ class ShareGroup;
 class Chain {
  public:
   /// `switch_table` installs a table as the calling thread's; the door provides it.
-  Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group, void (*switch_table)(const DispatchTable*));
+  Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
+        void (*switch_table)(const DispatchTable*));
   ~Chain();
   Chain(const Chain&) = delete;
   Chain& operator=(const Chain&) = delete;

@@ -9,9 +9,10 @@ namespace understudy::volume {
 
 using Rgba = std::array<float, 4>;
 
-/// A transfer function: N >= 2 premultiplied RGBA entries at low + i (high - low) / (N - 1), linear between entries and
-/// constant outside [low, high]. Values are normalised texel values (u8: v/255, u16: v/65535, float: v).
-/// Alpha is the opacity of one sample on its slice (see SlicePlanes); colour may exceed alpha (glow).
+/// A transfer function: N >= 2 premultiplied RGBA entries at low + i (high - low) / (N - 1), linear between
+/// entries and constant outside [low, high]. Values are normalised texel values (u8: v/255, u16: v/65535,
+/// float: v). Alpha is the opacity of one sample on its slice (see SlicePlanes); colour may exceed alpha
+/// (glow).
 struct TransferFunction {
   float low = 0.0F;
   float high = 1.0F;
@@ -20,12 +21,15 @@ struct TransferFunction {
   bool operator==(const TransferFunction&) const = default;
 };
 
-/// A volume whose texels already are colours: fragment = matrix * texel (row-major, plain RGBA), clamped to [0, 1].
+/// A volume whose texels already are colours: fragment = matrix * texel (row-major, plain RGBA), clamped to [0,
+/// 1].
 struct LinearMap {
   std::array<float, 16> matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  /// The application blends with SRC_ALPHA: colour is multiplied by alpha after the map. False: it is premultiplied already.
+  /// The application blends with SRC_ALPHA: colour is multiplied by alpha after the map. False: it is
+  /// premultiplied already.
   bool multiply_by_alpha = true;
-  /// Fragments whose mapped alpha is not greater are discarded, as by the application's alpha test; negative: none.
+  /// Fragments whose mapped alpha is not greater are discarded, as by the application's alpha test; negative:
+  /// none.
   float alpha_above = -1.0F;
 
   bool operator==(const LinearMap&) const = default;

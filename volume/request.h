@@ -1,8 +1,8 @@
-// What the application's side asks of the render nodes. A request needs nothing but the volume it names: it can be
-// saved, sent, replayed and tested alone.
+// What the application's side asks of the render nodes. A request needs nothing but the volume it names: it can
+// be saved, sent, replayed and tested alone.
 //
-// Texture space is OpenGL's: the volume fills [0,1]^3, texel i of N is centred on (i + 1/2) / N, and the outer half
-// texel belongs to the volume.
+// Texture space is OpenGL's: the volume fills [0,1]^3, texel i of N is centred on (i + 1/2) / N, and the outer
+// half texel belongs to the volume.
 #pragma once
 
 #include <array>
@@ -39,13 +39,13 @@ struct TexelBox {
 
 struct VolumeDescription {
   VolumeId id = 0;
-  std::uint64_t version = 0;      ///< grows whenever the texels change
-  std::array<int, 3> size{};      ///< of the whole texture, in texels
+  std::uint64_t version = 0;  ///< grows whenever the texels change
+  std::array<int, 3> size{};  ///< of the whole texture, in texels
   TexelType type = TexelType::u8;
   std::array<Wrap, 3> wrap{};
-  Rgba border{};                  ///< the texture's border colour; scalar fields use the first component
-  /// The texels that travel: the part of the texture that the application shows, with one texel around it for the
-  /// filter. What lies outside (power-of-two padding) is never sent and never sampled.
+  Rgba border{};  ///< the texture's border colour; scalar fields use the first component
+  /// The texels that travel: the part of the texture that the application shows, with one texel around it for
+  /// the filter. What lies outside (power-of-two padding) is never sent and never sampled.
   TexelBox stored;
 
   bool operator==(const VolumeDescription&) const = default;
@@ -54,8 +54,8 @@ struct VolumeDescription {
 enum class Operator : std::uint8_t { over, max, min, add };
 enum class Filter : std::uint8_t { nearest, linear };
 
-/// The application's own sample positions: planes normal . t = first + i * spacing in texture space, 0 <= i < count.
-/// Plane 0 is the front: under `over`, sample i covers sample i + 1.
+/// The application's own sample positions: planes normal . t = first + i * spacing in texture space, 0 <= i <
+/// count. Plane 0 is the front: under `over`, sample i covers sample i + 1.
 struct SlicePlanes {
   Vec3 normal{};
   double first = 0;
@@ -77,21 +77,21 @@ struct HalfSpace {
 /// Window depth in [0,1] of the opaque geometry already drawn: samples that are not nearer are hidden.
 struct DepthImage {
   Rect rect;
-  std::vector<float> depth;       ///< rows bottom up
-  bool or_equal = false;          ///< GL_LEQUAL instead of GL_LESS
+  std::vector<float> depth;  ///< rows bottom up
+  bool or_equal = false;     ///< GL_LEQUAL instead of GL_LESS
 };
 
 struct RenderRequest {
   VolumeId volume = 0;
   std::uint64_t version = 0;
-  Matrix4 texture_to_clip{};      ///< clip coordinates = texture_to_clip * (t, 1)
-  Rect viewport;                  ///< as given to glViewport
-  Rect window;                    ///< the pixels that may be touched: viewport, scissor and framebuffer intersected
+  Matrix4 texture_to_clip{};  ///< clip coordinates = texture_to_clip * (t, 1)
+  Rect viewport;              ///< as given to glViewport
+  Rect window;                ///< the pixels that may be touched: viewport, scissor and framebuffer intersected
   std::array<double, 2> depth_range{0, 1};
   SlicePlanes planes;
   Operator op = Operator::over;
   Filter filter = Filter::linear;
-  Box region;                     ///< where slices exist: samples outside this box of texture space do not
+  Box region;  ///< where slices exist: samples outside this box of texture space do not
   std::vector<HalfSpace> clip_planes;
   Classification classification;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
@@ -101,15 +101,15 @@ struct RenderRequest {
 
 /// What one frame did and, beside it, what it left out. Sums over nodes.
 struct FrameCounts {
-  std::uint64_t rays = 0;                 ///< rays that meet the region
+  std::uint64_t rays = 0;  ///< rays that meet the region
   std::uint64_t rays_terminated = 0;
-  std::uint64_t samples = 0;              ///< samples inside the region, had nothing been left out
+  std::uint64_t samples = 0;  ///< samples inside the region, had nothing been left out
   std::uint64_t samples_taken = 0;
-  std::uint64_t blocks = 0;               ///< blocks of 8^3 cells held
-  std::uint64_t blocks_empty = 0;         ///< of these, invisible under the classification
-  std::uint64_t bytes_exchanged = 0;      ///< between nodes, for compositing
-  std::uint64_t nodes_idle = 0;           ///< nodes that had nothing to show and sent nothing
-  double render_ms = 0;                   ///< slowest node
+  std::uint64_t blocks = 0;           ///< blocks of 8^3 cells held
+  std::uint64_t blocks_empty = 0;     ///< of these, invisible under the classification
+  std::uint64_t bytes_exchanged = 0;  ///< between nodes, for compositing
+  std::uint64_t nodes_idle = 0;       ///< nodes that had nothing to show and sent nothing
+  double render_ms = 0;               ///< slowest node
   double composite_ms = 0;
 
   /// Adds another volume of the same frame: they are rendered one after the other, so times add up too.

@@ -92,7 +92,9 @@ class Body {
 /// The per-process body. Never destroyed: the application may call OpenGL until its very last instruction.
 constinit Body* body = nullptr;
 
-void Body::install(const spu::DispatchTable* table) { body->door_.thread_state()->table = table; }
+void Body::install(const spu::DispatchTable* table) {
+  body->door_.thread_state()->table = table;
+}
 
 /// Nothing thrown may cross into the application.
 template <class Action>
@@ -105,7 +107,8 @@ void guarded(Action action) noexcept {
   }
 }
 
-void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem, bool desktop_gl, std::uintptr_t) {
+void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem, bool desktop_gl,
+                     std::uintptr_t) {
   guarded([&] { body->context_current(context, share, desktop_gl); });
 }
 

@@ -1,8 +1,9 @@
 // What contexts that share objects have in common, and the driver cannot tell afterwards.
 //
-// The driver is the truth for everything it can be asked: bindings, uniforms, matrices, even texels are read from it
-// when a volume is recognised. Tracked is only what no query answers: that the contents of a texture changed, what a
-// display list holds, and the sources of a program's shaders (lost once they are detached and deleted).
+// The driver is the truth for everything it can be asked: bindings, uniforms, matrices, even texels are read
+// from it when a volume is recognised. Tracked is only what no query answers: that the contents of a texture
+// changed, what a display list holds, and the sources of a program's shaders (lost once they are detached and
+// deleted).
 #pragma once
 
 #include <atomic>
@@ -38,7 +39,7 @@ struct ProgramRecord {
 /// What executing a display list would do.
 struct ListRecord {
   bool draws = false;
-  bool only_geometry = true;   ///< nothing but vertices, attributes and draws
+  bool only_geometry = true;  ///< nothing but vertices, attributes and draws
   bool changes_textures = false;
 };
 
@@ -57,7 +58,8 @@ class ShareGroup {
   bool is_volume(GLuint texture) const;
   bool has_volumes() const { return has_volumes_.load(std::memory_order_relaxed); }
 
-  /// The texture is, or was, attached to a framebuffer or bound as an image: its contents change without an upload.
+  /// The texture is, or was, attached to a framebuffer or bound as an image: its contents change without an
+  /// upload.
   void texture_rendered_to(GLuint texture);
   bool is_rendered_to(GLuint texture) const;
 

@@ -9,7 +9,9 @@
 namespace understudy::spu {
 namespace {
 
-Track& here() { return *Chain::current()->find<Track>(); }
+Track& here() {
+  return *Chain::current()->find<Track>();
+}
 
 /// Inside glNewList: notes what kind of command the list takes up, then lets the driver compile it.
 struct NoteListContent {
@@ -17,15 +19,20 @@ struct NoteListContent {
     Track& track = here();
     ListRecord& list = track.open_list();
     switch (kind_of(call)) {
-      case CallKind::draw: list.draws = true; break;
+      case CallKind::draw:
+        list.draws = true;
+        break;
       case CallKind::bound_texture:
       case CallKind::unknown_texture:
         list.changes_textures = true;
         list.only_geometry = false;
         break;
-      case CallKind::other: list.only_geometry = false; break;
+      case CallKind::other:
+        list.only_geometry = false;
+        break;
       case CallKind::vertex:
-      case CallKind::not_compiled: break;
+      case CallKind::not_compiled:
+        break;
     }
     return track.below();
   }
@@ -48,7 +55,7 @@ struct NoteTextureChange {
 /// Commands of direct state access name the texture in their first argument.
 template <auto Slot>
 struct ChangesNamedTexture;
-template <class... A, void(APIENTRY* DispatchTable::* Slot)(GLuint, A...)>
+template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
 struct ChangesNamedTexture<Slot> {
   static void APIENTRY call(GLuint texture, A... arguments) {
     Track& track = here();
@@ -81,21 +88,22 @@ void APIENTRY tex_image_3d(GLenum target, GLint level, GLint internal_format, GL
   track.below().TexImage3D(target, level, internal_format, width, height, depth, border, format, type, pixels);
 }
 
-void APIENTRY tex_image_3d_ext(GLenum target, GLint level, GLenum internal_format, GLsizei width, GLsizei height,
-                               GLsizei depth, GLint border, GLenum format, GLenum type, const void* pixels) {
+void APIENTRY tex_image_3d_ext(GLenum target, GLint level, GLenum internal_format, GLsizei width,
+                               GLsizei height, GLsizei depth, GLint border, GLenum format, GLenum type,
+                               const void* pixels) {
   tex_image_3d(target, level, GLint(internal_format), width, height, depth, border, format, type, pixels);
 }
 
-void APIENTRY tex_storage_3d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width, GLsizei height,
-                             GLsizei depth) {
+void APIENTRY tex_storage_3d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
+                             GLsizei height, GLsizei depth) {
   Track& track = here();
   track.chain().settle();
   if (target == GL_TEXTURE_3D) note_volume(track, bound_volume(track.chain().driver()));
   track.below().TexStorage3D(target, levels, internal_format, width, height, depth);
 }
 
-void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal_format, GLsizei width, GLsizei height,
-                                 GLsizei depth) {
+void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal_format, GLsizei width,
+                                 GLsizei height, GLsizei depth) {
   Track& track = here();
   track.chain().settle();
   note_volume(track, texture);
@@ -106,7 +114,8 @@ void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
   Track& track = here();
   track.chain().settle();
   if (count > 0 && textures != nullptr) {
-    for (const GLuint texture : std::span(textures, std::size_t(count))) track.chain().group().texture_deleted(texture);
+    for (const GLuint texture : std::span(textures, std::size_t(count)))
+      track.chain().group().texture_deleted(texture);
   }
   track.below().DeleteTextures(count, textures);
 }
@@ -131,7 +140,8 @@ void APIENTRY framebuffer_texture_3d(GLenum target, GLenum attachment, GLenum te
   track.below().FramebufferTexture3D(target, attachment, texture_target, texture, level, layer);
 }
 
-void APIENTRY framebuffer_texture_layer(GLenum target, GLenum attachment, GLuint texture, GLint level, GLint layer) {
+void APIENTRY framebuffer_texture_layer(GLenum target, GLenum attachment, GLuint texture, GLint level,
+                                        GLint layer) {
   Track& track = here();
   track.chain().group().texture_rendered_to(texture);
   track.below().FramebufferTextureLayer(target, attachment, texture, level, layer);
@@ -263,7 +273,9 @@ void Track::frame_ended(FrameEnd) {
 
 void Track::bound_textures_change(int dimensions) {
   constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
-      {{GL_TEXTURE_BINDING_1D, 0}, {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_RECTANGLE}, {GL_TEXTURE_BINDING_3D, 0}}};
+      {{GL_TEXTURE_BINDING_1D, 0},
+       {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_RECTANGLE},
+       {GL_TEXTURE_BINDING_3D, 0}}};
   for (const GLenum binding : bindings[std::size_t(dimensions - 1)]) {
     GLint texture = 0;
     if (binding != 0) chain_.driver().GetIntegerv(binding, &texture);

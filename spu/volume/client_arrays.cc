@@ -10,14 +10,19 @@ namespace {
 std::size_t size_of(GLenum type) {
   switch (type) {
     case GL_BYTE:
-    case GL_UNSIGNED_BYTE: return 1;
+    case GL_UNSIGNED_BYTE:
+      return 1;
     case GL_SHORT:
-    case GL_UNSIGNED_SHORT: return 2;
+    case GL_UNSIGNED_SHORT:
+      return 2;
     case GL_INT:
     case GL_UNSIGNED_INT:
-    case GL_FLOAT: return 4;
-    case GL_DOUBLE: return 8;
-    default: return 0;
+    case GL_FLOAT:
+      return 4;
+    case GL_DOUBLE:
+      return 8;
+    default:
+      return 0;
   }
 }
 
@@ -31,17 +36,24 @@ T load(const std::byte* from) {
 /// Component value as OpenGL converts it; normalised integers map to [0,1] or [-1,1] (OpenGL 4.6, 2.3.5).
 float component(const std::byte* from, GLenum type, bool normalised) {
   switch (type) {
-    case GL_BYTE: return normalised ? float(load<std::int8_t>(from)) / 127.0F : float(load<std::int8_t>(from));
-    case GL_UNSIGNED_BYTE: return normalised ? float(load<std::uint8_t>(from)) / 255.0F : float(load<std::uint8_t>(from));
-    case GL_SHORT: return normalised ? float(load<std::int16_t>(from)) / 32767.0F : float(load<std::int16_t>(from));
+    case GL_BYTE:
+      return normalised ? float(load<std::int8_t>(from)) / 127.0F : float(load<std::int8_t>(from));
+    case GL_UNSIGNED_BYTE:
+      return normalised ? float(load<std::uint8_t>(from)) / 255.0F : float(load<std::uint8_t>(from));
+    case GL_SHORT:
+      return normalised ? float(load<std::int16_t>(from)) / 32767.0F : float(load<std::int16_t>(from));
     case GL_UNSIGNED_SHORT:
       return normalised ? float(load<std::uint16_t>(from)) / 65535.0F : float(load<std::uint16_t>(from));
     case GL_INT:
-      return normalised ? float(double(load<std::int32_t>(from)) / 2147483647.0) : float(load<std::int32_t>(from));
+      return normalised ? float(double(load<std::int32_t>(from)) / 2147483647.0)
+                        : float(load<std::int32_t>(from));
     case GL_UNSIGNED_INT:
-      return normalised ? float(double(load<std::uint32_t>(from)) / 4294967295.0) : float(load<std::uint32_t>(from));
-    case GL_DOUBLE: return float(load<double>(from));
-    default: return load<float>(from);
+      return normalised ? float(double(load<std::uint32_t>(from)) / 4294967295.0)
+                        : float(load<std::uint32_t>(from));
+    case GL_DOUBLE:
+      return float(load<double>(from));
+    default:
+      return load<float>(from);
   }
 }
 
@@ -91,14 +103,15 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
                                GL_TEXTURE_COORD_ARRAY_POINTER});
     }
     gl.ClientActiveTexture(GLenum(client_active));
-    understood &= add_fixed(gl, sources, in_buffers, {.role = Role::normal, .components = 3, .normalised = true},
-                            {GL_NORMAL_ARRAY, 0, GL_NORMAL_ARRAY_TYPE, GL_NORMAL_ARRAY_STRIDE,
-                             GL_NORMAL_ARRAY_BUFFER_BINDING, GL_NORMAL_ARRAY_POINTER});
+    understood &=
+        add_fixed(gl, sources, in_buffers, {.role = Role::normal, .components = 3, .normalised = true},
+                  {GL_NORMAL_ARRAY, 0, GL_NORMAL_ARRAY_TYPE, GL_NORMAL_ARRAY_STRIDE,
+                   GL_NORMAL_ARRAY_BUFFER_BINDING, GL_NORMAL_ARRAY_POINTER});
     understood &= add_fixed(gl, sources, in_buffers, {.role = Role::colour, .normalised = true},
                             {GL_COLOR_ARRAY, GL_COLOR_ARRAY_SIZE, GL_COLOR_ARRAY_TYPE, GL_COLOR_ARRAY_STRIDE,
                              GL_COLOR_ARRAY_BUFFER_BINDING, GL_COLOR_ARRAY_POINTER});
-    if (gl.IsEnabled(GL_SECONDARY_COLOR_ARRAY) || gl.IsEnabled(GL_FOG_COORD_ARRAY) || gl.IsEnabled(GL_EDGE_FLAG_ARRAY) ||
-        gl.IsEnabled(GL_INDEX_ARRAY)) {
+    if (gl.IsEnabled(GL_SECONDARY_COLOR_ARRAY) || gl.IsEnabled(GL_FOG_COORD_ARRAY) ||
+        gl.IsEnabled(GL_EDGE_FLAG_ARRAY) || gl.IsEnabled(GL_INDEX_ARRAY)) {
       return "vertex arrays of secondary colour, fog or edge flags";
     }
   }
@@ -134,8 +147,8 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   }
   if (!context.core) {
     understood &= add_fixed(gl, sources, in_buffers, {.role = Role::vertex},
-                            {GL_VERTEX_ARRAY, GL_VERTEX_ARRAY_SIZE, GL_VERTEX_ARRAY_TYPE, GL_VERTEX_ARRAY_STRIDE,
-                             GL_VERTEX_ARRAY_BUFFER_BINDING, GL_VERTEX_ARRAY_POINTER});
+                            {GL_VERTEX_ARRAY, GL_VERTEX_ARRAY_SIZE, GL_VERTEX_ARRAY_TYPE,
+                             GL_VERTEX_ARRAY_STRIDE, GL_VERTEX_ARRAY_BUFFER_BINDING, GL_VERTEX_ARRAY_POINTER});
   }
   if (!understood) return "vertex arrays of an uncommon type";
   if (sources.client_memory && in_buffers > 0) return "vertex arrays partly in buffers, partly in memory";
@@ -146,9 +159,10 @@ void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
                    const std::vector<std::uint32_t>& indices) {
   using Role = ClientArray::Role;
   // Generic attributes alone draw too, but only attribute 0 or the position makes an immediate vertex.
-  const bool positioned = std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const ClientArray& array) {
-    return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);
-  });
+  const bool positioned =
+      std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const ClientArray& array) {
+        return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);
+      });
   pack_Begin(calls, mode);
   for (const std::uint32_t element : indices) {
     for (const ClientArray& array : sources.arrays) {
@@ -156,16 +170,25 @@ void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
       std::array<float, 4> v{0, 0, 0, 1};
       const std::byte* from = array.first + array.stride * element;
       for (int c = 0; c < array.components; ++c) {
-        v[std::size_t(c)] = component(from + std::size_t(c) * size_of(array.type), array.type, array.normalised);
+        v[std::size_t(c)] =
+            component(from + std::size_t(c) * size_of(array.type), array.type, array.normalised);
       }
       switch (array.role) {
         case Role::texture_coordinate:
           pack_MultiTexCoord4f(calls, GLenum(GL_TEXTURE0 + array.index), v[0], v[1], v[2], v[3]);
           break;
-        case Role::normal: pack_Normal3f(calls, v[0], v[1], v[2]); break;
-        case Role::colour: pack_Color4f(calls, v[0], v[1], v[2], v[3]); break;
-        case Role::generic: pack_VertexAttrib4f(calls, GLuint(array.index), v[0], v[1], v[2], v[3]); break;
-        case Role::vertex: pack_Vertex4f(calls, v[0], v[1], v[2], v[3]); break;
+        case Role::normal:
+          pack_Normal3f(calls, v[0], v[1], v[2]);
+          break;
+        case Role::colour:
+          pack_Color4f(calls, v[0], v[1], v[2], v[3]);
+          break;
+        case Role::generic:
+          pack_VertexAttrib4f(calls, GLuint(array.index), v[0], v[1], v[2], v[3]);
+          break;
+        case Role::vertex:
+          pack_Vertex4f(calls, v[0], v[1], v[2], v[3]);
+          break;
       }
     }
     if (!positioned) pack_Vertex4f(calls, 0, 0, 0, 1);

@@ -1,7 +1,8 @@
 // Draws from the application's own memory, captured at the moment of the call.
 //
-// The memory may change before the run is drawn (one buffer refilled for every slice is common), so the draw is kept
-// as what OpenGL defines it to be: glBegin, one glArrayElement an index, glEnd, each array's value as an immediate call.
+// The memory may change before the run is drawn (one buffer refilled for every slice is common), so the draw is
+// kept as what OpenGL defines it to be: glBegin, one glArrayElement an index, glEnd, each array's value as an
+// immediate call.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,7 @@ struct ArraySources {
 std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources);
 
 /// Packs the elements `indices` of the arrays as one glBegin/glEnd.
-void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode, const std::vector<std::uint32_t>& indices);
+void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
+                   const std::vector<std::uint32_t>& indices);
 
 }  // namespace understudy::spu

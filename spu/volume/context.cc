@@ -11,7 +11,8 @@ GlContext describe_context(const DispatchTable& gl) {
   int major = 0;
   int minor = 0;
   const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
-  if (text != nullptr && std::sscanf(text, "%d.%d", &major, &minor) == 2) context.version = 100 * major + 10 * minor;
+  if (text != nullptr && std::sscanf(text, "%d.%d", &major, &minor) == 2)
+    context.version = 100 * major + 10 * minor;
   if (context.version >= 320) {
     GLint mask = 0;
     gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &mask);

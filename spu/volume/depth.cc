@@ -6,7 +6,8 @@
 
 namespace understudy::spu {
 
-std::optional<volume::DepthImage> read_depth(const GlContext& context, const volume::Rect& rect, bool or_equal) {
+std::optional<volume::DepthImage> read_depth(const GlContext& context, const volume::Rect& rect,
+                                             bool or_equal) {
   if (rect.empty()) return std::nullopt;
   const DispatchTable& gl = *context.gl;
   volume::DepthImage image;

@@ -8,8 +8,8 @@
 
 namespace understudy::spu {
 
-/// Window depth of `rect` of the framebuffer bound for drawing. Empty where nothing was drawn before the volume (all
-/// depths are at the far end), so that a scene without opaque geometry sends no depth.
+/// Window depth of `rect` of the framebuffer bound for drawing. Empty where nothing was drawn before the volume
+/// (all depths are at the far end), so that a scene without opaque geometry sends no depth.
 std::optional<volume::DepthImage> read_depth(const GlContext& context, const volume::Rect& rect, bool or_equal);
 
 }  // namespace understudy::spu

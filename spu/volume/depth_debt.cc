@@ -11,7 +11,9 @@
 namespace understudy::spu {
 namespace {
 
-VolumeUnit& here() { return *Chain::current()->find<VolumeUnit>(); }
+VolumeUnit& here() {
+  return *Chain::current()->find<VolumeUnit>();
+}
 
 /// A draw with a depth test, or a read: the answer would depend on what is owed.
 struct NoteDepthUse {

@@ -1,9 +1,10 @@
 // The depth that slices write, and that usually nobody looks at.
 //
-// Many viewers leave depth writes on while they blend slices. Drawing the slices once more for their depth alone would
-// cost almost what the picture did. So the first frame of a volume pays (the run is replayed with colour masked), and
-// is watched until its depth is cleared: if no draw with a depth test, no read and no copy comes in between, the depth is
-// owed from then on. Should a later frame look at it after all, every frame after that one pays.
+// Many viewers leave depth writes on while they blend slices. Drawing the slices once more for their depth
+// alone would cost almost what the picture did. So the first frame of a volume pays (the run is replayed with
+// colour masked), and is watched until its depth is cleared: if no draw with a depth test, no read and no copy
+// comes in between, the depth is owed from then on. Should a later frame look at it after all, every frame
+// after that one pays.
 #pragma once
 
 #include "dispatch/table.h"

@@ -14,7 +14,9 @@ namespace {
 /// More elements in one draw than this are no slices.
 constexpr GLsizei most_elements = 1 << 22;
 
-VolumeUnit& here() { return *Chain::current()->find<VolumeUnit>(); }
+VolumeUnit& here() {
+  return *Chain::current()->find<VolumeUnit>();
+}
 
 struct CloseRun {
   static const DispatchTable& before(CallId) {
@@ -29,7 +31,9 @@ struct IntoRun {
 };
 
 /// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
-bool joins_run(VolumeUnit& unit) { return unit.chain().phase() == Phase::deferring || unit.opens_run(); }
+bool joins_run(VolumeUnit& unit) {
+  return unit.chain().phase() == Phase::deferring || unit.opens_run();
+}
 
 void APIENTRY begin(GLenum mode) {
   VolumeUnit& unit = here();
@@ -69,7 +73,8 @@ void APIENTRY call_list(GLuint list) {
 /// Adds an array draw to the run; false when its arrays are not of a kind that can wait.
 bool defer_arrays(VolumeUnit& unit, GLenum mode, GLint first, GLsizei count) {
   ArraySources sources;
-  if (count < 0 || first < 0 || count > most_elements || read_array_sources(unit.context(), sources)) return false;
+  if (count < 0 || first < 0 || count > most_elements || read_array_sources(unit.context(), sources))
+    return false;
   Run& run = unit.run();
   if (sources.client_memory) {
     std::vector<std::uint32_t> indices(static_cast<std::size_t>(count));
@@ -111,7 +116,8 @@ bool defer_elements(VolumeUnit& unit, GLenum mode, GLsizei count, GLenum type, c
   const DispatchTable& gl = unit.next();
   ArraySources sources;
   const std::size_t size = index_size(type);
-  if (count < 0 || count > most_elements || size == 0 || read_array_sources(unit.context(), sources)) return false;
+  if (count < 0 || count > most_elements || size == 0 || read_array_sources(unit.context(), sources))
+    return false;
   GLint element_buffer = 0;
   gl.GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
   Run& run = unit.run();

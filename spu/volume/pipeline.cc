@@ -11,11 +11,16 @@ GLint integer(const DispatchTable& gl, GLenum name) {
 
 GLenum binding_of(GLenum target) {
   switch (target) {
-    case GL_TEXTURE_1D: return GL_TEXTURE_BINDING_1D;
-    case GL_TEXTURE_2D: return GL_TEXTURE_BINDING_2D;
-    case GL_TEXTURE_3D: return GL_TEXTURE_BINDING_3D;
-    case GL_TEXTURE_RECTANGLE: return GL_TEXTURE_BINDING_RECTANGLE;
-    default: return 0;
+    case GL_TEXTURE_1D:
+      return GL_TEXTURE_BINDING_1D;
+    case GL_TEXTURE_2D:
+      return GL_TEXTURE_BINDING_2D;
+    case GL_TEXTURE_3D:
+      return GL_TEXTURE_BINDING_3D;
+    case GL_TEXTURE_RECTANGLE:
+      return GL_TEXTURE_BINDING_RECTANGLE;
+    default:
+      return 0;
   }
 }
 
@@ -30,16 +35,22 @@ GLuint bound_texture(const DispatchTable& gl, GLenum target, int unit) {
 /// Texture target of a sampler uniform's type; 0 for samplers that volume viewers' tables do not use.
 GLenum target_of_sampler(GLenum type) {
   switch (type) {
-    case GL_SAMPLER_1D: return GL_TEXTURE_1D;
-    case GL_SAMPLER_2D: return GL_TEXTURE_2D;
-    case GL_SAMPLER_3D: return GL_TEXTURE_3D;
-    case GL_SAMPLER_2D_RECT: return GL_TEXTURE_RECTANGLE;
-    default: return 0;
+    case GL_SAMPLER_1D:
+      return GL_TEXTURE_1D;
+    case GL_SAMPLER_2D:
+      return GL_TEXTURE_2D;
+    case GL_SAMPLER_3D:
+      return GL_TEXTURE_3D;
+    case GL_SAMPLER_2D_RECT:
+      return GL_TEXTURE_RECTANGLE;
+    default:
+      return 0;
   }
 }
 
 /// The one 3-D texture and the tables that a program samples; a reason where that is not the shape of it.
-std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group, Pipeline& pipeline) {
+std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
+                                                 Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   const ProgramRecord* record = group.program(pipeline.program);
   if (record == nullptr) return std::nullopt;  // never linked in our sight: no 3-D sampler known
@@ -75,7 +86,8 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
     if (gl.IsEnabled(GL_TEXTURE_3D)) {
       pipeline.volume = {GL_TEXTURE_3D, unit, GLuint(integer(gl, GL_TEXTURE_BINDING_3D)), -1};
       ++enabled_units;
-    } else if (gl.IsEnabled(GL_TEXTURE_2D) || gl.IsEnabled(GL_TEXTURE_1D) || gl.IsEnabled(GL_TEXTURE_CUBE_MAP)) {
+    } else if (gl.IsEnabled(GL_TEXTURE_2D) || gl.IsEnabled(GL_TEXTURE_1D) ||
+               gl.IsEnabled(GL_TEXTURE_CUBE_MAP)) {
       ++enabled_units;
     }
   }
@@ -101,9 +113,11 @@ GLint alpha_bits(const DispatchTable& gl) {
   if (buffer == GL_FRONT || buffer == GL_LEFT) attachment = GL_FRONT_LEFT;
   GLint type = GL_NONE;
   GLint bits = 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &type);
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
+                                         &type);
   if (type == GL_NONE) return 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE, &bits);
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE,
+                                         &bits);
   return bits;
 }
 
@@ -127,7 +141,8 @@ std::optional<std::string> read_alpha_result(const DispatchTable& gl, Pipeline& 
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
-  if (integer(gl, GL_BLEND_EQUATION_RGB) != GL_FUNC_ADD || integer(gl, GL_BLEND_EQUATION_ALPHA) != GL_FUNC_ADD) {
+  if (integer(gl, GL_BLEND_EQUATION_RGB) != GL_FUNC_ADD ||
+      integer(gl, GL_BLEND_EQUATION_ALPHA) != GL_FUNC_ADD) {
     return "the blend equation is not addition";
   }
   const GLint source = integer(gl, GL_BLEND_SRC_RGB);
@@ -158,7 +173,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
     }
     pipeline.depth_or_equal = compare == GL_LEQUAL;
   }
-  if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER) return "the application is in feedback or select mode";
+  if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
+    return "the application is in feedback or select mode";
   GLint query = 0;
   gl.GetQueryiv(GL_SAMPLES_PASSED, GL_CURRENT_QUERY, &query);
   if (query != 0) return "an occlusion query surrounds the slices";

@@ -1,4 +1,5 @@
-// Which draws may be a volume: the state that surrounds them, read from the driver when a draw is about to happen.
+// Which draws may be a volume: the state that surrounds them, read from the driver when a draw is about to
+// happen.
 #pragma once
 
 #include <array>
@@ -30,11 +31,11 @@ enum class AlphaResult {
 
 /// The pipeline of a run of slices.
 struct Pipeline {
-  GLuint program = 0;            ///< 0: fixed function
-  bool vertex_shader = false;    ///< false: fixed-function vertices, observed by feedback
+  GLuint program = 0;          ///< 0: fixed function
+  bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
   SampledTexture volume;
   std::vector<SampledTexture> others;  ///< look-up tables of the program
-  bool premultiplied = false;    ///< source factor ONE instead of SRC_ALPHA
+  bool premultiplied = false;          ///< source factor ONE instead of SRC_ALPHA
   AlphaResult alpha = AlphaResult::coverage;
   bool depth_test = false;
   bool depth_or_equal = false;

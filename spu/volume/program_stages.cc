@@ -16,23 +16,37 @@ struct UniformShape {
 UniformShape shape_of(GLenum type) {
   using Kind = UniformShape::Kind;
   switch (type) {
-    case GL_FLOAT: return {1, Kind::real};
-    case GL_FLOAT_VEC2: return {2, Kind::real};
-    case GL_FLOAT_VEC3: return {3, Kind::real};
-    case GL_FLOAT_VEC4: return {4, Kind::real};
-    case GL_FLOAT_MAT2: return {4, Kind::matrix};
-    case GL_FLOAT_MAT3: return {9, Kind::matrix};
-    case GL_FLOAT_MAT4: return {16, Kind::matrix};
-    case GL_UNSIGNED_INT: return {1, Kind::natural};
-    case GL_UNSIGNED_INT_VEC2: return {2, Kind::natural};
-    case GL_UNSIGNED_INT_VEC3: return {3, Kind::natural};
-    case GL_UNSIGNED_INT_VEC4: return {4, Kind::natural};
+    case GL_FLOAT:
+      return {1, Kind::real};
+    case GL_FLOAT_VEC2:
+      return {2, Kind::real};
+    case GL_FLOAT_VEC3:
+      return {3, Kind::real};
+    case GL_FLOAT_VEC4:
+      return {4, Kind::real};
+    case GL_FLOAT_MAT2:
+      return {4, Kind::matrix};
+    case GL_FLOAT_MAT3:
+      return {9, Kind::matrix};
+    case GL_FLOAT_MAT4:
+      return {16, Kind::matrix};
+    case GL_UNSIGNED_INT:
+      return {1, Kind::natural};
+    case GL_UNSIGNED_INT_VEC2:
+      return {2, Kind::natural};
+    case GL_UNSIGNED_INT_VEC3:
+      return {3, Kind::natural};
+    case GL_UNSIGNED_INT_VEC4:
+      return {4, Kind::natural};
     case GL_INT_VEC2:
-    case GL_BOOL_VEC2: return {2, Kind::integer};
+    case GL_BOOL_VEC2:
+      return {2, Kind::integer};
     case GL_INT_VEC3:
-    case GL_BOOL_VEC3: return {3, Kind::integer};
+    case GL_BOOL_VEC3:
+      return {3, Kind::integer};
     case GL_INT_VEC4:
-    case GL_BOOL_VEC4: return {4, Kind::integer};
+    case GL_BOOL_VEC4:
+      return {4, Kind::integer};
     case GL_INT:
     case GL_BOOL:
     case GL_SAMPLER_1D:
@@ -41,8 +55,10 @@ UniformShape shape_of(GLenum type) {
     case GL_SAMPLER_CUBE:
     case GL_SAMPLER_2D_RECT:
     case GL_SAMPLER_1D_SHADOW:
-    case GL_SAMPLER_2D_SHADOW: return {1, Kind::integer};
-    default: return {};
+    case GL_SAMPLER_2D_SHADOW:
+      return {1, Kind::integer};
+    default:
+      return {};
   }
 }
 
@@ -122,8 +138,8 @@ bool linked(const DispatchTable& gl, GLuint program) {
   return status != 0;
 }
 
-/// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once lowered,
-/// as gl_in_TexCoord0.
+/// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once
+/// lowered, as gl_in_TexCoord0.
 std::string written_name(const std::string& read) {
   static const std::regex texture_coordinate(R"(^gl_(?:in_)?TexCoord\[?(\d+)\]?$)");
   std::smatch match;
@@ -147,7 +163,8 @@ std::optional<std::vector<StageInput>> fragment_inputs(const GlContext& context,
     gl.GetProgramInterfaceiv(program, GL_PROGRAM_INPUT, GL_ACTIVE_RESOURCES, &count);
     for (GLint i = 0; i < count; ++i) {
       std::array<char, 256> name{};
-      gl.GetProgramResourceName(program, GL_PROGRAM_INPUT, GLuint(i), GLsizei(name.size()), nullptr, name.data());
+      gl.GetProgramResourceName(program, GL_PROGRAM_INPUT, GLuint(i), GLsizei(name.size()), nullptr,
+                                name.data());
       const std::array<GLenum, 2> asked{GL_TYPE, GL_ARRAY_SIZE};
       std::array<GLint, 2> answer{};
       gl.GetProgramResourceiv(program, GL_PROGRAM_INPUT, GLuint(i), 2, asked.data(), 2, nullptr, answer.data());
@@ -175,16 +192,26 @@ std::optional<std::vector<StageInput>> fragment_inputs(const GlContext& context,
 
 const char* glsl_type(const StageInput& input) {
   switch (input.type) {
-    case GL_FLOAT: return "float";
-    case GL_FLOAT_VEC2: return "vec2";
-    case GL_FLOAT_VEC3: return "vec3";
-    case GL_FLOAT_VEC4: return "vec4";
-    case GL_INT: return "int";
-    case GL_UNSIGNED_INT: return "uint";
-    case GL_INT_VEC2: return "ivec2";
-    case GL_INT_VEC3: return "ivec3";
-    case GL_INT_VEC4: return "ivec4";
-    default: return "vec4";
+    case GL_FLOAT:
+      return "float";
+    case GL_FLOAT_VEC2:
+      return "vec2";
+    case GL_FLOAT_VEC3:
+      return "vec3";
+    case GL_FLOAT_VEC4:
+      return "vec4";
+    case GL_INT:
+      return "int";
+    case GL_UNSIGNED_INT:
+      return "uint";
+    case GL_INT_VEC2:
+      return "ivec2";
+    case GL_INT_VEC3:
+      return "ivec3";
+    case GL_INT_VEC4:
+      return "ivec4";
+    default:
+      return "vec4";
   }
 }
 
@@ -221,17 +248,20 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   return stages;
 }
 
-GLuint probe_program(const GlContext& context, const ProgramRecord* record, const std::vector<StageInput>& inputs,
-                     const std::string& coordinate, std::string& trouble) {
+GLuint probe_program(const GlContext& context, const ProgramRecord* record,
+                     const std::vector<StageInput>& inputs, const std::string& coordinate,
+                     std::string& trouble) {
   const DispatchTable& gl = *context.gl;
   std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
   std::string body;
   int others = 0;
   for (const StageInput& input : inputs) {
     const std::string type = glsl_type(input);
-    if (!input.name.starts_with("gl_")) declarations += (input.integer ? "flat out " : "out ") + type + " " + input.name + ";\n";
+    if (!input.name.starts_with("gl_"))
+      declarations += (input.integer ? "flat out " : "out ") + type + " " + input.name + ";\n";
     if (input.name == coordinate) {
-      body += "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
+      body +=
+          "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
     } else {
       static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
       body += "  " + input.name + " = " + type + "(understudy_value[" + std::to_string(others) + "]" +
@@ -240,12 +270,13 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record, cons
     }
   }
   if (others > 0) declarations += "uniform vec4 understudy_value[" + std::to_string(others) + "];\n";
-  const std::string source = declarations +
-                             "void main() {\n"
-                             "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
-                             "  vec2 unit = 0.5 * corner + 0.5;\n"
-                             "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
-                             body + "}\n";
+  const std::string source =
+      declarations +
+      "void main() {\n"
+      "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+      "  vec2 unit = 0.5 * corner + 0.5;\n"
+      "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
+      body + "}\n";
   const GLuint program = gl.CreateProgram();
   compile(gl, GL_VERTEX_SHADER, {source}, program);
   if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
@@ -263,7 +294,8 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
     if (name.starts_with("gl_")) return;  // fixed-function state, the same for both
     const GLint source = gl.GetUniformLocation(from, name.c_str());
     const GLint target = gl.GetUniformLocation(to, name.c_str());
-    if (source >= 0 && target >= 0 && shape_of(type).components > 0) copy_uniform(gl, from, source, to, target, type);
+    if (source >= 0 && target >= 0 && shape_of(type).components > 0)
+      copy_uniform(gl, from, source, to, target, type);
   });
   GLint blocks = 0;
   if (context.version >= 310) gl.GetProgramiv(to, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);

@@ -1,5 +1,5 @@
-// The application's program, taken apart: its vertex stage alone, to capture what it computes, and its fragment stage
-// under a vertex stage of ours, to show it chosen samples.
+// The application's program, taken apart: its vertex stage alone, to capture what it computes, and its fragment
+// stage under a vertex stage of ours, to show it chosen samples.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace understudy::spu {
 
 /// A varying that the fragment stage reads.
 struct StageInput {
-  std::string name;          ///< as a vertex shader writes it: "gl_TexCoord[0]", "gl_FrontColor", "coordinate"
+  std::string name;  ///< as a vertex shader writes it: "gl_TexCoord[0]", "gl_FrontColor", "coordinate"
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
@@ -23,25 +23,27 @@ struct StageInput {
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
   std::vector<StageInput> inputs;  ///< of the fragment stage
-  GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input, interleaved as floats; 0: none
+  GLuint observer =
+      0;  ///< vertex stage; captures gl_Position, then every input, interleaved as floats; 0: none
   std::string trouble;  ///< why the stages could not be had; empty: they stand
 };
 
 /// Needs the program's record; `application` is the program itself, for attribute locations.
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application);
 
-/// The application's fragment stage (or fixed-function fragments when `record` is null) under a vertex stage that
-/// covers the viewport with one triangle. The input named `coordinate` (gl_TexCoord[0] for fixed function) runs over
-/// [0,1]^2 with third component 1/2; the k-th other input has the constant value of uniform understudy_value[k].
-/// Returns 0 and sets `trouble` when it does not link.
-GLuint probe_program(const GlContext& context, const ProgramRecord* record, const std::vector<StageInput>& inputs,
-                     const std::string& coordinate, std::string& trouble);
+/// The application's fragment stage (or fixed-function fragments when `record` is null) under a vertex stage
+/// that covers the viewport with one triangle. The input named `coordinate` (gl_TexCoord[0] for fixed function)
+/// runs over [0,1]^2 with third component 1/2; the k-th other input has the constant value of uniform
+/// understudy_value[k]. Returns 0 and sets `trouble` when it does not link.
+GLuint probe_program(const GlContext& context, const ProgramRecord* record,
+                     const std::vector<StageInput>& inputs, const std::string& coordinate,
+                     std::string& trouble);
 
 /// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
 
-/// The values of all uniforms of `program` as `application` has them now, as bytes to compare: what the fragment
-/// stage's colours depend on.
+/// The values of all uniforms of `program` as `application` has them now, as bytes to compare: what the
+/// fragment stage's colours depend on.
 std::vector<float> uniform_values(const GlContext& context, GLuint application, GLuint program);
 
 }  // namespace understudy::spu

@@ -4,13 +4,14 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::array<GLenum, 16> pixel_store_names = {
-    GL_PACK_SWAP_BYTES,    GL_PACK_LSB_FIRST,    GL_PACK_ROW_LENGTH,    GL_PACK_IMAGE_HEIGHT,
-    GL_PACK_SKIP_ROWS,     GL_PACK_SKIP_PIXELS,  GL_PACK_SKIP_IMAGES,   GL_PACK_ALIGNMENT,
-    GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,  GL_UNPACK_ROW_LENGTH,  GL_UNPACK_IMAGE_HEIGHT,
-    GL_UNPACK_SKIP_ROWS,   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_ALIGNMENT};
+    GL_PACK_SWAP_BYTES,   GL_PACK_LSB_FIRST,     GL_PACK_ROW_LENGTH,    GL_PACK_IMAGE_HEIGHT,
+    GL_PACK_SKIP_ROWS,    GL_PACK_SKIP_PIXELS,   GL_PACK_SKIP_IMAGES,   GL_PACK_ALIGNMENT,
+    GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_IMAGE_HEIGHT,
+    GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_ALIGNMENT};
 
-constexpr std::array<GLenum, 8> switched_off = {GL_BLEND,     GL_DEPTH_TEST,   GL_STENCIL_TEST, GL_SCISSOR_TEST,
-                                                GL_CULL_FACE, GL_MULTISAMPLE,  GL_DITHER,       GL_RASTERIZER_DISCARD};
+constexpr std::array<GLenum, 8> switched_off = {GL_BLEND,        GL_DEPTH_TEST,        GL_STENCIL_TEST,
+                                                GL_SCISSOR_TEST, GL_CULL_FACE,         GL_MULTISAMPLE,
+                                                GL_DITHER,       GL_RASTERIZER_DISCARD};
 
 }  // namespace
 
@@ -48,7 +49,8 @@ SavedState::SavedState(const GlContext& context)
 
   for (std::size_t i = 0; i < pixel_store_names.size(); ++i) {
     gl_.GetIntegerv(pixel_store_names[i], &pixel_store_[i]);
-    const bool alignment = pixel_store_names[i] == GL_PACK_ALIGNMENT || pixel_store_names[i] == GL_UNPACK_ALIGNMENT;
+    const bool alignment =
+        pixel_store_names[i] == GL_PACK_ALIGNMENT || pixel_store_names[i] == GL_UNPACK_ALIGNMENT;
     gl_.PixelStorei(pixel_store_names[i], alignment ? 1 : 0);
   }
   gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -98,7 +100,8 @@ SavedState::~SavedState() {
   gl_.BlendFuncSeparate(GLenum(blend_factors_[0]), GLenum(blend_factors_[1]), GLenum(blend_factors_[2]),
                         GLenum(blend_factors_[3]));
   gl_.BlendEquationSeparate(GLenum(blend_equations_[0]), GLenum(blend_equations_[1]));
-  for (std::size_t i = 0; i < pixel_store_names.size(); ++i) gl_.PixelStorei(pixel_store_names[i], pixel_store_[i]);
+  for (std::size_t i = 0; i < pixel_store_names.size(); ++i)
+    gl_.PixelStorei(pixel_store_names[i], pixel_store_[i]);
   for (const Capability& capability : capabilities_) {
     if (capability.enabled) {
       gl_.Enable(capability.name);

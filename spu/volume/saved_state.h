@@ -1,8 +1,9 @@
 // Our own drawing inside the application's context, without a trace.
 //
-// Probing, observing and presenting each need a known pipeline for a moment. A SavedState reads everything that they
-// may touch, sets what all of them want (no blending, no tests, own vertex array, tight pixel transfer), and puts every
-// item back when it goes. Nothing here raises a GL error, and the error flag is never read: it is the application's.
+// Probing, observing and presenting each need a known pipeline for a moment. A SavedState reads everything that
+// they may touch, sets what all of them want (no blending, no tests, own vertex array, tight pixel transfer),
+// and puts every item back when it goes. Nothing here raises a GL error, and the error flag is never read: it
+// is the application's.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ class SavedState {
   SavedState(const SavedState&) = delete;
   SavedState& operator=(const SavedState&) = delete;
 
-  /// Remembers the texture and sampler object bound to a unit's target, so that the caller may bind its own. The
-  /// active unit stays the caller's choice until the SavedState goes.
+  /// Remembers the texture and sampler object bound to a unit's target, so that the caller may bind its own.
+  /// The active unit stays the caller's choice until the SavedState goes.
   void borrow_texture(GLenum target, int unit);
 
   GLuint draw_framebuffer() const { return GLuint(draw_framebuffer_); }

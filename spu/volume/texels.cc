@@ -29,21 +29,36 @@ GLint texture_parameter(const DispatchTable& gl, GLint sampler, GLenum name) {
 
 std::string name_of_format(GLint format) {
   switch (format) {
-    case GL_R8: return "R8";
-    case GL_R16: return "R16";
-    case GL_R16F: return "R16F";
-    case GL_R32F: return "R32F";
-    case GL_RED: return "RED";
-    case GL_LUMINANCE: return "LUMINANCE";
-    case GL_LUMINANCE8: return "LUMINANCE8";
-    case GL_LUMINANCE16: return "LUMINANCE16";
-    case GL_INTENSITY: return "INTENSITY";
-    case GL_INTENSITY8: return "INTENSITY8";
-    case GL_INTENSITY16: return "INTENSITY16";
-    case GL_ALPHA: return "ALPHA";
-    case GL_ALPHA8: return "ALPHA8";
-    case GL_RGBA: return "RGBA";
-    case GL_RGBA8: return "RGBA8";
+    case GL_R8:
+      return "R8";
+    case GL_R16:
+      return "R16";
+    case GL_R16F:
+      return "R16F";
+    case GL_R32F:
+      return "R32F";
+    case GL_RED:
+      return "RED";
+    case GL_LUMINANCE:
+      return "LUMINANCE";
+    case GL_LUMINANCE8:
+      return "LUMINANCE8";
+    case GL_LUMINANCE16:
+      return "LUMINANCE16";
+    case GL_INTENSITY:
+      return "INTENSITY";
+    case GL_INTENSITY8:
+      return "INTENSITY8";
+    case GL_INTENSITY16:
+      return "INTENSITY16";
+    case GL_ALPHA:
+      return "ALPHA";
+    case GL_ALPHA8:
+      return "ALPHA8";
+    case GL_RGBA:
+      return "RGBA";
+    case GL_RGBA8:
+      return "RGBA8";
     default: {
       std::array<char, 16> text{};
       std::snprintf(text.data(), text.size(), "0x%04X", unsigned(format));
@@ -98,28 +113,38 @@ std::optional<std::string> describe_components(const GlContext& context, Texture
 
 volume::Wrap wrap_of(GLint mode, volume::Filter filter) {
   switch (mode) {
-    case GL_REPEAT: return volume::Wrap::repeat;
-    case GL_CLAMP_TO_BORDER: return volume::Wrap::border;
+    case GL_REPEAT:
+      return volume::Wrap::repeat;
+    case GL_CLAMP_TO_BORDER:
+      return volume::Wrap::border;
     // GL_CLAMP clamps the coordinate to [0,1] and filters with the border from there.
-    case GL_CLAMP: return filter == volume::Filter::linear ? volume::Wrap::border : volume::Wrap::edge;
+    case GL_CLAMP:
+      return filter == volume::Filter::linear ? volume::Wrap::border : volume::Wrap::edge;
     // Mirrored modes repeat the edge texel inside [0,1].
-    default: return volume::Wrap::edge;
+    default:
+      return volume::Wrap::edge;
   }
 }
 
 GLenum pixel_format(BaseFormat base) {
   switch (base) {
-    case BaseFormat::alpha: return GL_ALPHA;
-    case BaseFormat::rgba: return GL_RGBA;
-    default: return GL_RED;  // luminance and intensity answer with their value in red
+    case BaseFormat::alpha:
+      return GL_ALPHA;
+    case BaseFormat::rgba:
+      return GL_RGBA;
+    default:
+      return GL_RED;  // luminance and intensity answer with their value in red
   }
 }
 
 GLenum pixel_type(volume::TexelType type) {
   switch (type) {
-    case volume::TexelType::u16: return GL_UNSIGNED_SHORT;
-    case volume::TexelType::f32: return GL_FLOAT;
-    default: return GL_UNSIGNED_BYTE;
+    case volume::TexelType::u16:
+      return GL_UNSIGNED_SHORT;
+    case volume::TexelType::f32:
+      return GL_FLOAT;
+    default:
+      return GL_UNSIGNED_BYTE;
   }
 }
 
@@ -135,7 +160,8 @@ void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
 
 }  // namespace
 
-std::optional<std::string> describe_texture(const GlContext& context, int unit, TextureDescription& description) {
+std::optional<std::string> describe_texture(const GlContext& context, int unit,
+                                            TextureDescription& description) {
   const DispatchTable& gl = *context.gl;
   description.size = {level_parameter(gl, GL_TEXTURE_WIDTH), level_parameter(gl, GL_TEXTURE_HEIGHT),
                       level_parameter(gl, GL_TEXTURE_DEPTH)};
@@ -185,8 +211,8 @@ std::optional<std::string> describe_texture(const GlContext& context, int unit, 
   return std::nullopt;
 }
 
-std::array<float, 2> read_texels(const GlContext& context, GLuint texture, const TextureDescription& description,
-                                 const volume::TexelBox& box,
+std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
+                                 const TextureDescription& description, const volume::TexelBox& box,
                                  const std::function<void(int, int, std::span<const std::byte>)>& slab) {
   const DispatchTable& gl = *context.gl;
   const GLenum format = pixel_format(description.base);

@@ -1,7 +1,8 @@
 // The volume itself, read from the driver.
 //
-// Whatever way the texels went up (whole, slice by slice, from a buffer, copied, defined twice), the driver holds the
-// result; it is read when a draw is recognised, slab by slab, and goes straight into bricks. No copy stays here.
+// Whatever way the texels went up (whole, slice by slice, from a buffer, copied, defined twice), the driver
+// holds the result; it is read when a draw is recognised, slab by slab, and goes straight into bricks. No copy
+// stays here.
 #pragma once
 
 #include <functional>
@@ -28,13 +29,14 @@ struct TextureDescription {
 };
 
 /// Describes the 3-D texture bound to the active unit. A reason where it is not a volume that we can hold.
-std::optional<std::string> describe_texture(const GlContext& context, int unit, TextureDescription& description);
+std::optional<std::string> describe_texture(const GlContext& context, int unit,
+                                            TextureDescription& description);
 
-/// Reads the texels of `box` from the 3-D texture bound to the active unit and hands them on in slabs of whole slices
-/// (first slice, number, texels tightly packed). Expects tight pixel packing (SavedState). Returns the range of finite
-/// values for f32, [0,1] otherwise.
-std::array<float, 2> read_texels(const GlContext& context, GLuint texture, const TextureDescription& description,
-                                 const volume::TexelBox& box,
+/// Reads the texels of `box` from the 3-D texture bound to the active unit and hands them on in slabs of whole
+/// slices (first slice, number, texels tightly packed). Expects tight pixel packing (SavedState). Returns the
+/// range of finite values for f32, [0,1] otherwise.
+std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
+                                 const TextureDescription& description, const volume::TexelBox& box,
                                  const std::function<void(int, int, std::span<const std::byte>)>& slab);
 
 }  // namespace understudy::spu

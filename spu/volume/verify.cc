@@ -14,7 +14,8 @@ namespace {
 /// A float framebuffer with depth that covers the application's viewport.
 class FloatFramebuffer {
  public:
-  FloatFramebuffer(const GlContext& context, int width, int height, const std::optional<volume::DepthImage>& depth)
+  FloatFramebuffer(const GlContext& context, int width, int height,
+                   const std::optional<volume::DepthImage>& depth)
       : gl_(*context.gl) {
     SavedState saved(context);
     saved.borrow_texture(GL_TEXTURE_2D, 0);
@@ -25,7 +26,8 @@ class FloatFramebuffer {
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl_.BindTexture(GL_TEXTURE_2D, textures_[1]);
     const std::vector<float> far(std::size_t(width) * std::size_t(height), 1.0F);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT, GL_FLOAT, far.data());
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                   far.data());
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     if (depth) {
       gl_.TexSubImage2D(GL_TEXTURE_2D, 0, depth->rect.x, depth->rect.y, depth->rect.width, depth->rect.height,

@@ -1,7 +1,8 @@
-// Trust, and check: the application's own run is drawn off screen and compared with the picture that would replace it.
+// Trust, and check: the application's own run is drawn off screen and compared with the picture that would
+// replace it.
 //
-// The framebuffer is float. An 8-bit one loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha 2/255), and
-// would judge the exact picture by the application's rounding.
+// The framebuffer is float. An 8-bit one loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha
+// 2/255), and would judge the exact picture by the application's rounding.
 #pragma once
 
 #include <optional>
@@ -18,8 +19,8 @@ struct Difference {
   double psnr() const;     ///< dB; infinite when equal
 };
 
-/// Draws `run` as the application would have, over transparent black, and compares it with `image`. Null when the
-/// driver cannot provide the framebuffer.
+/// Draws `run` as the application would have, over transparent black, and compares it with `image`. Null when
+/// the driver cannot provide the framebuffer.
 std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
                                                    const volume::RenderRequest& request,
                                                    const volume::ImageView& image);

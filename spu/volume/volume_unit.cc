@@ -39,7 +39,8 @@ volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   gl.GetDoublev(GL_PROJECTION_MATRIX, column_major.data());
   volume::Matrix4 matrix{};
   for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) matrix[4 * row + column] = column_major[4 * column + row];
+    for (std::size_t column = 0; column < 4; ++column)
+      matrix[4 * row + column] = column_major[4 * column + row];
   }
   return matrix;
 }
@@ -53,8 +54,10 @@ std::array<double, 4> plane_times(const std::array<double, 4>& plane, const volu
   return result;
 }
 
-/// The application's user clip planes, which OpenGL keeps in eye space, carried to texture space through the camera.
-std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable& gl, const volume::Matrix4& texture_to_clip) {
+/// The application's user clip planes, which OpenGL keeps in eye space, carried to texture space through the
+/// camera.
+std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable& gl,
+                                                            const volume::Matrix4& texture_to_clip) {
   std::vector<volume::HalfSpace> planes;
   GLint count = 0;
   gl.GetIntegerv(GL_MAX_CLIP_PLANES, &count);
@@ -74,9 +77,10 @@ std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable&
 /// Everything that fixed-function fragments depend on, as numbers to compare.
 void append_fixed_function_state(const DispatchTable& gl, std::vector<float>& key) {
   constexpr std::array<GLenum, 17> names = {
-      GL_TEXTURE_ENV_MODE, GL_COMBINE_RGB,    GL_COMBINE_ALPHA,  GL_SRC0_RGB,       GL_SRC1_RGB,    GL_SRC2_RGB,
-      GL_SRC0_ALPHA,       GL_SRC1_ALPHA,     GL_SRC2_ALPHA,     GL_OPERAND0_RGB,   GL_OPERAND1_RGB, GL_OPERAND2_RGB,
-      GL_OPERAND0_ALPHA,   GL_OPERAND1_ALPHA, GL_OPERAND2_ALPHA, GL_RGB_SCALE,      GL_ALPHA_SCALE};
+      GL_TEXTURE_ENV_MODE, GL_COMBINE_RGB,  GL_COMBINE_ALPHA,  GL_SRC0_RGB,       GL_SRC1_RGB,
+      GL_SRC2_RGB,         GL_SRC0_ALPHA,   GL_SRC1_ALPHA,     GL_SRC2_ALPHA,     GL_OPERAND0_RGB,
+      GL_OPERAND1_RGB,     GL_OPERAND2_RGB, GL_OPERAND0_ALPHA, GL_OPERAND1_ALPHA, GL_OPERAND2_ALPHA,
+      GL_RGB_SCALE,        GL_ALPHA_SCALE};
   GLint active = 0;
   gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
   gl.ActiveTexture(GL_TEXTURE0);
@@ -110,8 +114,8 @@ void tint(volume::Image& picture) {
   }
 }
 
-/// The classification whose picture holds, in its first channel, the sum of alpha^2 T: what blending alpha with SRC_ALPHA
-/// leaves in the framebuffer's alpha.
+/// The classification whose picture holds, in its first channel, the sum of alpha^2 T: what blending alpha with
+/// SRC_ALPHA leaves in the framebuffer's alpha.
 volume::Classification squared_alpha(const volume::Classification& classification) {
   if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {
     volume::TransferFunction squared = *function;
@@ -144,10 +148,14 @@ bool holds(const volume::TexelBox& outer, const volume::TexelBox& inner) {
 
 std::string_view name_of(volume::TexelType type) {
   switch (type) {
-    case volume::TexelType::u8: return "8-bit";
-    case volume::TexelType::u16: return "16-bit";
-    case volume::TexelType::f32: return "float";
-    default: return "RGBA";
+    case volume::TexelType::u8:
+      return "8-bit";
+    case volume::TexelType::u16:
+      return "16-bit";
+    case volume::TexelType::f32:
+      return "float";
+    default:
+      return "RGBA";
   }
 }
 
@@ -237,7 +245,8 @@ bool VolumeUnit::opens_run() {
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
     reason = known(texture).given_back;
-    if (reason.empty() && chain_.group().is_rendered_to(texture)) reason = "the volume texture is rendered into";
+    if (reason.empty() && chain_.group().is_rendered_to(texture))
+      reason = "the volume texture is rendered into";
   }
   if (!reason.empty()) {
     // Slices drawn one by one are still one run: it is counted once a frame.
@@ -313,7 +322,8 @@ void VolumeUnit::observe(Substitution& s) {
       return;
     }
   } else {
-    s.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false}, {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
+    s.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false},
+                         {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
   }
   if (gl.IsEnabled(GL_COLOR_SUM)) throw Doubt{"a secondary colour is added after texturing"};
   GLint colour_control = 0;
@@ -323,7 +333,8 @@ void VolumeUnit::observe(Substitution& s) {
   }
   s.polygons = observe_by_feedback(context(), s.run);
   if (s.polygons.count() == 0) throw NothingVisible{};
-  if (!s.polygons.constant_colour) throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
+  if (!s.polygons.constant_colour)
+    throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
   s.fragment.coordinate = "gl_TexCoord[0]";
   for (const StageInput& input : s.fragment.inputs) {
     if (input.name == "gl_TexCoord[0]") {
@@ -413,7 +424,8 @@ void VolumeUnit::classify(Substitution& s) {
   for (const SampledTexture& table : s.pipeline.others) {
     key.push_back(float(table.texture));
     key.push_back(float(chain_.group().texture_version(table.texture)));
-    if (chain_.group().is_rendered_to(table.texture)) key.push_back(std::nanf(""));  // never equal: probed every time
+    if (chain_.group().is_rendered_to(table.texture))
+      key.push_back(std::nanf(""));  // never equal: probed every time
   }
   for (std::size_t i = 0; i < s.fragment.inputs.size(); ++i) {
     if (s.fragment.inputs[i].name == s.fragment.coordinate) continue;
@@ -449,7 +461,8 @@ void VolumeUnit::compose_request(Substitution& s) {
   request.region = s.slices.region;
   request.filter = s.volume.texture.filter;
   if (s.pipeline.depth_test) {
-    request.depth = read_depth(context(), volume::footprint(request, request.region), s.pipeline.depth_or_equal);
+    request.depth =
+        read_depth(context(), volume::footprint(request, request.region), s.pipeline.depth_or_equal);
   }
 }
 
@@ -466,8 +479,9 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
   frame_.error_rms = std::sqrt(difference->mean_square);
   if (difference->psnr() < options.verify_psnr) {
-    s.volume.given_back = fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
-                                      difference->psnr(), options.verify_psnr);
+    s.volume.given_back =
+        fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
+                    difference->psnr(), options.verify_psnr);
     throw Doubt{s.volume.given_back};
   }
 }
@@ -477,14 +491,16 @@ void VolumeUnit::explain(const Substitution& s) {
   const volume::Matrix4& a = s.request.texture_to_clip;
   const bool perspective = std::abs(a[12]) + std::abs(a[13]) + std::abs(a[14]) > 1e-9 * std::abs(a[15]);
   put(s.volume.counters->explanation,
-      fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, fit to {:.1e}, "
+      fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, "
+                  "fit to {:.1e}, "
                   "{} clip planes, {}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
-                  name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count, std::abs(planes.spacing),
-                  s.request.filter == volume::Filter::linear ? "linear" : "nearest",
+                  name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count,
+                  std::abs(planes.spacing), s.request.filter == volume::Filter::linear ? "linear" : "nearest",
                   std::holds_alternative<volume::LinearMap>(s.request.classification)
                       ? "colours in the texels"
-                      : (s.pipeline.program != 0 ? "table probed from the program" : "table probed from fixed function"),
+                      : (s.pipeline.program != 0 ? "table probed from the program"
+                                                 : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));
 }
@@ -585,7 +601,8 @@ void VolumeUnit::abandon() {
   stages_.clear();
   for (auto& [texture, volume] : known_) {
     const auto lock = session_->lock();
-    if (volume.generation != 0 && volume.generation == session_->generation()) session_->forget(volume.description.id);
+    if (volume.generation != 0 && volume.generation == session_->generation())
+      session_->forget(volume.description.id);
   }
   known_.clear();
 }

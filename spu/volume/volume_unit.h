@@ -30,8 +30,8 @@ struct KnownVolume {
   std::array<float, 2> range{0, 1};
   std::optional<volume::Classification> classification;
   std::vector<float> classification_inputs;  ///< what the classification was probed under
-  bool depth_looked_at = false;  ///< somebody used the depth that its slices write
-  std::string given_back;  ///< why the volume is left to the application for good; empty: it is not
+  bool depth_looked_at = false;              ///< somebody used the depth that its slices write
+  std::string given_back;   ///< why the volume is left to the application for good; empty: it is not
   std::string last_reason;  ///< the last reason for leaving it that was said
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
@@ -56,7 +56,8 @@ class VolumeUnit final : public Unit {
   Run& run() { return *run_; }
   void close_run();
 
-  /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of OpenGL.
+  /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of
+  /// OpenGL.
   bool inside_begin = false;
 
   /// The depth that the last substituted slices would have written is being used; or is gone, unused.
@@ -92,7 +93,8 @@ class VolumeUnit final : public Unit {
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
-  std::map<GLuint, std::pair<std::uint64_t, ProgramStages>> stages_;  ///< by program, with the link they stem from
+  std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
+      stages_;                ///< by program, with the link they stem from
   GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none
   FrameRecord frame_{};
   std::uint64_t frames_ = 0;

@@ -14,8 +14,12 @@ int driver_clears = 0;
 int unit_clears = 0;
 const DispatchTable* installed = nullptr;
 
-void APIENTRY driver_clear(GLbitfield) { ++driver_clears; }
-void install(const DispatchTable* table) { installed = table; }
+void APIENTRY driver_clear(GLbitfield) {
+  ++driver_clears;
+}
+void install(const DispatchTable* table) {
+  installed = table;
+}
 
 /// A driver without a driver: every slot is distinct from null, glClear counts.
 DispatchTable mock_driver() {

@@ -15,7 +15,8 @@ using volume::Vec3;
 
 Matrix4 perspective(double near, double far) {
   const double f = 2.5;
-  return {f, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), 2 * far * near / (near - far), 0, 0, -1, 0};
+  return {f, 0, 0,  0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), 2 * far * near / (near - far),
+          0, 0, -1, 0};
 }
 
 Matrix4 looking(double x, double y, double z) {
@@ -52,7 +53,8 @@ TEST(CameraFit, FindsAPerspectiveCameraToDoublePrecision) {
   const Matrix4 a = volume::multiply(perspective(1, 20), looking(-0.5, -0.5, -5));
   const auto fit = fit_camera(quads_under(a, 100));
   ASSERT_TRUE(fit);
-  std::printf("largest error of an entry %.2e, residual %.2e\n", largest_difference(fit->texture_to_clip, a), fit->residual);
+  std::printf("largest error of an entry %.2e, residual %.2e\n", largest_difference(fit->texture_to_clip, a),
+              fit->residual);
   EXPECT_LT(largest_difference(fit->texture_to_clip, a), 1e-11);
   EXPECT_LT(fit->residual, 1e-12);
 }
@@ -82,7 +84,8 @@ TEST(CameraFit, AWorldOffsetOf1e7KeepsTheUnitVolume) {
 }
 
 TEST(CameraFit, MirroredAndShearedVolumesAreCamerasToo) {
-  const Matrix4 a = volume::multiply(perspective(0.1, 100), {-1, 0.7, 0, 0.2, 0, 2, 0, 0.1, 0.3, 0, 0.01, -4, 0, 0, 0, 1});
+  const Matrix4 a =
+      volume::multiply(perspective(0.1, 100), {-1, 0.7, 0, 0.2, 0, 2, 0, 0.1, 0.3, 0, 0.01, -4, 0, 0, 0, 1});
   const auto fit = fit_camera(quads_under(a, 64));
   ASSERT_TRUE(fit);
   EXPECT_LT(largest_difference(fit->texture_to_clip, a), 1e-9);

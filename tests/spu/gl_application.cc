@@ -15,7 +15,9 @@ namespace {
 
 thread_local const DispatchTable* installed = nullptr;
 
-void install(const DispatchTable* table) { installed = table; }
+void install(const DispatchTable* table) {
+  installed = table;
+}
 
 const DispatchTable& real_driver() {
   static const DispatchTable table = [] {
@@ -52,14 +54,28 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options opt
   auto egl = std::make_unique<Egl>();
   egl->display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (!eglInitialize(egl->display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) return nullptr;
-  const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8,
-                           EGL_GREEN_SIZE,   8,               EGL_BLUE_SIZE,       8,              EGL_ALPHA_SIZE, 8,
-                           EGL_DEPTH_SIZE,   24,              EGL_NONE};
+  const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                           EGL_PBUFFER_BIT,
+                           EGL_RENDERABLE_TYPE,
+                           EGL_OPENGL_BIT,
+                           EGL_RED_SIZE,
+                           8,
+                           EGL_GREEN_SIZE,
+                           8,
+                           EGL_BLUE_SIZE,
+                           8,
+                           EGL_ALPHA_SIZE,
+                           8,
+                           EGL_DEPTH_SIZE,
+                           24,
+                           EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (!eglChooseConfig(egl->display, wanted, &config, 1, &count) || count == 0) return nullptr;
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, profile == Profile::core ? 3 : 4,
-                               EGL_CONTEXT_MINOR_VERSION, profile == Profile::core ? 3 : 5,
+  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                               profile == Profile::core ? 3 : 4,
+                               EGL_CONTEXT_MINOR_VERSION,
+                               profile == Profile::core ? 3 : 5,
                                EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                profile == Profile::core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
                                                         : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
@@ -74,7 +90,8 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options opt
   std::unique_ptr<GlApplication> application(new GlApplication);
   application->egl_ = std::move(egl);
   application->chain_ = std::make_unique<Chain>(real_driver(), std::make_shared<ShareGroup>(), &install);
-  if (assemble(*application->chain_, "track volume driver", std::make_shared<RenderSession>(std::move(options)))) {
+  if (assemble(*application->chain_, "track volume driver",
+               std::make_shared<RenderSession>(std::move(options)))) {
     return nullptr;
   }
   application->chain_->make_current();
@@ -88,8 +105,12 @@ GlApplication::~GlApplication() {
   Chain::release_current();
 }
 
-const DispatchTable& GlApplication::gl() const { return installed != nullptr ? *installed : real_driver(); }
-const DispatchTable& GlApplication::driver() const { return real_driver(); }
+const DispatchTable& GlApplication::gl() const {
+  return installed != nullptr ? *installed : real_driver();
+}
+const DispatchTable& GlApplication::driver() const {
+  return real_driver();
+}
 
 void GlApplication::use_chain(bool on) {
   if (on) {
@@ -148,7 +169,8 @@ std::vector<std::uint8_t> Blob::texels() const {
         const double v = (j + 0.5) / y - 0.45;
         const double w = (k + 0.5) / z - 0.55;
         const double r = std::sqrt(u * u + v * v + w * w);
-        field.push_back(std::uint8_t(255 * std::exp(-30 * (r - 0.25) * (r - 0.25)) * (0.6 + 0.4 * std::sin(9 * u))));
+        field.push_back(
+            std::uint8_t(255 * std::exp(-30 * (r - 0.25) * (r - 0.25)) * (0.6 + 0.4 * std::sin(9 * u))));
       }
     }
   }

@@ -30,7 +30,8 @@ TEST_P(Recognition, GivesTheApplicationsPictureFromEveryAngle) {
   for (const double angle : {0.0, 15.0, -40.0, 55.0}) {
     const auto before = app_->substituted();
     const auto under = frame(angle, true);
-    EXPECT_EQ(app_->substituted(), before + 1) << scene_.name << ", angle " << angle << ": " << app_->last_reason();
+    EXPECT_EQ(app_->substituted(), before + 1)
+        << scene_.name << ", angle " << angle << ": " << app_->last_reason();
     const auto bare = frame(angle, false);
     const double likeness = psnr(under, bare);
     std::printf("%s, %g degrees: %.1f dB\n", scene_.name.c_str(), angle, likeness);
@@ -57,7 +58,8 @@ TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
   const Blob blob;
   std::vector<std::uint8_t> half(std::size_t(blob.x * blob.y * 8), 200);
   app->gl().PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 4, blob.x, blob.y, 8, GL_LUMINANCE, GL_UNSIGNED_BYTE, half.data());
+  app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 4, blob.x, blob.y, 8, GL_LUMINANCE, GL_UNSIGNED_BYTE,
+                          half.data());
   scene.draw(*app, 10);
   const auto under = app->read_pixels();
   app->use_chain(false);
@@ -107,7 +109,8 @@ TEST(RecognitionOfDepth, OpaqueGeometryBeforeTheVolumeHidesIt) {
       app->gl().Begin(GL_QUADS);
       app->gl().Color4f(1, 1, 0, 1);
       // In front of everything on the left, behind everything on the right.
-      for (const auto& [x, y, z] : {std::array{-0.9, -0.5, 0.1}, {0.9, -0.5, 0.9}, {0.9, 0.3, 0.9}, {-0.9, 0.3, 0.1}}) {
+      for (const auto& [x, y, z] :
+           {std::array{-0.9, -0.5, 0.1}, {0.9, -0.5, 0.9}, {0.9, 0.3, 0.9}, {-0.9, 0.3, 0.1}}) {
         if (with_quad) app->gl().Vertex3d(x, y, z);
       }
       app->gl().End();
@@ -142,7 +145,8 @@ TEST(RecognitionOfDepth, WhatTheSlicesWriteIsThereForWhoeverLooks) {
         // Behind the volume's front: the slices' depth hides it.
         app->gl().Begin(GL_QUADS);
         app->gl().Color4f(0, 1, 0, 1);
-        for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) app->gl().Vertex3d(x, y, 0.5);
+        for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}})
+          app->gl().Vertex3d(x, y, 0.5);
         app->gl().End();
       }
       const auto picture = app->read_pixels();
@@ -152,7 +156,8 @@ TEST(RecognitionOfDepth, WhatTheSlicesWriteIsThereForWhoeverLooks) {
     const auto bare = frame(false);
     for (int i = 0; i < 3; ++i) {
       const double likeness = psnr(frame(true), bare);
-      std::printf("%s, frame %d: %.1f dB\n", looks_at_it ? "a quad behind the first slice" : "nothing more", i, likeness);
+      std::printf("%s, frame %d: %.1f dB\n", looks_at_it ? "a quad behind the first slice" : "nothing more", i,
+                  likeness);
       EXPECT_GE(likeness, 40) << "frame " << i;
     }
     EXPECT_EQ(app->substituted(), 3U) << app->last_reason();

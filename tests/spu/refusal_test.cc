@@ -16,9 +16,12 @@ std::vector<Refusal> refusals() {
   return {
       {"fog", "fog is enabled", [](GlApplication& a) { a.gl().Enable(GL_FOG); }},
       {"stencil test", "the stencil test is enabled", [](GlApplication& a) { a.gl().Enable(GL_STENCIL_TEST); }},
-      {"logical operation", "a logical operation is enabled", [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},
-      {"lines", "polygons are not filled", [](GlApplication& a) { a.gl().PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
-      {"maximum blending", "the blend equation is not addition", [](GlApplication& a) { a.gl().BlendEquation(GL_MAX); }},
+      {"logical operation", "a logical operation is enabled",
+       [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},
+      {"lines", "polygons are not filled",
+       [](GlApplication& a) { a.gl().PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
+      {"maximum blending", "the blend equation is not addition",
+       [](GlApplication& a) { a.gl().BlendEquation(GL_MAX); }},
       {"a depth function that keeps what is farther", "the depth function is neither LESS nor LEQUAL",
        [](GlApplication& a) {
          a.gl().Enable(GL_DEPTH_TEST);
@@ -30,9 +33,12 @@ std::vector<Refusal> refusals() {
          a.gl().Enable(GL_TEXTURE_2D);
          a.gl().ActiveTexture(GL_TEXTURE0);
        }},
-      {"colour sum", "a secondary colour is added after texturing", [](GlApplication& a) { a.gl().Enable(GL_COLOR_SUM); }},
+      {"colour sum", "a secondary colour is added after texturing",
+       [](GlApplication& a) { a.gl().Enable(GL_COLOR_SUM); }},
       {"mip-mapping", "the texture is mip-mapped or filtered differently when minified",
-       [](GlApplication& a) { a.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR); }},
+       [](GlApplication& a) {
+         a.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+       }},
       {"an occlusion query", "an occlusion query surrounds the slices",
        [](GlApplication& a) {
          GLuint query = 0;
@@ -70,7 +76,8 @@ TEST(Refusals, ShadersWhoseColourDependsOnPositionAreLeft) {
   const char* source =
       "#version 120\n"
       "uniform sampler3D field; uniform sampler1D table;\n"
-      "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r) * gl_TexCoord[0].y; }\n";
+      "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r) * "
+      "gl_TexCoord[0].y; }\n";
   GLint current = 0;
   app->gl().UseProgram(1);
   app->gl().GetIntegerv(GL_CURRENT_PROGRAM, &current);

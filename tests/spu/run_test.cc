@@ -29,7 +29,9 @@ DispatchTable listening_driver() {
     hear("TexCoord", {float(unit - GL_TEXTURE0) / 100, s, t, r, q});
   };
   table.Color4f = [](GLfloat r, GLfloat g, GLfloat b, GLfloat a) { hear("Color", {r, g, b, a}); };
-  table.DrawElements = [](GLenum, GLsizei count, GLenum, const void*) { hear("DrawElements", {float(count) / 100}); };
+  table.DrawElements = [](GLenum, GLsizei count, GLenum, const void*) {
+    hear("DrawElements", {float(count) / 100});
+  };
   table.CallList = [](GLuint list) { hear("CallList", {float(list) / 100}); };
   return table;
 }
@@ -53,8 +55,18 @@ TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
   using Role = ClientArray::Role;
   const auto bytes = [](auto& v) { return reinterpret_cast<const std::byte*>(v.data()); };
   sources.arrays = {
-      {.role = Role::texture_coordinate, .index = 0, .components = 3, .type = GL_DOUBLE, .stride = 24, .first = bytes(coordinates)},
-      {.role = Role::colour, .components = 4, .type = GL_UNSIGNED_BYTE, .normalised = true, .stride = 4, .first = bytes(colours)},
+      {.role = Role::texture_coordinate,
+       .index = 0,
+       .components = 3,
+       .type = GL_DOUBLE,
+       .stride = 24,
+       .first = bytes(coordinates)},
+      {.role = Role::colour,
+       .components = 4,
+       .type = GL_UNSIGNED_BYTE,
+       .normalised = true,
+       .stride = 4,
+       .first = bytes(colours)},
       {.role = Role::vertex, .components = 3, .type = GL_FLOAT, .stride = 12, .first = bytes(positions)}};
   spu::Run run(Pipeline{});
   pack_elements(run.calls(), sources, GL_TRIANGLES, {2, 0});
@@ -62,8 +74,8 @@ TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
   heard.clear();
   run.replay(listening_driver());
   EXPECT_EQ(heard, (std::vector<std::string>{"Begin 4", "TexCoord 0 100 100 50 100", "Color 0 0 100 20",
-                                             "Vertex 100 100 0 100", "TexCoord 0 0 0 50 100", "Color 100 0 0 100",
-                                             "Vertex 0 0 0 100", "End"}));
+                                             "Vertex 100 100 0 100", "TexCoord 0 0 0 50 100",
+                                             "Color 100 0 0 100", "Vertex 0 0 0 100", "End"}));
 }
 
 }  // namespace

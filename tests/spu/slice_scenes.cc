@@ -9,7 +9,9 @@ namespace {
 
 constexpr int slices = 40;
 
-double slice_z(int i) { return (i + 0.5) / slices; }
+double slice_z(int i) {
+  return (i + 0.5) / slices;
+}
 
 void filter(const DispatchTable& gl, GLenum target, GLenum mode) {
   gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, GLint(mode));
@@ -80,8 +82,8 @@ Matrix camera_matrix(double angle) {
     return std::array<float, 4>{float(f * ex), float(f * ey), float(zz * ez + zt * w), float(-ez)};
   };
   Matrix m{};
-  const std::array<std::array<float, 4>, 4> columns = {column(1, 0, 0, 0), column(0, 1, 0, 0), column(0, 0, 1, 0),
-                                                       column(-0.5, -0.5, -0.5, 1)};
+  const std::array<std::array<float, 4>, 4> columns = {column(1, 0, 0, 0), column(0, 1, 0, 0),
+                                                       column(0, 0, 1, 0), column(-0.5, -0.5, -0.5, 1)};
   for (std::size_t i = 0; i < 16; ++i) m[i] = columns[i / 4][i % 4];
   return m;
 }
@@ -127,7 +129,8 @@ SliceScene immediate_rgba() {
     app.gl().GenTextures(1, &texture);
     app.gl().BindTexture(GL_TEXTURE_3D, texture);
     filter(app.gl(), GL_TEXTURE_3D, GL_LINEAR);
-    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, blob.x, blob.y, blob.z, 0, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, blob.x, blob.y, blob.z, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                        colours.data());
   };
   scene.slices = [](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
@@ -150,7 +153,8 @@ SliceScene immediate_rgba() {
 }
 
 SliceScene display_list_texgen() {
-  SliceScene scene{"display list, eye-linear texgen, clip planes, lighting, alpha test, padded INTENSITY texture"};
+  SliceScene scene{
+      "display list, eye-linear texgen, clip planes, lighting, alpha test, padded INTENSITY texture"};
   auto list = std::make_shared<GLuint>(0);
   scene.set_up = [list](GlApplication& app) {
     const Blob blob;
@@ -167,7 +171,8 @@ SliceScene display_list_texgen() {
     app.gl().GenTextures(1, &texture);
     app.gl().BindTexture(GL_TEXTURE_3D, texture);
     filter(app.gl(), GL_TEXTURE_3D, GL_LINEAR);
-    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_INTENSITY, 32, 32, 32, 0, GL_LUMINANCE, GL_UNSIGNED_BYTE, padded.data());
+    app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_INTENSITY, 32, 32, 32, 0, GL_LUMINANCE, GL_UNSIGNED_BYTE,
+                        padded.data());
     *list = app.gl().GenLists(1);
     app.gl().NewList(*list, GL_COMPILE);
     app.gl().Normal3f(0, 0, 1);
@@ -225,10 +230,11 @@ SliceScene client_arrays_table() {
   scene.set_up = [name](GlApplication& app) {
     scalar_texture(app.gl(), GL_LUMINANCE8, GL_LUMINANCE);
     table_texture(app.gl());
-    *name = program(app.gl(), nullptr,
-                    "#version 120\n"
-                    "uniform sampler3D field; uniform sampler1D table;\n"
-                    "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r); }\n");
+    *name =
+        program(app.gl(), nullptr,
+                "#version 120\n"
+                "uniform sampler3D field; uniform sampler1D table;\n"
+                "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r); }\n");
     app.gl().UseProgram(*name);
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "field"), 0);
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
@@ -261,13 +267,14 @@ SliceScene vertex_shader_varying() {
   scene.set_up = [name](GlApplication& app) {
     scalar_texture(app.gl(), GL_R8, GL_RED);
     table_texture(app.gl());
-    *name = program(app.gl(),
-                    "#version 120\n"
-                    "uniform mat4 camera; attribute vec3 corner; varying vec3 place; varying float gain;\n"
-                    "void main() { place = corner; gain = 0.75; gl_Position = camera * vec4(corner, 1.0); }\n",
-                    "#version 120\n"
-                    "uniform sampler3D field; uniform sampler1D table; varying vec3 place; varying float gain;\n"
-                    "void main() { gl_FragColor = gain * texture1D(table, texture3D(field, place).r); }\n");
+    *name =
+        program(app.gl(),
+                "#version 120\n"
+                "uniform mat4 camera; attribute vec3 corner; varying vec3 place; varying float gain;\n"
+                "void main() { place = corner; gain = 0.75; gl_Position = camera * vec4(corner, 1.0); }\n",
+                "#version 120\n"
+                "uniform sampler3D field; uniform sampler1D table; varying vec3 place; varying float gain;\n"
+                "void main() { gl_FragColor = gain * texture1D(table, texture3D(field, place).r); }\n");
     app.gl().UseProgram(*name);
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "field"), 0);
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
@@ -320,7 +327,8 @@ SliceScene core_batched() {
     app.gl().BindVertexArray(*array);
     app.gl().GenBuffers(1, &buffer);
     app.gl().BindBuffer(GL_ARRAY_BUFFER, buffer);
-    app.gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(), GL_STATIC_DRAW);
+    app.gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
+                        GL_STATIC_DRAW);
     app.gl().EnableVertexAttribArray(3);
     app.gl().VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   };
@@ -338,7 +346,8 @@ SliceScene core_batched() {
 }
 
 std::vector<SliceScene> all_slice_scenes() {
-  return {immediate_rgba(), display_list_texgen(), client_arrays_table(), vertex_shader_varying(), core_batched()};
+  return {immediate_rgba(), display_list_texgen(), client_arrays_table(), vertex_shader_varying(),
+          core_batched()};
 }
 
 }  // namespace understudy::spu::testing

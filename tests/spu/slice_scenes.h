@@ -22,8 +22,8 @@ struct SliceScene {
 
 /// glBegin/glEnd quads, fixed function, RGBA8 voxels.
 SliceScene immediate_rgba();
-/// A display list of quads with eye-linear texgen, six clip planes, lighting with a constant normal, an alpha test, and
-/// an INTENSITY texture padded to powers of two: what osgvolume does.
+/// A display list of quads with eye-linear texgen, six clip planes, lighting with a constant normal, an alpha
+/// test, and an INTENSITY texture padded to powers of two: what osgvolume does.
 SliceScene display_list_texgen();
 /// GLSL 1.20 fragment shader on gl_TexCoord[0] with a 1-D table; one client array refilled for every slice.
 SliceScene client_arrays_table();

@@ -1,4 +1,5 @@
-// Without a trace: what OpenGL can be asked is the same after a substituted draw as after the application's own.
+// Without a trace: what OpenGL can be asked is the same after a substituted draw as after the application's
+// own.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,55 +17,122 @@ struct Asked {
   int count;
 };
 
-#define ASK(name, count) {#name, name, count}
+#define ASK(name, count) \
+  { #name, name, count }
 
-/// State that our own drawing might touch, and its neighbours. Names of objects we create are not the application's.
+/// State that our own drawing might touch, and its neighbours. Names of objects we create are not the
+/// application's.
 const std::vector<Asked>& asked_everywhere() {
-  static const std::vector<Asked> list = {
-      ASK(GL_ACTIVE_TEXTURE, 1), ASK(GL_ARRAY_BUFFER_BINDING, 1), ASK(GL_BLEND_COLOR, 4), ASK(GL_BLEND_DST_ALPHA, 1),
-      ASK(GL_BLEND_DST_RGB, 1), ASK(GL_BLEND_EQUATION_ALPHA, 1), ASK(GL_BLEND_EQUATION_RGB, 1), ASK(GL_BLEND_SRC_ALPHA, 1),
-      ASK(GL_BLEND_SRC_RGB, 1), ASK(GL_COLOR_CLEAR_VALUE, 4), ASK(GL_COLOR_WRITEMASK, 4), ASK(GL_CULL_FACE_MODE, 1),
-      ASK(GL_CURRENT_PROGRAM, 1), ASK(GL_DEPTH_CLEAR_VALUE, 1), ASK(GL_DEPTH_FUNC, 1), ASK(GL_DEPTH_RANGE, 2),
-      ASK(GL_DEPTH_WRITEMASK, 1), ASK(GL_DRAW_BUFFER, 1), ASK(GL_DRAW_FRAMEBUFFER_BINDING, 1),
-      ASK(GL_ELEMENT_ARRAY_BUFFER_BINDING, 1), ASK(GL_FRONT_FACE, 1), ASK(GL_LINE_WIDTH, 1), ASK(GL_LOGIC_OP_MODE, 1),
-      ASK(GL_PACK_ALIGNMENT, 1), ASK(GL_PACK_IMAGE_HEIGHT, 1), ASK(GL_PACK_LSB_FIRST, 1), ASK(GL_PACK_ROW_LENGTH, 1),
-      ASK(GL_PACK_SKIP_IMAGES, 1), ASK(GL_PACK_SKIP_PIXELS, 1), ASK(GL_PACK_SKIP_ROWS, 1), ASK(GL_PACK_SWAP_BYTES, 1),
-      ASK(GL_PIXEL_PACK_BUFFER_BINDING, 1), ASK(GL_PIXEL_UNPACK_BUFFER_BINDING, 1), ASK(GL_POINT_SIZE, 1),
-      ASK(GL_READ_BUFFER, 1), ASK(GL_READ_FRAMEBUFFER_BINDING, 1), ASK(GL_RENDERBUFFER_BINDING, 1),
-      ASK(GL_SAMPLE_COVERAGE_VALUE, 1), ASK(GL_SCISSOR_BOX, 4), ASK(GL_STENCIL_FUNC, 1), ASK(GL_STENCIL_WRITEMASK, 1),
-      ASK(GL_TEXTURE_BINDING_1D, 1), ASK(GL_TEXTURE_BINDING_2D, 1), ASK(GL_TEXTURE_BINDING_3D, 1),
-      ASK(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 1), ASK(GL_UNIFORM_BUFFER_BINDING, 1), ASK(GL_UNPACK_ALIGNMENT, 1),
-      ASK(GL_UNPACK_IMAGE_HEIGHT, 1), ASK(GL_UNPACK_LSB_FIRST, 1), ASK(GL_UNPACK_ROW_LENGTH, 1),
-      ASK(GL_UNPACK_SKIP_IMAGES, 1), ASK(GL_UNPACK_SKIP_PIXELS, 1), ASK(GL_UNPACK_SKIP_ROWS, 1),
-      ASK(GL_UNPACK_SWAP_BYTES, 1), ASK(GL_VERTEX_ARRAY_BINDING, 1), ASK(GL_VIEWPORT, 4)};
+  static const std::vector<Asked> list = {ASK(GL_ACTIVE_TEXTURE, 1),
+                                          ASK(GL_ARRAY_BUFFER_BINDING, 1),
+                                          ASK(GL_BLEND_COLOR, 4),
+                                          ASK(GL_BLEND_DST_ALPHA, 1),
+                                          ASK(GL_BLEND_DST_RGB, 1),
+                                          ASK(GL_BLEND_EQUATION_ALPHA, 1),
+                                          ASK(GL_BLEND_EQUATION_RGB, 1),
+                                          ASK(GL_BLEND_SRC_ALPHA, 1),
+                                          ASK(GL_BLEND_SRC_RGB, 1),
+                                          ASK(GL_COLOR_CLEAR_VALUE, 4),
+                                          ASK(GL_COLOR_WRITEMASK, 4),
+                                          ASK(GL_CULL_FACE_MODE, 1),
+                                          ASK(GL_CURRENT_PROGRAM, 1),
+                                          ASK(GL_DEPTH_CLEAR_VALUE, 1),
+                                          ASK(GL_DEPTH_FUNC, 1),
+                                          ASK(GL_DEPTH_RANGE, 2),
+                                          ASK(GL_DEPTH_WRITEMASK, 1),
+                                          ASK(GL_DRAW_BUFFER, 1),
+                                          ASK(GL_DRAW_FRAMEBUFFER_BINDING, 1),
+                                          ASK(GL_ELEMENT_ARRAY_BUFFER_BINDING, 1),
+                                          ASK(GL_FRONT_FACE, 1),
+                                          ASK(GL_LINE_WIDTH, 1),
+                                          ASK(GL_LOGIC_OP_MODE, 1),
+                                          ASK(GL_PACK_ALIGNMENT, 1),
+                                          ASK(GL_PACK_IMAGE_HEIGHT, 1),
+                                          ASK(GL_PACK_LSB_FIRST, 1),
+                                          ASK(GL_PACK_ROW_LENGTH, 1),
+                                          ASK(GL_PACK_SKIP_IMAGES, 1),
+                                          ASK(GL_PACK_SKIP_PIXELS, 1),
+                                          ASK(GL_PACK_SKIP_ROWS, 1),
+                                          ASK(GL_PACK_SWAP_BYTES, 1),
+                                          ASK(GL_PIXEL_PACK_BUFFER_BINDING, 1),
+                                          ASK(GL_PIXEL_UNPACK_BUFFER_BINDING, 1),
+                                          ASK(GL_POINT_SIZE, 1),
+                                          ASK(GL_READ_BUFFER, 1),
+                                          ASK(GL_READ_FRAMEBUFFER_BINDING, 1),
+                                          ASK(GL_RENDERBUFFER_BINDING, 1),
+                                          ASK(GL_SAMPLE_COVERAGE_VALUE, 1),
+                                          ASK(GL_SCISSOR_BOX, 4),
+                                          ASK(GL_STENCIL_FUNC, 1),
+                                          ASK(GL_STENCIL_WRITEMASK, 1),
+                                          ASK(GL_TEXTURE_BINDING_1D, 1),
+                                          ASK(GL_TEXTURE_BINDING_2D, 1),
+                                          ASK(GL_TEXTURE_BINDING_3D, 1),
+                                          ASK(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 1),
+                                          ASK(GL_UNIFORM_BUFFER_BINDING, 1),
+                                          ASK(GL_UNPACK_ALIGNMENT, 1),
+                                          ASK(GL_UNPACK_IMAGE_HEIGHT, 1),
+                                          ASK(GL_UNPACK_LSB_FIRST, 1),
+                                          ASK(GL_UNPACK_ROW_LENGTH, 1),
+                                          ASK(GL_UNPACK_SKIP_IMAGES, 1),
+                                          ASK(GL_UNPACK_SKIP_PIXELS, 1),
+                                          ASK(GL_UNPACK_SKIP_ROWS, 1),
+                                          ASK(GL_UNPACK_SWAP_BYTES, 1),
+                                          ASK(GL_VERTEX_ARRAY_BINDING, 1),
+                                          ASK(GL_VIEWPORT, 4)};
   return list;
 }
 
 const std::vector<Asked>& asked_of_compatibility() {
-  static const std::vector<Asked> list = {
-      ASK(GL_ALPHA_TEST_FUNC, 1), ASK(GL_ALPHA_TEST_REF, 1), ASK(GL_ATTRIB_STACK_DEPTH, 1), ASK(GL_CLIENT_ACTIVE_TEXTURE, 1),
-      ASK(GL_CLIENT_ATTRIB_STACK_DEPTH, 1), ASK(GL_CURRENT_COLOR, 4), ASK(GL_CURRENT_NORMAL, 3),
-      ASK(GL_CURRENT_TEXTURE_COORDS, 4), ASK(GL_FEEDBACK_BUFFER_SIZE, 1), ASK(GL_FEEDBACK_BUFFER_TYPE, 1),
-      ASK(GL_LIST_INDEX, 1), ASK(GL_MATRIX_MODE, 1), ASK(GL_MODELVIEW_MATRIX, 16), ASK(GL_MODELVIEW_STACK_DEPTH, 1),
-      ASK(GL_PROJECTION_MATRIX, 16), ASK(GL_PROJECTION_STACK_DEPTH, 1), ASK(GL_RENDER_MODE, 1), ASK(GL_SHADE_MODEL, 1),
-      ASK(GL_TEXTURE_MATRIX, 16), ASK(GL_TEXTURE_STACK_DEPTH, 1), ASK(GL_VERTEX_ARRAY_POINTER, 0)};
+  static const std::vector<Asked> list = {ASK(GL_ALPHA_TEST_FUNC, 1),
+                                          ASK(GL_ALPHA_TEST_REF, 1),
+                                          ASK(GL_ATTRIB_STACK_DEPTH, 1),
+                                          ASK(GL_CLIENT_ACTIVE_TEXTURE, 1),
+                                          ASK(GL_CLIENT_ATTRIB_STACK_DEPTH, 1),
+                                          ASK(GL_CURRENT_COLOR, 4),
+                                          ASK(GL_CURRENT_NORMAL, 3),
+                                          ASK(GL_CURRENT_TEXTURE_COORDS, 4),
+                                          ASK(GL_FEEDBACK_BUFFER_SIZE, 1),
+                                          ASK(GL_FEEDBACK_BUFFER_TYPE, 1),
+                                          ASK(GL_LIST_INDEX, 1),
+                                          ASK(GL_MATRIX_MODE, 1),
+                                          ASK(GL_MODELVIEW_MATRIX, 16),
+                                          ASK(GL_MODELVIEW_STACK_DEPTH, 1),
+                                          ASK(GL_PROJECTION_MATRIX, 16),
+                                          ASK(GL_PROJECTION_STACK_DEPTH, 1),
+                                          ASK(GL_RENDER_MODE, 1),
+                                          ASK(GL_SHADE_MODEL, 1),
+                                          ASK(GL_TEXTURE_MATRIX, 16),
+                                          ASK(GL_TEXTURE_STACK_DEPTH, 1),
+                                          ASK(GL_VERTEX_ARRAY_POINTER, 0)};
   return list;
 }
 
 #undef ASK
 
 const std::vector<std::pair<const char*, GLenum>>& capabilities(Profile profile) {
-  static const std::vector<std::pair<const char*, GLenum>> core = {
-      {"BLEND", GL_BLEND},           {"CULL_FACE", GL_CULL_FACE},       {"DEPTH_TEST", GL_DEPTH_TEST},
-      {"DITHER", GL_DITHER},         {"MULTISAMPLE", GL_MULTISAMPLE},   {"SCISSOR_TEST", GL_SCISSOR_TEST},
-      {"STENCIL", GL_STENCIL_TEST},  {"DISCARD", GL_RASTERIZER_DISCARD}, {"LOGIC_OP", GL_COLOR_LOGIC_OP},
-      {"CLIP0", GL_CLIP_DISTANCE0},  {"CLIP5", GL_CLIP_DISTANCE0 + 5},  {"POLYGON_OFFSET", GL_POLYGON_OFFSET_FILL}};
+  static const std::vector<std::pair<const char*, GLenum>> core = {{"BLEND", GL_BLEND},
+                                                                   {"CULL_FACE", GL_CULL_FACE},
+                                                                   {"DEPTH_TEST", GL_DEPTH_TEST},
+                                                                   {"DITHER", GL_DITHER},
+                                                                   {"MULTISAMPLE", GL_MULTISAMPLE},
+                                                                   {"SCISSOR_TEST", GL_SCISSOR_TEST},
+                                                                   {"STENCIL", GL_STENCIL_TEST},
+                                                                   {"DISCARD", GL_RASTERIZER_DISCARD},
+                                                                   {"LOGIC_OP", GL_COLOR_LOGIC_OP},
+                                                                   {"CLIP0", GL_CLIP_DISTANCE0},
+                                                                   {"CLIP5", GL_CLIP_DISTANCE0 + 5},
+                                                                   {"POLYGON_OFFSET", GL_POLYGON_OFFSET_FILL}};
   static const std::vector<std::pair<const char*, GLenum>> compatibility = [] {
     auto all = core;
     for (const auto& extra : std::initializer_list<std::pair<const char*, GLenum>>{
-             {"ALPHA_TEST", GL_ALPHA_TEST},   {"FOG", GL_FOG},           {"LIGHTING", GL_LIGHTING},
-             {"TEXTURE_1D", GL_TEXTURE_1D},   {"TEXTURE_2D", GL_TEXTURE_2D}, {"TEXTURE_3D", GL_TEXTURE_3D},
-             {"GEN_S", GL_TEXTURE_GEN_S},     {"VERTEX_ARRAY", GL_VERTEX_ARRAY},
+             {"ALPHA_TEST", GL_ALPHA_TEST},
+             {"FOG", GL_FOG},
+             {"LIGHTING", GL_LIGHTING},
+             {"TEXTURE_1D", GL_TEXTURE_1D},
+             {"TEXTURE_2D", GL_TEXTURE_2D},
+             {"TEXTURE_3D", GL_TEXTURE_3D},
+             {"GEN_S", GL_TEXTURE_GEN_S},
+             {"VERTEX_ARRAY", GL_VERTEX_ARRAY},
              {"TEXTURE_COORD_ARRAY", GL_TEXTURE_COORD_ARRAY}}) {
       all.push_back(extra);
     }
@@ -95,8 +163,10 @@ State dump(const DispatchTable& gl, Profile profile) {
   gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
   for (int unit = 0; unit < 4; ++unit) {
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
-    for (const auto& [name, binding] : {std::pair{"1D", GL_TEXTURE_BINDING_1D}, {"2D", GL_TEXTURE_BINDING_2D},
-                                        {"3D", GL_TEXTURE_BINDING_3D}, {"sampler", GL_SAMPLER_BINDING}}) {
+    for (const auto& [name, binding] : {std::pair{"1D", GL_TEXTURE_BINDING_1D},
+                                        {"2D", GL_TEXTURE_BINDING_2D},
+                                        {"3D", GL_TEXTURE_BINDING_3D},
+                                        {"sampler", GL_SAMPLER_BINDING}}) {
       GLint bound = 0;
       gl.GetIntegerv(GLenum(binding), &bound);
       state["unit " + std::to_string(unit) + " " + name] = {double(bound)};

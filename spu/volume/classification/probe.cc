@@ -63,7 +63,8 @@ class Bench {
       gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
     }
     if (with_swizzle) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), width, height, 1, 0, format, GL_FLOAT, texels.data());
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), width, height, 1, 0, format, GL_FLOAT,
+                   texels.data());
   }
 
   /// One fragment a pixel; a pixel whose fragment was discarded stays zero.
@@ -98,20 +99,29 @@ class Bench {
 
 GLenum probe_format(BaseFormat base) {
   switch (base) {
-    case BaseFormat::luminance: return GL_LUMINANCE32F_ARB;
-    case BaseFormat::intensity: return GL_INTENSITY32F_ARB;
-    case BaseFormat::alpha: return GL_ALPHA32F_ARB;
-    case BaseFormat::rgba: return GL_RGBA32F;
-    default: return GL_R32F;
+    case BaseFormat::luminance:
+      return GL_LUMINANCE32F_ARB;
+    case BaseFormat::intensity:
+      return GL_INTENSITY32F_ARB;
+    case BaseFormat::alpha:
+      return GL_ALPHA32F_ARB;
+    case BaseFormat::rgba:
+      return GL_RGBA32F;
+    default:
+      return GL_R32F;
   }
 }
 
 GLenum upload_format(BaseFormat base) {
   switch (base) {
-    case BaseFormat::luminance: return GL_LUMINANCE;
-    case BaseFormat::alpha: return GL_ALPHA;
-    case BaseFormat::rgba: return GL_RGBA;
-    default: return GL_RED;
+    case BaseFormat::luminance:
+      return GL_LUMINANCE;
+    case BaseFormat::alpha:
+      return GL_ALPHA;
+    case BaseFormat::rgba:
+      return GL_RGBA;
+    default:
+      return GL_RED;
   }
 }
 
@@ -154,7 +164,8 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
   // The same samples with other coordinates and other inputs: a single texel, spread over the whole picture.
-  for (const int entry : {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
+  for (const int entry :
+       {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
     bench.show(internal_format, format, 1, 1, {ramp[std::size_t(entry)]}, texture.swizzle, with_swizzle);
     for (const volume::Rgba& colour : bench.draw(last, true)) {
       if (!(largest_difference(colour, table[std::size_t(entry)]) <= same_colour)) {
@@ -211,7 +222,8 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
         expected[row] += map.matrix[4 * row + column] * texels[4 * i + column];
       }
     }
-    if (!(largest_difference(mapped[i], expected) <= same_colour)) return "the map of a colour volume is not linear";
+    if (!(largest_difference(mapped[i], expected) <= same_colour))
+      return "the map of a colour volume is not linear";
   }
   bench.show(GL_RGBA32F, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, 0.5F}, texture.swizzle, context.version >= 330);
   const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
@@ -229,8 +241,9 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
 
 }  // namespace
 
-ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline, const TextureDescription& texture,
-                                  const FragmentInputs& fragment, const std::array<float, 2>& range) {
+ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline,
+                                  const TextureDescription& texture, const FragmentInputs& fragment,
+                                  const std::array<float, 2>& range) {
   Bench bench(context, pipeline);
   if (!bench.complete()) return "the driver offers no float framebuffer to probe with";
   std::string trouble;

@@ -1,6 +1,7 @@
-// Classification by probing: the application's own fragment pipeline is shown a texture whose texels are known, draws
-// into a float framebuffer, and what comes out is the transfer function. One mechanism for texture environments, look-up
-// textures, window/level uniforms and colour maps written in shader code: observe, don't parse.
+// Classification by probing: the application's own fragment pipeline is shown a texture whose texels are known,
+// draws into a float framebuffer, and what comes out is the transfer function. One mechanism for texture
+// environments, look-up textures, window/level uniforms and colour maps written in shader code: observe, don't
+// parse.
 #pragma once
 
 #include <string>
@@ -21,8 +22,8 @@ struct FragmentInputs {
   GLuint application = 0;                 ///< the application's program, for its uniforms
   std::vector<StageInput> inputs;
   std::string coordinate;
-  InputValues first;   ///< values of all inputs at one vertex, in the order of `inputs`
-  InputValues last;    ///< and at another: a colour that differs between them depends on more than the sample
+  InputValues first;  ///< values of all inputs at one vertex, in the order of `inputs`
+  InputValues last;   ///< and at another: a colour that differs between them depends on more than the sample
 };
 
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
@@ -30,9 +31,10 @@ constexpr int probed_entries = 16 * 255 + 1;
 
 using ProbeFinding = std::variant<volume::Classification, std::string>;
 
-/// `range` is the interval of texel values that the table covers. Uses the current context's fragment state (texture
-/// environment, alpha test, uniforms) and leaves it untouched.
-ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline, const TextureDescription& texture,
-                                  const FragmentInputs& fragment, const std::array<float, 2>& range);
+/// `range` is the interval of texel values that the table covers. Uses the current context's fragment state
+/// (texture environment, alpha test, uniforms) and leaves it untouched.
+ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline,
+                                  const TextureDescription& texture, const FragmentInputs& fragment,
+                                  const std::array<float, 2>& range);
 
 }  // namespace understudy::spu

@@ -27,7 +27,8 @@ class CaptureState {
     if (!discard_) gl_.Disable(GL_RASTERIZER_DISCARD);
     gl_.UseProgram(GLuint(program_));
     if (size_ > 0) {
-      gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_), GLsizeiptr(size_));
+      gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_),
+                          GLsizeiptr(size_));
     } else {
       gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_));
     }

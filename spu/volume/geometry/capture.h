@@ -1,5 +1,5 @@
-// Observing vertex shaders: the run is drawn once with the application's vertex stage alone and rasterisation off, and
-// transform feedback writes down the clip position and everything that the fragment stage would read.
+// Observing vertex shaders: the run is drawn once with the application's vertex stage alone and rasterisation
+// off, and transform feedback writes down the clip position and everything that the fragment stage would read.
 #pragma once
 
 #include "spu/volume/context.h"
@@ -15,14 +15,14 @@ using InputValues = std::vector<std::array<float, 4>>;
 
 struct Capture {
   ObservedPolygons polygons;  ///< triangles; `texture` holds the input named by `coordinate`
-  std::string coordinate;     ///< the input that addresses the volume: the one whose fit to the positions closes
+  std::string coordinate;  ///< the input that addresses the volume: the one whose fit to the positions closes
   std::optional<CameraFit> fit;
-  InputValues first;          ///< all inputs at the first vertex
-  InputValues last;           ///< and at the last
+  InputValues first;  ///< all inputs at the first vertex
+  InputValues last;   ///< and at the last
 };
 
-/// Draws `run` with `stages.observer`; uniforms are copied from the run's program. An empty capture when nothing was
-/// drawn or the primitives would exceed 64 MiB.
+/// Draws `run` with `stages.observer`; uniforms are copied from the run's program. An empty capture when
+/// nothing was drawn or the primitives would exceed 64 MiB.
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages);
 
 }  // namespace understudy::spu

@@ -5,7 +5,7 @@
 namespace understudy::spu {
 namespace {
 
-constexpr std::size_t first_buffer = std::size_t(1) << 18;    // floats: about 1,500 slices
+constexpr std::size_t first_buffer = std::size_t(1) << 18;  // floats: about 1,500 slices
 constexpr std::size_t largest_buffer = std::size_t(1) << 26;
 constexpr std::size_t floats_per_vertex = 12;  // GL_4D_COLOR_TEXTURE: x y z w, r g b a, s t r q
 
@@ -60,7 +60,8 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
   Window window;
   gl.GetIntegerv(GL_VIEWPORT, window.viewport.data());
   gl.GetDoublev(GL_DEPTH_RANGE, window.depth_range.data());
-  if (window.viewport[2] <= 0 || window.viewport[3] <= 0 || window.depth_range[0] == window.depth_range[1]) return {};
+  if (window.viewport[2] <= 0 || window.viewport[3] <= 0 || window.depth_range[0] == window.depth_range[1])
+    return {};
 
   GLint application_size = 0;
   GLint application_type = 0;

@@ -1,8 +1,8 @@
 // The camera of a run of slices, by linear least squares: clip = A (t, 1).
 //
-// Whatever chain of matrices, texgen planes and shader arithmetic lies between, for a volume drawn by slices it is one
-// projective map from texture space to clip space. Four affinely independent vertices determine it, the others confirm
-// it: the residual is the proof that the draw is a volume.
+// Whatever chain of matrices, texgen planes and shader arithmetic lies between, for a volume drawn by slices it
+// is one projective map from texture space to clip space. Four affinely independent vertices determine it, the
+// others confirm it: the residual is the proof that the draw is a volume.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct CameraFit {
 /// coordinates (about 1e-7 relative); PyMOL's own stream fits to 5e-7.
 constexpr double max_fit_residual = 1e-4;
 
-/// Null when the vertices do not span texture space (a single slice, a box face, fewer than four points) or are not
-/// finite. The caller compares `residual` with max_fit_residual.
+/// Null when the vertices do not span texture space (a single slice, a box face, fewer than four points) or are
+/// not finite. The caller compares `residual` with max_fit_residual.
 std::optional<CameraFit> fit_camera(std::span<const ObservedVertex> vertices);
 
 }  // namespace understudy::spu

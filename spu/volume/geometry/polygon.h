@@ -12,7 +12,7 @@
 namespace understudy::spu {
 
 struct ObservedVertex {
-  volume::Vec3 texture{};            ///< coordinate after texgen, texture matrix and division by q
+  volume::Vec3 texture{};  ///< coordinate after texgen, texture matrix and division by q
   std::array<double, 4> clip{};
 };
 

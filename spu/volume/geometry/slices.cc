@@ -16,8 +16,8 @@ using volume::length;
 using volume::subtract;
 using volume::Vec3;
 
-/// Offsets of one slice's vertices, and of neighbouring slices in the application's own arithmetic, agree to float
-/// precision of texture coordinates; the spacing of real viewers is above 1e-4.
+/// Offsets of one slice's vertices, and of neighbouring slices in the application's own arithmetic, agree to
+/// float precision of texture coordinates; the spacing of real viewers is above 1e-4.
 constexpr double same_plane = 2e-6;
 /// Slices are evenly spaced when no offset strays from its place by more than this part of the spacing.
 constexpr double even_spacing = 0.02;
@@ -159,7 +159,8 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
   set.planes.spacing = -step;
   set.planes.count = int(n);
 
-  const Vec3 middle{(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, (box.low[2] + box.high[2]) / 2};
+  const Vec3 middle{(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
+                    (box.low[2] + box.high[2]) / 2};
   Vec3 beyond = middle;
   for (int k = 0; k < 3; ++k) beyond[k] += 1e-3 * (set.planes.spacing < 0 ? -normal[k] : normal[k]);
   if (depth_at(camera.texture_to_clip, beyond) < depth_at(camera.texture_to_clip, middle)) {

@@ -1,4 +1,5 @@
-// From observed polygons to the application's sampling: equidistant parallel planes through a box of texture space.
+// From observed polygons to the application's sampling: equidistant parallel planes through a box of texture
+// space.
 #pragma once
 
 #include <string>
@@ -18,8 +19,9 @@ struct SliceSet {
 /// Either the slices, or why they are none, in words that end in the report ("slices are not equally spaced").
 using SliceFinding = std::variant<SliceSet, std::string>;
 
-/// `clip_planes` are the application's own, in texture space. The polygons must be exactly what the planes cut out of
-/// the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the check.
+/// `clip_planes` are the application's own, in texture space. The polygons must be exactly what the planes cut
+/// out of the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the
+/// check.
 SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
                          std::span<const volume::HalfSpace> clip_planes);
 

@@ -13,9 +13,10 @@ using AnyFunction = void (*)();
 
 #define UNDERSTUDY_CORE_GLX(X)                                                                               \
   X(glXChooseFBConfig)                                                                                       \
-  X(glXChooseVisual) X(glXCopyContext) X(glXCreateContext) X(glXCreateGLXPixmap) X(glXCreateNewContext)      \
-      X(glXCreatePbuffer) X(glXCreatePixmap) X(glXCreateWindow) X(glXDestroyContext) X(glXDestroyGLXPixmap)  \
-          X(glXDestroyPbuffer) X(glXDestroyPixmap) X(glXDestroyWindow) X(glXGetClientString) X(glXGetConfig) \
+  X(glXChooseVisual)                                                                                         \
+  X(glXCopyContext) X(glXCreateContext) X(glXCreateGLXPixmap) X(glXCreateNewContext) X(glXCreatePbuffer)     \
+      X(glXCreatePixmap) X(glXCreateWindow) X(glXDestroyContext) X(glXDestroyGLXPixmap) X(glXDestroyPbuffer) \
+          X(glXDestroyPixmap) X(glXDestroyWindow) X(glXGetClientString) X(glXGetConfig)                      \
               X(glXGetCurrentContext) X(glXGetCurrentDrawable) X(glXGetCurrentReadDrawable)                  \
                   X(glXGetFBConfigAttrib) X(glXGetFBConfigs) X(glXGetProcAddress) X(glXGetProcAddressARB)    \
                       X(glXGetSelectedEvent) X(glXGetVisualFromFBConfig) X(glXIsDirect)                      \

@@ -50,8 +50,8 @@ std::vector<EGLDisplay> candidate_displays() {
   return displays;
 }
 
-// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha: nobody reads
-// it, as in a window.
+// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha:
+// nobody reads it, as in a window.
 EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
   const EGLint wanted[] = {EGL_SURFACE_TYPE,
                            surface_type,

@@ -177,6 +177,7 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
     return "the application is in feedback or select mode";
   GLint query = 0;
   gl.GetQueryiv(GL_SAMPLES_PASSED, GL_CURRENT_QUERY, &query);
+  if (query == 0 && context.version >= 330) gl.GetQueryiv(GL_ANY_SAMPLES_PASSED, GL_CURRENT_QUERY, &query);
   if (query != 0) return "an occlusion query surrounds the slices";
   if (context.version >= 400) {
     if (integer(gl, GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE) != 0) return "transform feedback is active";

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <limits>
 #include <regex>
 
 namespace understudy::spu {
@@ -321,6 +322,10 @@ std::vector<float> uniform_values(const GlContext& context, GLuint application, 
     gl.GetUniformfv(application, location, value.data());
     values.insert(values.end(), value.begin(), value.begin() + shape.components);
   });
+  // The contents of uniform buffers are not compared: a value that equals nothing makes every frame probe anew.
+  GLint blocks = 0;
+  if (context.version >= 310) gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  if (blocks > 0) values.push_back(std::numeric_limits<float>::quiet_NaN());
   return values;
 }
 

@@ -26,6 +26,10 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// After this many refusals in a row a volume is looked at only in one frame of so many.
+constexpr int patient_refusals = 8;
+constexpr std::uint64_t refused_retry_frames = 64;
+
 /// Ends the substitution of one run: the application draws, and the reason goes to the report.
 struct Doubt {
   std::string reason;
@@ -72,6 +76,15 @@ std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable&
     planes.push_back({{texture[0], texture[1], texture[2]}, texture[3]});
   }
   return planes;
+}
+
+bool clips_in_shader(const DispatchTable& gl) {
+  GLint count = 0;
+  gl.GetIntegerv(GL_MAX_CLIP_DISTANCES, &count);
+  for (GLint i = 0; i < count; ++i) {
+    if (gl.IsEnabled(GLenum(GL_CLIP_DISTANCE0 + i))) return true;
+  }
+  return false;
 }
 
 /// Everything that fixed-function fragments depend on, as numbers to compare.
@@ -273,6 +286,7 @@ void VolumeUnit::close_run() {
     substitute(*run);
     return;
   } catch (const Doubt& doubt) {
+    ++known(run->pipeline().volume.texture).refusals;
     leave(run->pipeline().volume.texture, doubt.reason);
   } catch (const NothingVisible&) {
   } catch (const compositor::RequestRefused& refused) {
@@ -308,9 +322,7 @@ void VolumeUnit::observe(Substitution& s) {
     if (!parts.trouble.empty()) throw Doubt{parts.trouble};
     s.fragment.inputs = parts.inputs;
     if (record->vertex_shader) {
-      if (!context().core && (gl.IsEnabled(GL_CLIP_PLANE0) || gl.IsEnabled(GL_CLIP_PLANE1))) {
-        throw Doubt{"clip planes cut what a vertex shader draws"};
-      }
+      if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
       Capture capture = capture_vertices(context(), s.run, parts);
       if (capture.polygons.count() == 0) throw NothingVisible{};
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
@@ -548,6 +560,7 @@ void VolumeUnit::substitute(const Run& run) {
   settle_depth(s);
   if (s.volume.frames == 0 || options.explain) explain(s);
   ++s.volume.frames;
+  s.volume.refusals = 0;
   ++frame_.substituted;
   s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
   frame_.counts += counts;

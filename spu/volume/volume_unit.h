@@ -33,6 +33,7 @@ struct KnownVolume {
   bool depth_looked_at = false;              ///< somebody used the depth that its slices write
   std::string given_back;   ///< why the volume is left to the application for good; empty: it is not
   std::string last_reason;  ///< the last reason for leaving it that was said
+  int refusals = 0;         ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VolumeCounters* counters = nullptr;

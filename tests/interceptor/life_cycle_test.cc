@@ -162,7 +162,7 @@ TEST(LifeCycle, AMissingBodyIsSaidOnceAndTheApplicationDraws) {
   EXPECT_EQ(outcome.status, 0);
   std::vector<std::string> lines = outcome.lines();
   const auto said = std::stable_partition(lines.begin(), lines.end(),
-                                   [](const std::string& line) { return line.starts_with("driver:"); });
+                                          [](const std::string& line) { return line.starts_with("driver:"); });
   ASSERT_EQ(lines.end() - said, 1) << outcome.text;
   EXPECT_THAT(*said, ::testing::HasSubstr("libunderstudy-body.so"));
   EXPECT_THAT(*said, ::testing::HasSubstr("the application draws by itself"));

@@ -1,6 +1,8 @@
 // The volume unit above a real driver: recognised, substituted, and the same picture.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "slice_scenes.h"
 
 namespace understudy::spu::testing {
@@ -88,6 +90,54 @@ TEST(RecognitionOfChanges, ATableUploadedAgainIsSeen) {
   scene.draw(*app, 10);
   EXPECT_LT(psnr(before, under), 30);
   EXPECT_GE(psnr(under, app->read_pixels()), 40);
+}
+
+TEST(RecognitionOfFormats, EveryScalarFormatIsReadBackAndProbed) {
+  struct Format {
+    const char* name;
+    GLenum internal_format;
+    GLenum format;
+    float scale;  ///< of the texels: float formats may leave [0,1]
+  };
+  for (const Format& format :
+       {Format{"R8", GL_R8, GL_RED, 1}, Format{"R16", GL_R16, GL_RED, 1}, Format{"R16F", GL_R16F, GL_RED, 1},
+        Format{"R32F", GL_R32F, GL_RED, 1}, Format{"R32F up to 3", GL_R32F, GL_RED, 3},
+        Format{"LUMINANCE16", GL_LUMINANCE16, GL_LUMINANCE, 1},
+        Format{"INTENSITY16", GL_INTENSITY16, GL_LUMINANCE, 1}}) {
+    auto app = GlApplication::start(Profile::compatibility);
+    if (!app) GTEST_SKIP() << "no EGL context here";
+    const SliceScene scene = client_arrays_table();
+    scene.set_up(*app);
+    const Blob blob;
+    std::vector<float> texels;
+    for (const std::uint8_t s : blob.texels()) texels.push_back(format.scale * float(s) / 255);
+    app->gl().TexImage3D(GL_TEXTURE_3D, 0, GLint(format.internal_format), blob.x, blob.y, blob.z, 0,
+                         format.format, GL_FLOAT, texels.data());
+    scene.draw(*app, 30);
+    const auto under = app->read_pixels();
+    EXPECT_EQ(app->substituted(), 1U) << format.name << ": " << app->last_reason();
+    app->use_chain(false);
+    scene.draw(*app, 30);
+    const double likeness = psnr(under, app->read_pixels());
+    std::printf("%s: %.1f dB\n", format.name, likeness);
+    EXPECT_GE(likeness, 40) << format.name;
+    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR)) << format.name;
+  }
+}
+
+TEST(RecognitionOfFormats, NotANumberInAFloatVolumeGivesAFinitePicture) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  const Blob blob;
+  std::vector<float> texels(std::size_t(blob.x * blob.y * blob.z), 0.5F);
+  for (std::size_t i = 0; i < texels.size(); i += 7) texels[i] = std::nanf("");
+  texels[3] = INFINITY;
+  app->gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, texels.data());
+  scene.draw(*app, 30);
+  for (const float value : app->read_pixels()) ASSERT_TRUE(std::isfinite(value));
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
 TEST(RecognitionOfDepth, OpaqueGeometryBeforeTheVolumeHidesIt) {

@@ -253,6 +253,13 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
     }
   }
   if (!floats || range[0] > range[1]) return {0.0F, 1.0F};
+  for (const volume::Wrap wrap : description.wrap) {
+    if (wrap != volume::Wrap::border || !std::isfinite(description.border[0])) continue;
+    range[0] = std::min(range[0], description.border[0]);
+    range[1] = std::max(range[1], description.border[0]);
+  }
+  // A constant field has no range to spread a table over: any room above it will do.
+  if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
   return range;
 }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -45,6 +47,11 @@ Result understudy(const std::string& arguments) {
   return shell(UNDERSTUDY_PROGRAM " " + arguments);
 }
 
+std::string contents(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 class UnderstudyRun : public ::testing::Test {
  protected:
   UnderstudyRun() {
@@ -59,11 +66,6 @@ class UnderstudyRun : public ::testing::Test {
       if (entry.path().filename().string().starts_with("understudy-")) return false;
     }
     return true;
-  }
-
-  std::string contents(const fs::path& path) const {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   /// Waits for something another process does; a minute is long enough to call it a failure.
@@ -168,6 +170,55 @@ TEST_F(UnderstudyRun, RunsTheViewerByItselfWhereMpiIsMissing) {
   EXPECT_EQ(without.status, 5);
   EXPECT_THAT(without.output, HasSubstr("apt install openmpi-bin"));
   EXPECT_THAT(without.output, HasSubstr("shown"));
+  EXPECT_TRUE(nothing_is_left());
+}
+
+/// The ranks whose command line names `socket`, by process id.
+std::set<pid_t> ranks_behind(const std::string& socket) {
+  std::set<pid_t> ranks;
+  for (const auto& process : fs::directory_iterator("/proc")) {
+    const std::string command = contents(process.path() / "cmdline");
+    if (contents(process.path() / "comm") == "understudy-node\n" && command.find(socket) != std::string::npos) {
+      ranks.insert(std::stoi(process.path().filename()));
+    }
+  }
+  return ranks;
+}
+
+TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine) {
+  if (!fs::exists(fs::path(UNDERSTUDY_PROGRAM).replace_filename("understudy-node")))
+    GTEST_SKIP() << "built without MPI";
+  const fs::path socket_file = folder_ / "socket";
+  const fs::path done = folder_ / "done";
+  const fs::path said = folder_ / "said";
+  const pid_t launcher = fork();
+  if (launcher == 0) {
+    freopen(said.c_str(), "w", stderr);
+    const std::string script = "echo $UNDERSTUDY_CONNECT >" + socket_file.string() + ".part; mv " +
+                               socket_file.string() + ".part " + socket_file.string() + "; while [ ! -e " +
+                               done.string() + " ]; do sleep 0.1; done";
+    execl(UNDERSTUDY_PROGRAM, "understudy", "run", "-n", "3", "--", "sh", "-c", script.c_str(), nullptr);
+    _exit(99);
+  }
+  ASSERT_TRUE(comes_true([&] { return fs::exists(socket_file); }));
+  std::string socket = contents(socket_file);
+  socket.pop_back();
+  std::set<pid_t> first;
+  ASSERT_TRUE(comes_true([&] { return (first = ranks_behind(socket)).size() == 3; }));
+  kill(*first.begin(), SIGKILL);
+  EXPECT_TRUE(comes_true([&] {
+    const std::set<pid_t> now = ranks_behind(socket);
+    return now.size() == 3 &&
+           std::none_of(now.begin(), now.end(), [&](pid_t rank) { return first.contains(rank); });
+  }));
+  std::ofstream(done) << "";
+  int status = 0;
+  ASSERT_EQ(waitpid(launcher, &status, 0), launcher);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  const std::string text = contents(said);
+  EXPECT_THAT(text, HasSubstr("starting 3 again (1 of 5), the viewer draws by itself meanwhile\n"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << "one line on the loss, one at the end:\n" << text;
+  EXPECT_TRUE(comes_true([&] { return ranks_behind(socket).empty(); }));
   EXPECT_TRUE(nothing_is_left());
 }
 

@@ -1,0 +1,113 @@
+// A rank is killed in the midst of a viewer's frames: nobody who looks at the frames can tell.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+constexpr int frames = 20;
+constexpr int ranks = 3;
+
+class LostNode : public Stage, public testing::WithParamInterface<int> {
+ protected:
+  /// The process of a rank; 0 when there is none.
+  pid_t rank(int number) const {
+    for (const pid_t pid : processes("understudy-node")) {
+      const std::string environment = contents(fmt::format("/proc/{}/environ", pid));
+      if (environment.find(fmt::format("OMPI_COMM_WORLD_RANK={}", number) + '\0') != std::string::npos)
+        return pid;
+    }
+    return 0;
+  }
+
+  /// Node groups that wait for the viewer: connections of rank 0 at the launcher's socket, but for the viewer's
+  /// own.
+  bool group_is_there() const {
+    std::istringstream sockets(contents("/proc/net/unix"));
+    const std::string path = runtime_.string();
+    int connected = 0;
+    // Columns: address, references, protocol, flags, type, state (03: connected), inode, path.
+    for (std::string line; std::getline(sockets, line);)
+      connected += line.find(path) != std::string::npos && line.find(" 0001 03 ") != std::string::npos;
+    return connected > 0 && processes("understudy-node").size() == ranks;
+  }
+};
+
+std::vector<std::string> lines_with(const std::string& text, const std::string& wanted) {
+  std::vector<std::string> found;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (line.find(wanted) != std::string::npos) found.push_back(line);
+  return found;
+}
+
+TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
+  if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  const auto viewer = [&](const std::filesystem::path& pictures) {
+    return engine_viewer("table", {"--frames", std::to_string(frames), "--orbit", "3", "--print-times",
+                                   "--screenshot-frames", pictures.string()});
+  };
+  run_well(viewer(file("bare")));
+
+  Child child(
+      on_stage(under({"-n", std::to_string(ranks), "--report", file("report.json")}) + viewer(file("under"))),
+      file(""));
+  const auto frame_is_out = [&](int number) {
+    return comes_true([&] {
+      return !child.running() || child.out().find(fmt::format("frame {}:", number)) != std::string::npos;
+    });
+  };
+  ASSERT_TRUE(frame_is_out(2) && child.running()) << child.err();
+  const pid_t killed = rank(GetParam());
+  ASSERT_NE(killed, 0);
+  ASSERT_EQ(kill(killed, SIGKILL), 0);
+
+  // The viewer draws faster than a group starts: it is held at its seventh frame until the next group is there.
+  ASSERT_TRUE(frame_is_out(6) && child.running()) << child.err();
+  const std::vector<pid_t> viewers = processes("understudy-viewer");
+  ASSERT_EQ(viewers.size(), 1U);
+  kill(viewers.front(), SIGSTOP);
+  const bool another_group = comes_true([&] {
+    const pid_t now = rank(GetParam());
+    return now != 0 && now != killed && group_is_there();
+  });
+  kill(viewers.front(), SIGCONT);
+  const Outcome outcome = child.finish();
+  EXPECT_TRUE(another_group) << outcome.err;
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+
+  double worst = HUGE_VAL;
+  for (int number = 0; number < frames; ++number) {
+    const std::string name = fmt::format("frame_{:04}.png", number);
+    worst = std::min(worst, viewer_test::difference(png("bare/" + name), png("under/" + name)).psnr);
+  }
+  std::string who_drew;
+  for (const auto& frame : json("report.json").at("frames_detail"))
+    who_drew += frame.at("substituted") > 0 ? 'n' : frame.at("left") > 0 ? 'v' : '-';
+  fmt::print(
+      "rank {} of {} killed after the third frame: worst of {} frames PSNR {:.2f} dB, drawn by nodes (n) and "
+      "the "
+      "viewer (v): {}\n{}",
+      GetParam(), ranks, frames, worst, who_drew, outcome.err);
+  EXPECT_GE(worst, 40);
+  EXPECT_EQ(who_drew.substr(0, 3), "nnn");
+  EXPECT_TRUE(who_drew.ends_with("n")) << "the next group has taken over";
+
+  std::vector<std::string> told = lines_with(outcome.err, "render nodes");
+  std::erase_if(told, [](const std::string& line) { return line.find(" seen, ") != std::string::npos; });
+  EXPECT_EQ(told.size(), 1U) << "one line says what happened:\n" << outcome.err;
+  EXPECT_EQ(leftovers(), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Rank, LostNode, testing::Values(0, 2),
+                         [](const auto& info) { return std::to_string(info.param); });
+
+}  // namespace
+}  // namespace clients

@@ -1,0 +1,31 @@
+// How osgvolume is started on the engine.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "tests/clients/stage.h"
+
+namespace clients {
+
+/// With its fixed-function technique, on raw bytes.
+inline Words osgvolume() {
+  return {"osgvolume",
+          "--no-shader",
+          "--replace-alpha-with-luminance",
+          "--raw",
+          "256",
+          "256",
+          "110",
+          "1",
+          "1",
+          "little",
+          engine_file().string()};
+}
+
+/// A window of 512 x 512 at the display's corner.
+inline std::map<std::string, std::string> osgvolume_environment(const std::string& display) {
+  return {{"DISPLAY", display}, {"OSG_WINDOW", "0 0 512 512"}, {"OSG_THREADING", "SingleThreaded"}};
+}
+
+}  // namespace clients

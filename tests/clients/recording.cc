@@ -1,0 +1,67 @@
+#include "tests/clients/recording.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+namespace clients {
+namespace {
+
+bool is_draw(const std::string& call) {
+  static const std::regex draws(
+      "glBegin|glRect.*|glDrawArrays.*|glDrawElements.*|glDrawRangeElements.*|glMultiDraw.*|"
+      "glDrawTransformFeedback.*|"
+      "glCallLists?|glBlitFramebuffer|glDrawPixels|glBitmap|glCopyPixels|glEvalMesh.");
+  return std::regex_match(call, draws);
+}
+
+bool has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<RecordedFrame> frames_in(const std::string& dump) {
+  // "1234 glName(name = value, …) = result"; some calls go on over several lines.
+  static const std::regex start("^[0-9]+ ([A-Za-z0-9]+)\\((.*)$");
+  std::vector<RecordedFrame> frames;
+  RecordedFrame frame;
+  bool compiling = false, feedback = false, discarding = false, own_framebuffer = false;
+  std::istringstream stream(dump);
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    // What a regular expression does on long lines (texels, buffers) costs a stack that nobody has.
+    const std::string head = line.substr(0, 400);
+    if (!std::regex_match(head, match, start)) continue;
+    const std::string call = match[1], arguments = match[2];
+    if (call == "glNewList") compiling = !has(arguments, "GL_COMPILE_AND_EXECUTE");
+    if (call == "glEndList") compiling = false;
+    if (call == "glRenderMode") feedback = !has(arguments, "mode = GL_RENDER");
+    if (has(arguments, "cap = GL_RASTERIZER_DISCARD")) discarding = call == "glEnable";
+    if (call == "glBindFramebuffer" && !has(arguments, "GL_READ_FRAMEBUFFER"))
+      own_framebuffer = !has(arguments, "framebuffer = 0)");
+    if (is_draw(call) && !compiling) {
+      auto& kind = feedback || discarding ? frame.without_pixels
+                   : own_framebuffer      ? frame.onto_own
+                                          : frame.onto_window;
+      kind.push_back(fmt::format("{}({}", call, arguments));
+    }
+    if (call.ends_with("SwapBuffers")) frames.push_back(std::exchange(frame, {}));
+  }
+  return frames;
+}
+
+std::string summary(const std::vector<std::string>& draws) {
+  std::map<std::string, int> counts;
+  for (const std::string& draw : draws) ++counts[draw];
+  std::string text;
+  for (const auto& [draw, count] : counts)
+    text += fmt::format("{}{} × {}", text.empty() ? "" : ", ", count, draw);
+  return text.empty() ? "nothing" : text;
+}
+
+}  // namespace clients

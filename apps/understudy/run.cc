@@ -91,6 +91,17 @@ std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::op
   return nullptr;
 }
 
+/// A group that is not there yet may still come; its user should know that it is not. The socket is only looked
+/// at: a group takes whoever connects for a viewer.
+void tell_whether_nodes_can_answer(const std::string& socket) {
+  std::error_code unreadable;
+  if (std::filesystem::is_socket(socket, unreadable)) return;
+  say(fmt::format(
+      "no render nodes at '{}'; start them with: understudy serve -n N --socket {}; the viewer draws by "
+      "itself until then",
+      socket, socket));
+}
+
 Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
   for (;;) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
@@ -141,6 +152,7 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     plan = NodeGroupPlan{options.nodes, folder.path() / "nodes.sock", folder.path()};
   }
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
+  if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
   std::optional<ChildProcess> viewer;
   try {
     viewer.emplace(Command{.arguments = command,

@@ -76,8 +76,8 @@ TEST_F(BadInput, WithoutADisplayEveryViewerFailsAsItWouldAlone) {
   std::vector<Words> viewers = {{(programs / "understudy-viewer").string(), file("ball.16x16x16").string()}};
   if (missing({Need::engine, Need::osgvolume}).empty()) viewers.push_back(osgvolume());
   for (const Words& words : viewers) {
+    // osgvolume says "could not create display" and ends with status 0; that, too, is its own affair.
     const Outcome bare = run(words, no_display);
-    EXPECT_NE(bare.status, 0);
     for (const char* door : {"audit", "preload", "folder"}) {
       const Outcome below = run(under({"--door", door}) + words, no_display);
       fmt::print("{} without a display: alone {}, behind {} {}\n", words.front(), bare.status, door,
@@ -147,7 +147,9 @@ TEST_F(Serve, ATakenSocketIsNamedAndStaysTheFirstOnes) {
   EXPECT_EQ(json("report.json").at("nodes"), 2) << viewer.err;
   EXPECT_EQ(substituted(json("report.json")), 1) << viewer.err;
   first.signal(SIGTERM);
-  EXPECT_EQ(first.finish().status, 0);
+  const Outcome served = first.finish();
+  EXPECT_EQ(served.status, 0);
+  fmt::print("the first one said: {}", served.err);
   EXPECT_FALSE(fs::exists(socket));
   EXPECT_EQ(leftovers(), "");
 }
@@ -171,7 +173,8 @@ TEST_F(Serve, AViewerWhoseNodesAreNotThereDrawsByItself) {
   const Outcome outcome = run_well(under({"--connect", file("absent.sock"), "--report", file("report.json")}) +
                                    engine_viewer("table", {"--screenshot", file("under.png")}));
   fmt::print("{}", outcome.err);
-  EXPECT_THAT(outcome.err, HasSubstr("absent.sock"));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("no render nodes at '" + file("absent.sock").string()),
+                                 HasSubstr("understudy serve")));
   EXPECT_EQ(substituted(json("report.json")), 0);
   EXPECT_EQ(told("nodes that are not there", png("bare.png"), png("under.png")).max, 0);
 }

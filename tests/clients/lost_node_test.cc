@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -89,7 +90,8 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
     worst = std::min(worst, viewer_test::difference(png("bare/" + name), png("under/" + name)).psnr);
   }
   std::string who_drew;
-  for (const auto& frame : json("report.json").at("frames_detail"))
+  const nlohmann::json report = json("report.json");
+  for (const auto& frame : report.at("frames_detail"))
     who_drew += frame.at("substituted") > 0 ? 'n' : frame.at("left") > 0 ? 'v' : '-';
   fmt::print(
       "rank {} of {} killed after the third frame: worst of {} frames PSNR {:.2f} dB, drawn by nodes (n) and "

@@ -30,7 +30,7 @@ std::vector<RecordedFrame> frames_in(const std::string& dump) {
   static const std::regex start("^[0-9]+ ([A-Za-z0-9]+)\\((.*)$");
   std::vector<RecordedFrame> frames;
   RecordedFrame frame;
-  bool compiling = false, feedback = false, discarding = false, own_framebuffer = false;
+  bool compiling = false, feedback = false, discarding = false, own_framebuffer = false, masked = false;
   std::istringstream stream(dump);
   for (std::string line; std::getline(stream, line);) {
     std::smatch match;
@@ -44,8 +44,10 @@ std::vector<RecordedFrame> frames_in(const std::string& dump) {
     if (has(arguments, "cap = GL_RASTERIZER_DISCARD")) discarding = call == "glEnable";
     if (call == "glBindFramebuffer" && !has(arguments, "GL_READ_FRAMEBUFFER"))
       own_framebuffer = !has(arguments, "framebuffer = 0)");
+    if (call == "glColorMask") masked = !has(arguments, "GL_TRUE");
     if (is_draw(call) && !compiling) {
       auto& kind = feedback || discarding ? frame.without_pixels
+                   : masked               ? frame.depth_alone
                    : own_framebuffer      ? frame.onto_own
                                           : frame.onto_window;
       kind.push_back(fmt::format("{}({}", call, arguments));
@@ -57,7 +59,7 @@ std::vector<RecordedFrame> frames_in(const std::string& dump) {
 
 std::string summary(const std::vector<std::string>& draws) {
   std::map<std::string, int> counts;
-  for (const std::string& draw : draws) ++counts[draw];
+  for (const std::string& draw : draws) ++counts[draw.substr(0, draw.find('('))];
   std::string text;
   for (const auto& [draw, count] : counts)
     text += fmt::format("{}{} × {}", text.empty() ? "" : ", ", count, draw);

@@ -11,13 +11,14 @@ namespace clients {
 struct RecordedFrame {
   std::vector<std::string> onto_window;     ///< draws that make pixels of the window's framebuffer
   std::vector<std::string> onto_own;        ///< draws that make pixels of a framebuffer object
+  std::vector<std::string> depth_alone;     ///< draws with all colours masked
   std::vector<std::string> without_pixels;  ///< draws in feedback mode, or with rasterisation switched off
 };
 
 /// The words of `apitrace dump`, up to the last end of a frame.
 std::vector<RecordedFrame> frames_in(const std::string& dump);
 
-/// The first words of the draws, and how often each occurs, for printing.
+/// The names of the draws, and how often each occurs, for printing.
 std::string summary(const std::vector<std::string>& draws);
 
 }  // namespace clients

@@ -11,19 +11,48 @@
 
 using AnyFunction = void (*)();
 
-#define UNDERSTUDY_CORE_GLX(X)                                                                               \
-  X(glXChooseFBConfig)                                                                                       \
-  X(glXChooseVisual)                                                                                         \
-  X(glXCopyContext) X(glXCreateContext) X(glXCreateGLXPixmap) X(glXCreateNewContext) X(glXCreatePbuffer)     \
-      X(glXCreatePixmap) X(glXCreateWindow) X(glXDestroyContext) X(glXDestroyGLXPixmap) X(glXDestroyPbuffer) \
-          X(glXDestroyPixmap) X(glXDestroyWindow) X(glXGetClientString) X(glXGetConfig)                      \
-              X(glXGetCurrentContext) X(glXGetCurrentDrawable) X(glXGetCurrentReadDrawable)                  \
-                  X(glXGetFBConfigAttrib) X(glXGetFBConfigs) X(glXGetProcAddress) X(glXGetProcAddressARB)    \
-                      X(glXGetSelectedEvent) X(glXGetVisualFromFBConfig) X(glXIsDirect)                      \
-                          X(glXMakeContextCurrent) X(glXMakeCurrent) X(glXQueryContext) X(glXQueryDrawable)  \
-                              X(glXQueryExtension) X(glXQueryExtensionsString) X(glXQueryServerString)       \
-                                  X(glXQueryVersion) X(glXSelectEvent) X(glXSwapBuffers) X(glXUseXFont)      \
-                                      X(glXWaitGL) X(glXWaitX)
+// clang-format off
+#define UNDERSTUDY_CORE_GLX(X) \
+  X(glXChooseFBConfig) \
+  X(glXChooseVisual) \
+  X(glXCopyContext) \
+  X(glXCreateContext) \
+  X(glXCreateGLXPixmap) \
+  X(glXCreateNewContext) \
+  X(glXCreatePbuffer) \
+  X(glXCreatePixmap) \
+  X(glXCreateWindow) \
+  X(glXDestroyContext) \
+  X(glXDestroyGLXPixmap) \
+  X(glXDestroyPbuffer) \
+  X(glXDestroyPixmap) \
+  X(glXDestroyWindow) \
+  X(glXGetClientString) \
+  X(glXGetConfig) \
+  X(glXGetCurrentContext) \
+  X(glXGetCurrentDrawable) \
+  X(glXGetCurrentReadDrawable) \
+  X(glXGetFBConfigAttrib) \
+  X(glXGetFBConfigs) \
+  X(glXGetProcAddress) \
+  X(glXGetProcAddressARB) \
+  X(glXGetSelectedEvent) \
+  X(glXGetVisualFromFBConfig) \
+  X(glXIsDirect) \
+  X(glXMakeContextCurrent) \
+  X(glXMakeCurrent) \
+  X(glXQueryContext) \
+  X(glXQueryDrawable) \
+  X(glXQueryExtension) \
+  X(glXQueryExtensionsString) \
+  X(glXQueryServerString) \
+  X(glXQueryVersion) \
+  X(glXSelectEvent) \
+  X(glXSwapBuffers) \
+  X(glXUseXFont) \
+  X(glXWaitGL) \
+  X(glXWaitX)
+// clang-format on
 
 extern "C" {
 #define UNDERSTUDY_POINTER(name) reinterpret_cast<AnyFunction>(&name),

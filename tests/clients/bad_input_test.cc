@@ -72,7 +72,7 @@ TEST_F(BadInput, WhereMpiIsMissingTheViewersProcessDoesTheWork) {
 
 TEST_F(BadInput, WithoutADisplayEveryViewerFailsAsItWouldAlone) {
   const std::map<std::string, std::string> no_display = {{"DISPLAY", ":99999"}};
-  folder_.write("ball.16x16x16", std::string(16 * 16 * 16, 'x'));
+  folder_.write("ball.16x16x16", std::string(4096, 'x'));
   std::vector<Words> viewers = {{(programs / "understudy-viewer").string(), file("ball.16x16x16").string()}};
   if (missing({Need::engine, Need::osgvolume}).empty()) viewers.push_back(osgvolume());
   for (const Words& words : viewers) {

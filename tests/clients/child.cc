@@ -43,7 +43,7 @@ std::vector<std::string> environment_of(const Command& command) {
   for (const auto& [name, value] : command.environment) variables[name] = value;
   std::vector<std::string> entries;
   for (const auto& [name, value] : variables)
-    if (!value.empty()) entries.push_back(name + "=" + value);
+    if (!value.empty()) entries.emplace_back(name).append("=").append(value);
   return entries;
 }
 

@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 using testing::Each;
 using testing::IsEmpty;
 using testing::Not;
-using testing::StartsWith;
 
 constexpr const char* whole_picture = "glDrawArrays(mode = GL_TRIANGLES, first = 0, count = 3)";
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -19,7 +20,9 @@ namespace fs = std::filesystem;
 constexpr const char* engine_path = "usr/share/doc/tachyon/examples/scenes/vol/engine.256x256x110";
 
 bool on_path(const std::string& program) {
-  std::istringstream folders(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  const char* path = std::getenv("PATH");
+  if (path == nullptr) return false;
+  std::istringstream folders(path);
   for (std::string folder; std::getline(folders, folder, ':');)
     if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
   return false;
@@ -156,7 +159,7 @@ Outcome Stage::run(const Words& words, const std::map<std::string, std::string>&
 }
 
 Outcome Stage::run_well(const Words& words, const std::map<std::string, std::string>& environment) const {
-  const Outcome outcome = run(words, environment);
+  Outcome outcome = run(words, environment);
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   return outcome;
 }

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <regex>
+#include <string_view>
 
 namespace understudy::spu {
 namespace {
@@ -142,23 +142,26 @@ bool linked(const DispatchTable& gl, GLuint program) {
 /// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once
 /// lowered, as gl_in_TexCoord0.
 std::string written_name(const std::string& read) {
-  static const std::regex texture_coordinate(R"(^gl_(?:in_)?TexCoord\[?(\d+)\]?$)");
-  std::smatch match;
-  if (std::regex_match(read, match, texture_coordinate)) return "gl_TexCoord[" + match[1].str() + "]";
+  for (const std::string_view prefix : {"gl_in_TexCoord", "gl_TexCoord"}) {
+    if (!read.starts_with(prefix)) continue;
+    const std::size_t digit = read.find_first_of("0123456789", prefix.size());
+    if (digit == std::string::npos) return read;
+    const std::size_t end = read.find_first_not_of("0123456789", digit);
+    return "gl_TexCoord[" + read.substr(digit, end == std::string::npos ? end : end - digit) + "]";
+  }
   if (read == "gl_Color") return "gl_FrontColor";
   if (read == "gl_SecondaryColor") return "gl_FrontSecondaryColor";
   if (read == "gl_FogFragCoord") return read;
   return read;
 }
 
-std::optional<std::vector<StageInput>> fragment_inputs(const GlContext& context, const ProgramRecord& record,
-                                                       std::string& trouble) {
+/// Asks the fragment stage, linked alone, what it reads.
+void describe_fragment_stage(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
   const DispatchTable& gl = *context.gl;
   const GLuint program = compile(gl, GL_FRAGMENT_SHADER, record.fragment_sources, gl.CreateProgram());
   gl.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
-  std::vector<StageInput> inputs;
   if (!linked(gl, program)) {
-    trouble = "the fragment shader does not link alone";
+    stages.trouble = "the fragment shader does not link alone";
   } else {
     GLint count = 0;
     gl.GetProgramInterfaceiv(program, GL_PROGRAM_INPUT, GL_ACTIVE_RESOURCES, &count);
@@ -174,21 +177,25 @@ std::optional<std::vector<StageInput>> fragment_inputs(const GlContext& context,
       input.type = GLenum(answer[0]);
       const UniformShape shape = shape_of(input.type);
       if (input.name == "gl_FragCoord" || input.name == "gl_FrontFacing" || input.name == "gl_PointCoord") {
-        trouble = "the fragment shader reads " + input.name;
+        stages.trouble = "the fragment shader reads " + input.name;
         break;
       }
       if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
-        trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
+        stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
         break;
       }
       input.components = shape.components;
       input.integer = shape.kind != UniformShape::Kind::real;
-      inputs.push_back(input);
+      stages.inputs.push_back(input);
     }
   }
+  for_each_uniform(gl, program, [&](const std::string& name, GLenum type) {
+    stages.uniforms.push_back({name, type});
+  });
+  GLint blocks = 0;
+  if (context.version >= 310) gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  stages.uniform_blocks = blocks > 0;
   gl.DeleteProgram(program);
-  if (!trouble.empty()) return std::nullopt;
-  return inputs;
 }
 
 const char* glsl_type(const StageInput& input) {
@@ -221,10 +228,8 @@ const char* glsl_type(const StageInput& input) {
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   const DispatchTable& gl = *context.gl;
   ProgramStages stages;
-  const auto inputs = fragment_inputs(context, record, stages.trouble);
-  if (!inputs) return stages;
-  stages.inputs = *inputs;
-  if (!record.vertex_shader) return stages;
+  describe_fragment_stage(context, record, stages);
+  if (!stages.trouble.empty() || !record.vertex_shader) return stages;
 
   const GLuint program = compile(gl, GL_VERTEX_SHADER, record.vertex_sources, gl.CreateProgram());
   GLint attributes = 0;
@@ -311,21 +316,19 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
   }
 }
 
-std::vector<float> uniform_values(const GlContext& context, GLuint application, GLuint program) {
+std::vector<float> fragment_uniform_values(const GlContext& context, GLuint application,
+                                           const ProgramStages& stages) {
   const DispatchTable& gl = *context.gl;
   std::vector<float> values;
-  for_each_uniform(gl, program, [&](const std::string& name, GLenum type) {
-    const GLint location = gl.GetUniformLocation(application, name.c_str());
-    const UniformShape shape = shape_of(type);
-    if (location < 0 || shape.components == 0) return;
+  for (const StageUniform& uniform : stages.uniforms) {
+    const GLint location = gl.GetUniformLocation(application, uniform.name.c_str());
+    const UniformShape shape = shape_of(uniform.type);
+    if (location < 0 || shape.components == 0) continue;
     std::array<GLfloat, 16> value{};
     gl.GetUniformfv(application, location, value.data());
     values.insert(values.end(), value.begin(), value.begin() + shape.components);
-  });
-  // The contents of uniform buffers are not compared: a value that equals nothing makes every frame probe anew.
-  GLint blocks = 0;
-  if (context.version >= 310) gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
-  if (blocks > 0) values.push_back(std::numeric_limits<float>::quiet_NaN());
+  }
+  if (stages.uniform_blocks) values.push_back(std::numeric_limits<float>::quiet_NaN());
   return values;
 }
 

@@ -20,9 +20,17 @@ struct StageInput {
   bool integer = false;
 };
 
+/// A uniform by name; array elements stand alone.
+struct StageUniform {
+  std::string name;
+  GLenum type = GL_FLOAT;
+};
+
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
-  std::vector<StageInput> inputs;  ///< of the fragment stage
+  std::vector<StageInput> inputs;      ///< of the fragment stage
+  std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
+  bool uniform_blocks = false;         ///< the fragment stage reads uniform buffers
   GLuint observer =
       0;  ///< vertex stage; captures gl_Position, then every input, interleaved as floats; 0: none
   std::string trouble;  ///< why the stages could not be had; empty: they stand
@@ -42,8 +50,9 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
 /// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
 
-/// The values of all uniforms of `program` as `application` has them now, as bytes to compare: what the
-/// fragment stage's colours depend on.
-std::vector<float> uniform_values(const GlContext& context, GLuint application, GLuint program);
+/// What the fragment stage's uniforms hold in `application` now, as numbers to compare. With uniform buffers,
+/// whose contents are not compared, it holds a value that equals nothing.
+std::vector<float> fragment_uniform_values(const GlContext& context, GLuint application,
+                                           const ProgramStages& stages);
 
 }  // namespace understudy::spu

@@ -26,7 +26,10 @@ compositor::RenderService& RenderSession::service() {
   }
   try {
     service_ = connect();
-  } catch (const compositor::ServiceLost&) {
+  } catch (const compositor::ServiceLost& unreachable) {
+    if (!connected_once_ && !launcher_tells()) {
+      fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());
+    }
     not_before_ = std::chrono::steady_clock::now() + retry_after;
     connected_once_ = true;  // whoever was not there after 30 s is not waited for again
     throw;
@@ -42,6 +45,10 @@ std::unique_ptr<compositor::RenderService> RenderSession::connect() {
   return compositor::linked_service(address_, connected_once_ ? later_patience_ms : first_patience_ms);
 }
 
+bool RenderSession::launcher_tells() const {
+  return options_.nodes > 0 && (!options_.run_dir.empty() || options_.connect.empty());
+}
+
 void RenderSession::forget(volume::VolumeId id) {
   if (!service_) return;
   try {
@@ -52,9 +59,7 @@ void RenderSession::forget(volume::VolumeId id) {
 }
 
 void RenderSession::lost(const std::string& what) {
-  // The launcher that started the nodes says it itself, with what became of them.
-  const bool launcher_says_it = options_.nodes > 0 && (!options_.run_dir.empty() || options_.connect.empty());
-  if (service_ && !launcher_says_it) {
+  if (service_ && !launcher_tells()) {
     fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
   }
   service_.reset();

@@ -39,6 +39,8 @@ class RenderSession {
   volume::VolumeId new_volume_id() { return ++last_volume_; }
 
  private:
+  /// Whoever started the nodes says itself what became of them; then nothing is said here.
+  bool launcher_tells() const;
   std::unique_ptr<compositor::RenderService> connect();
 
   const Options options_;

@@ -428,7 +428,8 @@ void VolumeUnit::classify(Substitution& s) {
   if (!context().core) append_alpha_test(gl, key);
   if (s.fragment.record != nullptr) {
     key.push_back(float(s.fragment.record->link));
-    const auto values = uniform_values(context(), s.pipeline.program, s.pipeline.program);
+    const auto values =
+        fragment_uniform_values(context(), s.pipeline.program, stages(s.pipeline.program, *s.fragment.record));
     key.insert(key.end(), values.begin(), values.end());
   } else {
     append_fixed_function_state(gl, key);

@@ -10,6 +10,14 @@
 #include "spu/assemble.h"
 #include "spu/report/counters.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+/// What Mesa keeps until the process ends is not ours to free.
+extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
+const char* __lsan_default_suppressions() {
+  return "leak:_dri.so\nleak:libEGL_mesa\nleak:libLLVM\n";
+}
+#endif
+
 namespace understudy::spu::testing {
 namespace {
 

@@ -7,6 +7,8 @@ Files written (README.md in this folder says who uses which):
 
     table.h           DispatchTable: one function pointer a command
     call_id.h, .cc    CallId: one number a command, in alphabetical order, and the way between number, name and slot
+    call_shape.h, .cc   CallShape: types, names and extents of a command's arguments; stable ids; names of enumerants
+    call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
     packed_call.h, .cc  pack_X and replay for the commands whose arguments are plain values
     gl_entry_N.cc     the exported gl* functions of the door, in a few files so that they compile in parallel
@@ -17,10 +19,10 @@ from its header, which the registry's own generator writes. Nothing generated is
 """
 
 import argparse
-import re
-import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
 from pathlib import Path
+
+import shapes
+from registry import read_commands, read_egl_commands, read_enumerants, read_rules
 
 GL_ENTRY_FILES = 6  # compiled in parallel
 
@@ -40,18 +42,6 @@ BY_HAND = {
 # Types of IRIX's video and digital-media libraries: no header of ours has them, no Linux driver has the commands.
 FOREIGN_TYPES = {"DMparams", "DMbuffer", "VLServer", "VLPath", "VLNode"}
 
-# Values that are addresses of this process: they mean nothing in a stored or sent stream.
-ADDRESS_TYPES = {
-    "GLsync", "GLeglImageOES", "GLeglClientBufferEXT", "GLVULKANPROCNV",
-    "GLDEBUGPROC", "GLDEBUGPROCARB", "GLDEBUGPROCKHR", "GLDEBUGPROCAMD",
-}
-
-# The registry gives their `name` the length 1; it is a string whose length is another argument.
-WRONG_LENGTHS = {
-    "glProgramNamedParameter4dNV", "glProgramNamedParameter4dvNV",
-    "glProgramNamedParameter4fNV", "glProgramNamedParameter4fvNV",
-}
-
 # In the registry, but not in every <GL/glext.h>. Saying a typedef twice is legal while both say the same.
 TYPES_OF_OUR_OWN = """\
 typedef khronos_int32_t GLclampx;
@@ -63,84 +53,6 @@ typedef GLDEBUGPROC GLDEBUGPROCKHR;
 struct _cl_context;
 struct _cl_event;
 """
-
-
-@dataclass(frozen=True)
-class Parameter:
-    type: str    # "const GLfloat *"
-    name: str
-    length: str  # the registry's `len`, "" when it has none
-
-    @property
-    def pointee(self):
-        """T for `const T *`, else None."""
-        match = re.fullmatch(r"const (\w+) \*", self.type)
-        return match[1] if match else None
-
-    @property
-    def field(self):
-        """How the value lies in a packed record, or None when it cannot."""
-        if "*" not in self.type:
-            return None if self.type in ADDRESS_TYPES else self.type
-        if self.pointee and self.pointee != "void" and self.length.isdigit():
-            return f"FixedArray<{self.pointee}, {self.length}>"
-        return None
-
-
-@dataclass(frozen=True)
-class Command:
-    name: str    # "glClear"
-    result: str  # "void"
-    parameters: tuple
-
-    @property
-    def member(self):
-        """glClear -> Clear"""
-        return self.name.removeprefix("gl")
-
-    @property
-    def parameter_list(self):
-        return ", ".join(f"{p.type} {p.name}" for p in self.parameters)
-
-    @property
-    def arguments(self):
-        return ", ".join(p.name for p in self.parameters)
-
-    @property
-    def packable(self):
-        return (
-            self.result == "void"
-            and self.name not in WRONG_LENGTHS
-            and all(p.field for p in self.parameters)
-        )
-
-
-def read_commands(registry):
-    """Every command of the registry, sorted by name, whatever version or extension brought it."""
-
-    def text_before_name(element):
-        text = "".join(element.itertext())
-        before = text[: text.rindex(element.find("name").text)]
-        return re.sub(r"\s+", " ", before.replace("*", " *")).strip()
-
-    commands = []
-    for element in ElementTree.parse(registry).getroot().findall("commands/command"):
-        proto = element.find("proto")
-        parameters = tuple(
-            Parameter(text_before_name(p), p.find("name").text, p.get("len", "")) for p in element.findall("param")
-        )
-        commands.append(Command(proto.find("name").text, text_before_name(proto), parameters))
-    return sorted(commands, key=lambda command: command.name)
-
-
-def read_egl_commands(header):
-    """The commands that <EGL/egl.h> declares: one line each, `EGLAPI EGLint EGLAPIENTRY eglGetError (void);`."""
-    commands = []
-    declaration = re.compile(r"^EGLAPI (.+?) ?EGLAPIENTRY (egl\w+) \((.*)\);$", re.MULTILINE)
-    for result, name, parameters in declaration.findall(header.read_text()):
-        split = [re.fullmatch(r"(.*?)(\w+)", p.strip()) for p in parameters.split(",") if p.strip() != "void"]
-        commands.append(Command(name, result, tuple(Parameter(p[1].strip(), p[2], "") for p in split)))
-    return sorted(commands, key=lambda command: command.name)
 
 
 def write(path, text):
@@ -446,7 +358,7 @@ def main():
     parser.add_argument("--out", type=Path, required=True, help="folder to write to")
     arguments = parser.parse_args()
 
-    gl = read_commands(arguments.gl)
+    gl = read_commands(arguments.gl, read_rules(Path(__file__).with_name("arguments.txt")))
     glx = read_commands(arguments.glx)
     egl = read_egl_commands(arguments.egl)
     if len(gl) < 3000 or len(gl) >= 1 << 16:
@@ -459,6 +371,10 @@ def main():
     write(out / "table.h", table(gl))
     write(out / "call_id.h", call_id_header(gl))
     write(out / "call_id.cc", call_id_source(gl))
+    write(out / "call_shape.h", shapes.shape_header())
+    write(out / "call_shape.cc", shapes.shape_source(gl, read_enumerants(arguments.gl)))
+    write(out / "call_words.h", shapes.words_header(gl))
+    write(out / "call_words.cc", shapes.words_source(gl))
     write(out / "pass_through.h", pass_through(gl))
     write(out / "packed_call.h", packed_call_header(gl))
     write(out / "packed_call.cc", packed_call_source(gl))

@@ -1,0 +1,72 @@
+// Vertex arrays in the application's memory: what a draw reads of them must travel with the draw, because the
+// application may change it as soon as the call has returned.
+//
+// In a stream such a draw stands between two events: `arrays` points OpenGL at copies, `arrays_end` points it
+// back at what the application had set. The draw's own arguments stay as they were.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "dispatch/call_shape.h"
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+enum class ArrayRole : std::uint32_t {
+  vertex,
+  normal,
+  color,
+  secondary_color,
+  fog_coordinate,
+  index,
+  edge_flag,
+  texture_coordinate,
+  generic,
+  generic_integer,
+  generic_double,
+};
+constexpr std::uint32_t array_role_count = 11;
+
+/// An enabled array that is not in a buffer object.
+struct ClientArray {
+  ArrayRole role = ArrayRole::vertex;
+  GLuint index = 0;  ///< texture unit or attribute
+  GLint size = 4;    ///< components, or GL_BGRA
+  GLenum type = GL_FLOAT;
+  bool normalized = false;
+  GLsizei stride = 0;  ///< as the application gave it: 0 for tight
+  std::uint64_t pointer = 0;
+  GLuint divisor = 0;  ///< 0: one element a vertex, else one for so many instances
+
+  /// Bytes of one element; 0 when the type is not known.
+  std::size_t element_bytes() const;
+  std::size_t step() const { return stride != 0 ? std::size_t(stride) : element_bytes(); }
+};
+
+/// The arrays that a draw would read from client memory now. Not between glBegin and glEnd.
+std::vector<ClientArray> client_arrays(const DispatchTable& gl);
+
+/// Gives OpenGL a new address and stride for an array. The binding of GL_ARRAY_BUFFER must be 0.
+void point_array(const DispatchTable& gl, const ClientArray& array, GLsizei stride, const void* pointer);
+
+/// Elements that a draw reads, first and last included.
+struct ElementRange {
+  std::int64_t first = 0;
+  std::int64_t last = -1;
+  std::int64_t first_instance = 0;
+  std::int64_t last_instance = 0;
+
+  bool empty() const { return last < first; }
+};
+
+/// Whether the call reads vertex arrays.
+bool draws_arrays(CallId call) noexcept;
+
+/// What the call would read; nothing when that cannot be found out. `words` as for invoke(); index and
+/// parameter buffers are read through `gl`.
+std::optional<ElementRange> element_range(const DispatchTable& gl, CallId call, const std::uint64_t* words);
+
+}  // namespace understudy::spu

@@ -1,0 +1,301 @@
+#include "spu/stream/encode.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "spu/stream/event.h"
+#include "spu/stream/extent.h"
+#include "spu/stream/pixels.h"
+
+namespace understudy::spu {
+
+namespace {
+
+/// A batch of array names with several bindings to ask for.
+GLenum binding_of(ExtentRule rule) {
+  switch (rule) {
+    case ExtentRule::image:
+    case ExtentRule::counted_or_unpack:
+      return GL_PIXEL_UNPACK_BUFFER_BINDING;
+    case ExtentRule::image_out:
+      return GL_PIXEL_PACK_BUFFER_BINDING;
+    case ExtentRule::client_array:
+      return GL_ARRAY_BUFFER_BINDING;
+    case ExtentRule::indices:
+    case ExtentRule::index_lists:
+      return GL_ELEMENT_ARRAY_BUFFER_BINDING;
+    case ExtentRule::indirect:
+      return GL_DRAW_INDIRECT_BUFFER_BINDING;
+    default:
+      return GL_NONE;
+  }
+}
+
+const std::byte* address(std::uint64_t word) {
+  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
+}
+
+}  // namespace
+
+bool needs_answer(CallId call) noexcept {
+  const CallShape& shape = call_shape(call);
+  if (shape.result != ValueType::none) return true;
+  for (const ParameterShape& parameter : shape.parameters()) {
+    if (parameter.pointer == 0) continue;
+    if (!parameter.input || parameter.rule == ExtentRule::unknown || parameter.rule == ExtentRule::address)
+      return true;
+  }
+  return false;
+}
+
+/// A pointer argument on its way into a record.
+struct Encoder::Argument {
+  Reference reference;
+  std::span<const std::byte> bytes;  ///< what `reference` is to point at, when its kind is inside
+  std::vector<std::byte> owned;      ///< where bytes point, when they are ours
+};
+
+Encoder::Encoder(const DispatchTable& questions, std::function<void()> before_question)
+    : questions_(questions), before_question_(std::move(before_question)) {
+  arguments_.reserve(max_parameters);
+}
+
+const DispatchTable& Encoder::ask() {
+  before_question_();
+  return questions_;
+}
+
+GLint Encoder::ask(GLenum name) {
+  GLint value = 0;
+  ask().GetIntegerv(name, &value);
+  return value;
+}
+
+void Encoder::follow_begin_and_end(CallId call, const std::uint64_t* words, Records& to) {
+  switch (call) {
+    case CallId::Begin:
+      if (inside_begin_) break;
+      inside_begin_ = true;
+      elements_since_begin_ = {};
+      begin_position_ = to.words().size();
+      break;
+    case CallId::End:
+      inside_begin_ = false;
+      break;
+    case CallId::NewList:
+      compiling_ = true;
+      began_before_list_ = inside_begin_ && GLenum(words[1]) == GL_COMPILE_AND_EXECUTE;
+      break;
+    case CallId::EndList:
+      // What a list holds has not happened; it may begin something that another list ends.
+      compiling_ = false;
+      inside_begin_ = began_before_list_;
+      break;
+    default:
+      break;
+  }
+}
+
+bool Encoder::encode_plain(CallId call, const std::uint64_t* words, Records& to) {
+  const CallShape& shape = call_shape(call);
+  if (!shape.plain) return false;
+  for (const ParameterShape& parameter : shape.parameters()) {
+    if (parameter.pointer != 0) return false;
+  }
+  to.append_plain(stable_id(call), {words, shape.parameter_count});
+  return true;
+}
+
+Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std::uint64_t* words) {
+  const CallShape& shape = call_shape(call);
+  const ParameterShape& pointer = shape.parameters()[parameter];
+  const std::uint64_t word = words[parameter];
+  Argument argument;
+  const GLenum binding = binding_of(pointer.rule);
+  if (binding == GL_NONE && word == 0) return argument;
+  // Calls that need a binding are errors between glBegin and glEnd: OpenGL reads nothing.
+  if (binding != GL_NONE) {
+    if (inside_begin_) return argument;
+    if (ask(binding) != 0) {
+      argument.reference = {ReferenceKind::address, word};
+      return argument;
+    }
+    if (word == 0) return argument;
+  }
+  if (!pointer.input) {
+    argument.reference = {ReferenceKind::output, word};
+    return argument;
+  }
+  const auto hold = [&](std::size_t bytes) {
+    argument.reference.kind = ReferenceKind::inside;
+    argument.bytes = {address(word), bytes};
+  };
+  switch (pointer.rule) {
+    case ExtentRule::image: {
+      const PictureShape picture = picture_shape(call, words);
+      const PixelStore store = pixel_store(ask(), unpack_names);
+      // Formats that OpenGL does not know are errors: nothing is read.
+      if (!picture_extent(picture, store)) return argument;
+      argument.owned = tight_picture(picture, store, address(word));
+      argument.reference.kind = ReferenceKind::inside;
+      argument.bytes = argument.owned;
+      return argument;
+    }
+    case ExtentRule::client_array:
+      client_memory_ = true;
+      argument.reference = {ReferenceKind::address, word};
+      return argument;
+    case ExtentRule::texts:
+      argument.reference.kind = ReferenceKind::strings;
+      return argument;
+    case ExtentRule::index_lists:
+      argument.reference.kind = ReferenceKind::lists;
+      return argument;
+    default:
+      break;
+  }
+  if (const auto bytes = pointee_bytes(call, parameter, words)) {
+    hold(*bytes);
+  } else {
+    argument.reference = {ReferenceKind::address, word};
+  }
+  return argument;
+}
+
+void Encoder::write(CallId call, const std::uint64_t* words, std::vector<Argument>& arguments, Records& to) {
+  const CallShape& shape = call_shape(call);
+  const auto parameters = shape.parameters();
+  to.begin(stable_id(call));
+  for (std::size_t p = 0; p < parameters.size(); ++p)
+    to.append(parameters[p].pointer == 0 ? words[p] : arguments[p].reference.word());
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].pointer == 0) continue;
+    Argument& argument = arguments[p];
+    const auto count = parameters[p].counted_by == no_argument
+                           ? 0
+                           : std::max<std::int64_t>(std::int32_t(words[parameters[p].counted_by]), 0);
+    const auto* list = reinterpret_cast<const std::uint64_t*>(address(words[p]));
+    if (argument.reference.kind == ReferenceKind::inside) {
+      to.set(p + 1, to.attach(argument.bytes).word());
+    } else if (argument.reference.kind == ReferenceKind::strings) {
+      const std::uint8_t lengths_at = argument_named(shape, "length");
+      const auto* lengths =
+          lengths_at == no_argument ? nullptr : reinterpret_cast<const GLint*>(address(words[lengths_at]));
+      const Reference strings = to.begin_inside(ReferenceKind::strings);
+      for (std::int64_t i = 0; i < count; ++i) {
+        const std::byte* text = address(list[i]);
+        std::size_t length = 0;
+        if (text != nullptr) {
+          length = lengths != nullptr && lengths[i] >= 0 ? std::size_t(lengths[i])
+                                                         : std::strlen(reinterpret_cast<const char*>(text));
+        }
+        to.append(length);
+        to.append_bytes({text, length}, true);
+      }
+      to.end_inside(strings);
+      to.set(p + 1, strings.word());
+    } else if (argument.reference.kind == ReferenceKind::lists) {
+      const auto* counts = reinterpret_cast<const GLsizei*>(address(words[argument_named(shape, "count")]));
+      const std::size_t size = component_size(GLenum(words[argument_named(shape, "type")]));
+      const Reference lists = to.begin_inside(ReferenceKind::lists);
+      for (std::int64_t i = 0; i < count; ++i) {
+        const std::size_t bytes = list[i] == 0 ? 0 : std::size_t(std::max(counts[i], 0)) * size;
+        to.append(bytes);
+        to.append_bytes({address(list[i]), bytes}, false);
+      }
+      to.end_inside(lists);
+      to.set(p + 1, lists.word());
+    }
+  }
+}
+
+void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to) {
+  to.begin(event::arrays);
+  to.append(arrays.size());
+  to.reserve(arrays.size() * event::words_per_array);
+  std::size_t at = 2;
+  std::vector<std::byte> elements;
+  for (const ClientArray& array : arrays) {
+    const std::int64_t divisor = array.divisor;
+    const std::int64_t first = divisor == 0 ? range.first : range.first_instance;
+    const std::int64_t last =
+        divisor == 0 ? range.last : first + (range.last_instance - range.first_instance) / divisor;
+    const std::size_t bytes = array.element_bytes();
+    elements.clear();
+    // An element before the array's begin, or a null array, is the application's error; none of it is read.
+    if (bytes != 0 && array.pointer != 0 && last >= first && first >= 0) {
+      elements.resize(std::size_t(last - first + 1) * bytes);
+      for (std::int64_t i = first; i <= last; ++i) {
+        std::memcpy(elements.data() + std::size_t(i - first) * bytes,
+                    address(array.pointer) + std::size_t(i) * array.step(), bytes);
+      }
+    }
+    const std::array<std::uint64_t, event::words_per_array> fields = {
+        std::uint64_t(array.role),
+        array.index,
+        std::uint64_t(array.size),
+        array.type,
+        array.normalized,
+        std::uint64_t(array.stride),
+        Reference{ReferenceKind::address, array.pointer}.word(),
+        array.divisor,
+        std::uint64_t(first),
+        to.attach(elements).word()};
+    for (const std::uint64_t field : fields) to.set(at++, field);
+  }
+}
+
+bool Encoder::begin_arrays(CallId call, const std::uint64_t* words, Records& to) {
+  const std::vector<ClientArray> arrays = client_arrays(ask());
+  if (arrays.empty()) return false;
+  const auto range = element_range(questions_, call, words);
+  if (!range || range->empty()) return false;
+  append_arrays(arrays, *range, to);
+  return true;
+}
+
+void Encoder::note_element(CallId call, const std::uint64_t* words) {
+  const auto element = element_range(questions_, call, words);
+  if (!element) return;
+  if (elements_since_begin_.empty()) {
+    elements_since_begin_ = *element;
+  } else {
+    elements_since_begin_.first = std::min(elements_since_begin_.first, element->first);
+    elements_since_begin_.last = std::max(elements_since_begin_.last, element->last);
+  }
+}
+
+void Encoder::insert_arrays_before_begin(Records& to) {
+  Records before = Records::without_payload();
+  append_arrays(arrays_at_begin_, elements_since_begin_, before);
+  to.insert(begin_position_, before);
+  to.begin(event::arrays_end);
+}
+
+void Encoder::encode(CallId call, const std::uint64_t* words, Records& to) {
+  const bool draws = client_memory_ && draws_arrays(call);
+  if (draws && inside_begin_) note_element(call, words);
+  if (client_memory_ && call == CallId::Begin && !inside_begin_) arrays_at_begin_ = client_arrays(ask());
+  const bool ended = inside_begin_ && call == CallId::End;
+  follow_begin_and_end(call, words, to);
+  bool between_events = false;
+  if (draws && !inside_begin_) between_events = begin_arrays(call, words, to);
+  if (!encode_plain(call, words, to)) {
+    const CallShape& shape = call_shape(call);
+    arguments_.clear();
+    for (std::size_t p = 0; p < shape.parameter_count; ++p)
+      arguments_.push_back(shape.parameters()[p].pointer == 0 ? Argument{} : prepare(call, p, words));
+    write(call, words, arguments_, to);
+  }
+  if (between_events) to.begin(event::arrays_end);
+  if (ended && !elements_since_begin_.empty()) {
+    insert_arrays_before_begin(to);
+    elements_since_begin_ = {};
+  }
+}
+
+}  // namespace understudy::spu

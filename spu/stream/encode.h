@@ -1,0 +1,67 @@
+// From calls to records.
+//
+// Everything that OpenGL would read through a pointer while the call runs is copied into the record, so the
+// application may do with its memory what it likes afterwards: pixels as tight_picture() lays them, strings,
+// arrays, indices, and the elements of client vertex arrays that a draw uses. Offsets into bound buffers stay
+// offsets.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dispatch/call_shape.h"
+#include "dispatch/table.h"
+#include "spu/stream/client_arrays.h"
+#include "spu/stream/record.h"
+
+namespace understudy::spu {
+
+/// The caller must know the answer, or the memory behind a pointer, before it goes on: results, outputs, and
+/// inputs whose extent nobody knows.
+bool needs_answer(CallId call) noexcept;
+
+class Encoder {
+ public:
+  /// What a pointer means depends on bindings, the pixel store and the vertex arrays; `questions` is asked for
+  /// them. `before_question` runs first: calls that were recorded but not made yet must be made, as they may
+  /// change the answers.
+  Encoder(const DispatchTable& questions, std::function<void()> before_question);
+
+  /// Appends the call, with events around it where it needs them, to `to`. `words` are the arguments as
+  /// AsWords makes them.
+  void encode(CallId call, const std::uint64_t* words, Records& to);
+
+  /// The application is between glBegin and glEnd: OpenGL answers no questions.
+  bool inside_begin() const { return inside_begin_; }
+
+ private:
+  struct Argument;
+
+  GLint ask(GLenum name);
+  const DispatchTable& ask();
+  void follow_begin_and_end(CallId call, const std::uint64_t* words, Records& to);
+  bool encode_plain(CallId call, const std::uint64_t* words, Records& to);
+  Argument prepare(CallId call, std::size_t parameter, const std::uint64_t* words);
+  void write(CallId call, const std::uint64_t* words, std::vector<Argument>& arguments, Records& to);
+  bool begin_arrays(CallId call, const std::uint64_t* words, Records& to);
+  void note_element(CallId call, const std::uint64_t* words);
+  void insert_arrays_before_begin(Records& to);
+
+  const DispatchTable& questions_;
+  std::function<void()> before_question_;
+  std::vector<Argument> arguments_;  ///< kept for its memory
+  bool inside_begin_ = false;
+  bool began_before_list_ = false;
+  bool compiling_ = false;
+  /// The application pointed an array at its own memory at least once: draws must look.
+  bool client_memory_ = false;
+  std::vector<ClientArray> arrays_at_begin_;
+  ElementRange elements_since_begin_;
+  std::size_t begin_position_ = 0;
+};
+
+/// The `arrays` event for `range` of `arrays`.
+void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to);
+
+}  // namespace understudy::spu

@@ -1,0 +1,65 @@
+// What objects of a stream are called here: a driver is free to give other names, locations and addresses than
+// it did when the stream was recorded.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "dispatch/call_shape.h"
+
+namespace understudy::spu {
+
+class ObjectNames {
+ public:
+  /// The name here of an object of the stream; the same when it was never answered, as with names that the
+  /// application chose.
+  std::uint64_t here(ObjectKind kind, std::uint64_t there) const {
+    const auto& names = names_[std::size_t(kind)];
+    const auto found = names.find(there);
+    return found == names.end() ? there : found->second;
+  }
+  void set(ObjectKind kind, std::uint64_t there, std::uint64_t here) {
+    // Display lists keep their names: glNewList takes any.
+    if (kind != ObjectKind::none && kind != ObjectKind::display_list) names_[std::size_t(kind)][there] = here;
+  }
+
+  /// Uniform locations belong to a program (its name here). Elements of an array follow its first one.
+  std::int32_t location_here(std::uint64_t program, std::int32_t there) const {
+    const auto found = locations_.upper_bound({program, there});
+    if (there < 0 || found == locations_.begin()) return there;
+    const auto& [key, here] = *std::prev(found);
+    return key.first == program ? here + (there - key.second) : there;
+  }
+  void set_location(std::uint64_t program, std::int32_t there, std::int32_t here) {
+    if (there >= 0) locations_[{program, there}] = here;
+  }
+
+  /// Memory that a buffer is mapped to.
+  struct Mapping {
+    std::byte* first = nullptr;
+    std::size_t bytes = 0;
+  };
+  void set_mapping(std::uint64_t there, Mapping mapping) { mappings_[there] = mapping; }
+  Mapping mapping(std::uint64_t there) const {
+    const auto found = mappings_.find(there);
+    return found == mappings_.end() ? Mapping{} : found->second;
+  }
+
+  bool has_mappings() const { return !mappings_.empty(); }
+  void drop_mapping(const void* first) {
+    std::erase_if(mappings_, [&](const auto& entry) { return entry.second.first == first; });
+  }
+  void drop_all_mappings() { mappings_.clear(); }
+
+  std::uint64_t current_program = 0;  ///< the name here
+
+ private:
+  std::array<std::map<std::uint64_t, std::uint64_t>, std::size_t(ObjectKind::display_list) + 1> names_;
+  std::map<std::pair<std::uint64_t, std::int32_t>, std::int32_t> locations_;
+  std::map<std::uint64_t, Mapping> mappings_;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,69 @@
+// How pictures lie in the application's memory (OpenGL 4.6, section 8.4.4), and the one way they lie in a
+// stream.
+//
+// In a stream rows follow each other without gaps, components are in the byte order of the machine, bits start
+// with the highest: what GL_UNPACK_ALIGNMENT = 1 and zeros everywhere else describe.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+/// GL_UNPACK_* or GL_PACK_*, in OpenGL's units (pixels, rows, bytes for alignment).
+struct PixelStore {
+  GLint swap_bytes = 0;
+  GLint lsb_first = 0;
+  GLint row_length = 0;
+  GLint image_height = 0;
+  GLint skip_rows = 0;
+  GLint skip_pixels = 0;
+  GLint skip_images = 0;
+  GLint alignment = 4;
+
+  bool operator==(const PixelStore&) const = default;
+};
+
+inline constexpr PixelStore tight_pixels{.alignment = 1};
+
+/// The names of the fields in their order, for glGetIntegerv and glPixelStorei.
+inline constexpr std::array<GLenum, 8> unpack_names = {
+    GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_IMAGE_HEIGHT,
+    GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_ALIGNMENT};
+inline constexpr std::array<GLenum, 8> pack_names = {
+    GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST,   GL_PACK_ROW_LENGTH,  GL_PACK_IMAGE_HEIGHT,
+    GL_PACK_SKIP_ROWS,  GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_IMAGES, GL_PACK_ALIGNMENT};
+
+PixelStore pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names);
+/// Makes `wanted` of what is `now`.
+void set_pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names, const PixelStore& now,
+                     const PixelStore& wanted);
+
+/// What a command says of its picture. `dimensions` of the command, not of the picture: it decides which skips
+/// count.
+struct PictureShape {
+  GLsizei width = 1;
+  GLsizei height = 1;
+  GLsizei depth = 1;
+  GLenum format = GL_RGBA;
+  GLenum type = GL_UNSIGNED_BYTE;
+  int dimensions = 2;
+};
+
+/// Bytes of one pixel; nothing for formats and types that OpenGL does not know together, and for bits.
+std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type);
+
+/// Bytes from the pointer that the application gives to the end of what is read or written under `store`;
+/// nothing when the format is not known or the size is beyond reason, 0 for an empty picture.
+std::optional<std::size_t> picture_extent(const PictureShape& shape, const PixelStore& store);
+
+/// The picture as it lies in streams. `pixels` must hold picture_extent(shape, store) bytes.
+std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore& store,
+                                     const std::byte* pixels);
+
+}  // namespace understudy::spu

@@ -1,0 +1,178 @@
+// A record: one OpenGL call, or one event of the stream, as 8-byte words.
+//
+//     word 0        stable id of the call (low half), number of words of the record with this one (high half)
+//     words 1..n    one an argument: the value, or for pointers a reference (below)
+//     then          what references point at within the record
+//
+// Stable ids are made from names (dispatch/call_shape.h), never from positions. Bulky data stands apart, in the
+// payload of the block, so that a reader can walk the records without touching it. This is Chromium's packer
+// (Humphreys et al. 2002, section 4) with names instead of op-codes and lengths instead of trust.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace understudy::spu {
+
+/// What the word of a pointer argument is: the kind in its highest byte, a value below.
+enum class ReferenceKind : std::uint8_t {
+  null,     ///< a null pointer
+  inside,   ///< value: word of the record at which {bytes, data} stands
+  payload,  ///< value: word of the block's payload at which {bytes, data} stands
+  address,  ///< value: an offset into a buffer object, or an address that means something to the sender only
+  output,   ///< value: where the sender's process wants the answer
+  strings,  ///< as inside; data: for every string its length as a word, its bytes, a zero, up to a full word
+  lists,    ///< as inside; data: for every list {bytes, data}, each up to a full word
+};
+
+struct Reference {
+  ReferenceKind kind = ReferenceKind::null;
+  std::uint64_t value = 0;
+
+  /// Addresses keep their low 56 bits, sign-extended: all that user space and buffer offsets ever use.
+  constexpr std::uint64_t word() const { return std::uint64_t(kind) << 56 | (value & 0x00ff'ffff'ffff'ffffU); }
+  static constexpr Reference from(std::uint64_t word) {
+    const auto value = std::uint64_t(std::int64_t(word << 8) >> 8);
+    return {ReferenceKind(word >> 56), value};
+  }
+};
+
+/// FNV-1a: the id of a call or event by its name.
+constexpr std::uint32_t stable_id_of(std::string_view name) {
+  std::uint32_t id = 0x811c9dc5U;
+  for (const char c : name) id = (id ^ std::uint8_t(c)) * 0x01000193U;
+  return id;
+}
+
+constexpr std::size_t words_for(std::size_t bytes) {
+  return (bytes + 7) / 8;
+}
+
+/// Data of at least so many bytes goes to the payload.
+constexpr std::size_t payload_threshold = 1024;
+
+/// Records in the order of their calls, and their payload. Growing again after `clear` allocates nothing.
+class Records {
+ public:
+  Records() = default;
+  /// Without a payload everything stays in the records, so that they can be moved.
+  static Records without_payload() {
+    Records records;
+    records.threshold_ = ~std::size_t(0);
+    return records;
+  }
+
+  /// Starts a record; the words that follow belong to it until the next one starts.
+  void begin(std::uint32_t id) {
+    start_ = words_.size();
+    words_.push_back(id);
+    close();
+  }
+  void append(std::uint64_t word) {
+    words_.push_back(word);
+    close();
+  }
+  /// A record whose arguments are all values.
+  void append_plain(std::uint32_t id, std::span<const std::uint64_t> arguments) {
+    start_ = words_.size();
+    words_.push_back(id | std::uint64_t(arguments.size() + 1) << 32);
+    words_.insert(words_.end(), arguments.begin(), arguments.end());
+  }
+  /// Leaves room for `count` words, to be set later by their number within the record.
+  void reserve(std::size_t count) {
+    words_.resize(words_.size() + count);
+    close();
+  }
+  void set(std::size_t word_of_record, std::uint64_t value) { words_[start_ + word_of_record] = value; }
+
+  /// Copies `bytes` into the record or, when there are many, into the payload.
+  Reference attach(std::span<const std::byte> bytes) {
+    const bool apart = bytes.size() >= threshold_;
+    std::vector<std::uint64_t>& to = apart ? payload_ : words_;
+    const std::size_t at = to.size();
+    to.resize(at + 1 + words_for(bytes.size()));
+    to[at] = bytes.size();
+    if (!bytes.empty()) std::memcpy(&to[at + 1], bytes.data(), bytes.size());
+    if (!apart) close();
+    return apart ? Reference{ReferenceKind::payload, at} : Reference{ReferenceKind::inside, at - start_};
+  }
+  /// Data of kind strings or lists: the caller appends its words.
+  Reference begin_inside(ReferenceKind kind) {
+    const Reference reference{kind, words_.size() - start_};
+    append(0);
+    return reference;
+  }
+  void end_inside(Reference reference) {
+    set(reference.value, (words_.size() - start_ - reference.value - 1) * 8);
+  }
+  void append_bytes(std::span<const std::byte> bytes, bool terminated) {
+    const std::size_t at = words_.size();
+    words_.resize(at + words_for(bytes.size() + (terminated ? 1 : 0)));
+    if (!bytes.empty()) std::memcpy(words_.data() + at, bytes.data(), bytes.size());
+    close();
+  }
+
+  /// Puts records without payload before the record at word `position`.
+  void insert(std::size_t position, const Records& other) {
+    words_.insert(words_.begin() + std::ptrdiff_t(position), other.words_.begin(), other.words_.end());
+    start_ += other.words_.size();
+  }
+
+  std::span<const std::uint64_t> words() const { return words_; }
+  std::span<const std::uint64_t> payload() const { return payload_; }
+  bool empty() const { return words_.empty(); }
+  void clear() {
+    words_.clear();
+    payload_.clear();
+    start_ = 0;
+  }
+
+ private:
+  void close() {
+    words_[start_] = (words_[start_] & 0xffff'ffffU) | std::uint64_t(words_.size() - start_) << 32;
+  }
+
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> payload_;
+  std::size_t start_ = 0;
+  std::size_t threshold_ = payload_threshold;
+};
+
+/// One record as read; `words` includes the header.
+struct Record {
+  std::uint32_t id = 0;
+  std::span<const std::uint64_t> words;
+  std::span<const std::uint64_t> payload;  ///< of its block
+
+  std::span<const std::uint64_t> arguments() const { return words.subspan(1); }
+  /// The bytes that `word` refers to; nothing when it is not a reference to bytes that are there.
+  std::optional<std::span<const std::byte>> bytes(std::uint64_t word) const {
+    const Reference reference = Reference::from(word);
+    const bool apart = reference.kind == ReferenceKind::payload;
+    if (!apart && reference.kind != ReferenceKind::inside && reference.kind != ReferenceKind::strings &&
+        reference.kind != ReferenceKind::lists) {
+      return std::nullopt;
+    }
+    const std::span<const std::uint64_t> from = apart ? payload : words;
+    if (reference.value >= from.size() || (!apart && reference.value == 0)) return std::nullopt;
+    const std::uint64_t size = from[reference.value];
+    if (size > (from.size() - reference.value - 1) * 8) return std::nullopt;
+    return std::as_bytes(from.subspan(reference.value + 1)).first(size);
+  }
+};
+
+/// The record that starts at `words[position]`, or nothing when its length is not to be believed.
+inline std::optional<Record> record_at(std::span<const std::uint64_t> words, std::size_t position,
+                                       std::span<const std::uint64_t> payload) {
+  if (position >= words.size()) return std::nullopt;
+  const std::uint64_t length = words[position] >> 32;
+  if (length == 0 || length > words.size() - position) return std::nullopt;
+  return Record{std::uint32_t(words[position]), words.subspan(position, length), payload};
+}
+
+}  // namespace understudy::spu

@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "interceptor/gl_names.h"
 
@@ -15,17 +17,24 @@ using namespace understudy::interceptor;
 namespace {
 
 StubPaths stubs;
+char door_library[PATH_MAX];
+
+void set_folder(const char* folder) {
+  stubs.set_folder(folder);
+  const int length = snprintf(door_library, sizeof door_library, "%s/../libunderstudy.so", folder);
+  if (length < 0 || length >= PATH_MAX) door_library[0] = '\0';
+}
 
 void find_stubs() {
   const char* given = getenv("UNDERSTUDY_DOOR_DIR");
   char folder[PATH_MAX];
   Dl_info self;
   if (given != nullptr && *given != '\0') {
-    stubs.set_folder(given);
+    set_folder(given);
   } else if (dladdr(&stubs, &self) != 0 && realpath(self.dli_fname, folder) != nullptr) {
     const size_t own_name = static_cast<size_t>(base_name(folder) - folder);
     snprintf(folder + own_name, sizeof folder - own_name, "door");
-    stubs.set_folder(folder);
+    set_folder(folder);
   }
 }
 
@@ -44,8 +53,15 @@ AUDIT_INTERFACE unsigned la_objopen(struct link_map* map, Lmid_t, uintptr_t* coo
 }
 
 AUDIT_INTERFACE char* la_objsearch(const char* name, uintptr_t* cookie, unsigned flag) {
-  const int stub = flag == LA_SER_ORIG ? stub_for(name) : -1;
+  // A stub that is given in the place of a file keeps that file's name, and would look for us beside it.
+  if (strcmp(name, "libunderstudy.so") == 0 && door_library[0] != '\0') return door_library;
+  const int stub = stub_for(name);
   if (stub < 0 || stubs.path[stub][0] == '\0') return const_cast<char*>(name);
+  // Names are answered before the loader looks for a file. For OSMesa it is let look, until it is at a file
+  // that exists.
+  const bool answered_now =
+      stub == osmesa_stub ? strchr(name, '/') != nullptr && access(name, R_OK) == 0 : flag == LA_SER_ORIG;
+  if (!answered_now) return const_cast<char*>(name);
   const auto* asker = reinterpret_cast<const struct link_map*>(*cookie);
   const bool real = asker != nullptr && asker->l_name != nullptr &&
                     may_have_the_real_one(asker->l_name, getenv("UNDERSTUDY_DRIVER_DIR"));

@@ -17,35 +17,45 @@ namespace understudy::interceptor {
 struct ThreadState {
   const spu::DispatchTable* table = nullptr;  ///< null: no context yet, calls go to the driver
   std::uint64_t* calls = nullptr;             ///< GL calls that came through the door on this thread
+  /// The real OpenGL of the context that is current: every slot filled or null. The same for all contexts of
+  /// GLX and EGL, another for those of OSMesa. Null without a context.
+  const spu::DispatchTable* driver = nullptr;
 };
 
-enum class WindowSystem : std::int32_t { glx, egl };
-enum class FrameEnd : std::int32_t { swap, wait, make_current, destroy };
+enum class WindowSystem : std::int32_t { glx, egl, osmesa };
 
-constexpr std::uint32_t body_abi = 1;
+enum class FrameEnd : std::int32_t {
+  swap,
+  finish,  ///< the picture is complete, and all buffers keep their contents: OSMesa, which has no swap
+  wait,
+  make_current,
+  destroy
+};
+
+constexpr std::uint32_t body_abi = 2;
 
 /// Given by the door, once.
 struct DoorServices {
   std::uint32_t abi = body_abi;
-  const spu::DispatchTable* driver = nullptr;  ///< the real OpenGL: every slot filled or null
-  ThreadState* (*thread_state)() = nullptr;    ///< of the calling thread
+  ThreadState* (*thread_state)() = nullptr;  ///< of the calling thread
 };
 
 /// Answered by the body, once. No function throws; all may be called from any thread.
 struct BodyServices {
   std::uint32_t abi = body_abi;
-  /// The calling thread has just made `context` current on the real driver. Sets the thread's table. `share` is
-  /// any context of the same share group that is already known (0: none). `desktop_gl` is false for OpenGL ES
-  /// contexts, which go straight to the driver. `drawable` tells frames of two windows apart.
+  /// The calling thread has just made `context` current on the real driver, which the thread's state names.
+  /// Sets the thread's table. `share` is any context of the same share group that is already known (0: none).
+  /// `desktop_gl` is false for OpenGL ES contexts, which go straight to the driver. `drawable` tells frames of
+  /// two windows apart.
   void (*context_current)(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                           std::uintptr_t drawable) = nullptr;
   /// The calling thread's context is about to stop being current (or another is about to replace it).
   void (*context_leaving)() = nullptr;
   void (*context_destroyed)(std::uintptr_t context) = nullptr;
-  /// Before the real call that ends or publishes a frame (swap, WaitGL): what is pending must reach the
+  /// Before the real call that ends or publishes a frame (swap, finish, WaitGL): what is pending must reach the
   /// framebuffer.
   void (*before_frame_end)(FrameEnd kind) = nullptr;
-  /// After the real swap returned.
+  /// After the real swap or finish returned.
   void (*after_frame_end)(FrameEnd kind) = nullptr;
 };
 

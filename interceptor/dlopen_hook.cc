@@ -40,6 +40,19 @@ Dlopen next_dlopen() {
   return understudy_next_dlopen;
 }
 
+/// Is `name` to be answered by that stub? OSMesa's stands only where there is an OSMesa. A program that asks
+/// whether OSMesa is loaded (RTLD_NOLOAD) means the library, not our stub, which it then gets all the same.
+bool stub_answers(int stub, const char* name, int& mode) {
+  if (stub < 0 || own_stub(stub)[0] == '\0') return false;
+  if (stub != osmesa_stub) return true;
+  if ((mode & RTLD_NOLOAD) == 0) return driver_is_there(WindowSystem::osmesa);
+  void* loaded = next_dlopen()(name, RTLD_LAZY | RTLD_NOLOAD);
+  if (loaded == nullptr) return false;
+  dlclose(loaded);
+  mode &= ~RTLD_NOLOAD;
+  return true;
+}
+
 bool caller_may_have_the_real_one(const void* caller) {
   Dl_info info;
   return dladdr(caller, &info) != 0 && info.dli_fname != nullptr &&
@@ -59,7 +72,7 @@ Request understudy_route_dlopen(const char* name, int mode, const void* caller) 
   const int stub = stub_for(name);
   const bool deep = (mode & RTLD_DEEPBIND) != 0;
   if ((stub >= 0 || deep) && !caller_may_have_the_real_one(caller)) {
-    if (stub >= 0 && own_stub(stub)[0] != '\0') name = own_stub(stub);
+    if (stub_answers(stub, name, mode)) name = own_stub(stub);
     // RTLD_DEEPBIND would make a plugin prefer the OpenGL that it was linked with to us.
     mode &= ~RTLD_DEEPBIND;
   }

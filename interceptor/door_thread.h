@@ -11,20 +11,22 @@
 
 namespace understudy::interceptor {
 
-/// Which context the thread has current; `context` is 0 when none that the door follows.
+/// Which context the thread has current as far as the body knows; `context` is 0 when none that the door
+/// follows.
 struct CurrentContext {
   std::uintptr_t context = 0;  ///< the door's number for it (context_ledger.h)
   WindowSystem system = WindowSystem::glx;
   std::uintptr_t display = 0;
-  std::uintptr_t handle = 0;  ///< GLXContext or EGLContext
+  std::uintptr_t handle = 0;  ///< GLXContext, EGLContext or OSMesaContext
   std::uintptr_t draw = 0;
   std::uintptr_t read = 0;
   bool operator==(const CurrentContext&) const = default;
 };
 
 struct DoorThread {
-  ThreadState state;              ///< `table` set means `calls` set
-  std::uint64_t spare_calls = 0;  ///< counts where the body has given no counter
+  ThreadState state;                     ///< `table` set means `calls` set
+  std::uint64_t spare_calls = 0;         ///< counts where the body has given no counter
+  std::uint64_t calls_at_frame_end = 0;  ///< of OSMesa (osmesa.cc)
   int level = 0;
   CurrentContext current;
 };

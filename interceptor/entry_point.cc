@@ -10,14 +10,27 @@
 
 namespace understudy::interceptor {
 
+namespace {
+
+/// Of the context that is current on this thread, or of any.
+const spu::DispatchTable& real_functions() {
+  const spu::DispatchTable* driver = door_thread.state.driver;
+  return driver != nullptr ? *driver : driver_table_without_context();
+}
+
+}  // namespace
+
 const spu::DispatchTable& enter_without_context() {
   DoorThread& thread = door_thread;
   if (thread.level == 0) {
     if (thread.state.calls != nullptr) ++*thread.state.calls;
     // Nobody will ever want this thread's calls: let the next ones take the short way.
-    if (body_is_out()) thread.state = {&driver_table(), &thread.spare_calls};
+    if (body_is_out()) {
+      thread.state.table = &real_functions();
+      thread.state.calls = &thread.spare_calls;
+    }
   }
-  return driver_table();
+  return real_functions();
 }
 
 void report_missing(const char* name) {

@@ -9,8 +9,12 @@
 namespace understudy::interceptor {
 
 /// The stub libraries in the folder `door`, by SONAME.
-constexpr const char* stub_names[] = {"libGL.so.1", "libGLX.so.0", "libOpenGL.so.0", "libEGL.so.1"};
-constexpr int stub_count = 4;
+constexpr const char* stub_names[] = {"libGL.so.1", "libGLX.so.0", "libOpenGL.so.0", "libEGL.so.1",
+                                      "libOSMesa.so.8"};
+constexpr int stub_count = 5;
+/// Where there is OpenGL there are the other four, but not everywhere is there OSMesa, and programs ask for it
+/// to find out. Its stub is given only where there is a library that it can stand for.
+constexpr int osmesa_stub = 4;
 
 inline const char* base_name(const char* path) {
   const char* slash = strrchr(path, '/');
@@ -54,8 +58,8 @@ struct StubPaths {
 /// driver.
 inline bool may_have_the_real_one(const char* asker, const char* driver_folder) {
   const char* base = base_name(asker);
-  constexpr const char* opengl[] = {"libunderstudy", "libGL.so",      "libGLX",    "libOpenGL.so",
-                                    "libEGL",        "libGLdispatch", "libnvidia-"};
+  constexpr const char* opengl[] = {"libunderstudy", "libGL.so",      "libGLX",     "libOpenGL.so",
+                                    "libEGL",        "libGLdispatch", "libnvidia-", "libOSMesa"};
   for (const char* name : opengl) {
     if (starts_with(base, name)) return true;
   }

@@ -11,7 +11,7 @@ void enter(const BodyServices& services, const KnownContext& known, const Curren
   if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
   const InsideBody inside;
   services.context_current(known.context, known.share, current.system, known.desktop_gl, current.draw);
-  if (thread.state.table == nullptr) thread.state.table = &driver_table();
+  if (thread.state.table == nullptr) thread.state.table = thread.state.driver;
   if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
 }
 
@@ -26,6 +26,15 @@ bool touches_current(const WantedContext& wanted, const CurrentContext& current)
 }
 
 }  // namespace
+
+void follow_driver(const WantedContext& wanted) {
+  ThreadState& state = door_thread.state;
+  if (wanted.handle == 0 && state.driver == nullptr) return;
+  const spu::DispatchTable& driver = driver_table(wanted.system);
+  if (wanted.handle == 0 && state.driver != &driver) return;  // another window system's context stays current
+  state.driver = wanted.handle != 0 ? &driver : nullptr;
+  state.table = nullptr;
+}
 
 void before_make_current(const WantedContext& wanted) {
   DoorThread& thread = door_thread;
@@ -52,7 +61,7 @@ void after_make_current(const WantedContext& wanted, bool succeeded) {
 
   if (thread.current.context != 0) note_not_current(thread.current.context);
   thread.current = {};
-  thread.state.table = nullptr;
+  follow_driver(wanted);
   if (wanted.handle != 0) {
     if (const BodyServices* services = open_body()) {
       const KnownContext known =

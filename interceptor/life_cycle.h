@@ -1,5 +1,5 @@
-// What GLX and EGL have in common: a context becomes current, a frame ends. Tells the body, around the real
-// calls.
+// What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Tells the body, around the
+// real calls.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +25,21 @@ struct WantedContext {
   bool desktop_gl_if_new = true;  ///< for a context whose creation was not seen
 };
 
+/// A make-current call has succeeded: from now on the thread's calls belong to that context's OpenGL, or to
+/// none. Wanted also where there is no body.
+void follow_driver(const WantedContext& wanted);
+
 /// The two halves of a make-current call. `succeeded` false leaves everything as it was.
 void before_make_current(const WantedContext& wanted);
 void after_make_current(const WantedContext& wanted, bool succeeded);
 
 template <class RealCall>
 auto make_current(const WantedContext& wanted, RealCall real_call) {
-  if (!on_stage()) return real_call();
+  if (!on_stage()) {
+    const auto result = real_call();
+    if (result != 0 && door_thread.level == 0) follow_driver(wanted);
+    return result;
+  }
   before_make_current(wanted);
   const auto result = real_call();
   after_make_current(wanted, result != 0);

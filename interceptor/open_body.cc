@@ -22,7 +22,7 @@ namespace {
 
 constinit std::atomic<const BodyServices*> opened = nullptr;
 constinit std::atomic<bool> out = false;
-constinit pid_t opened_by = 0;
+constinit pid_t opened_by = 0;  ///< also while it is being opened
 constinit pthread_mutex_t opening = PTHREAD_MUTEX_INITIALIZER;
 
 ThreadState* state_of_this_thread() {
@@ -33,12 +33,22 @@ ThreadState* state_of_this_thread() {
 /// the driver's own affair from here on, and its calls must not be counted in memory that the parent shares
 /// with the launcher.
 void leave_body_after_fork() {
+  out.store(true);
+  door_thread.state.table = nullptr;
+  door_thread.state.calls = &door_thread.spare_calls;
+  door_thread.current = {};
+}
+
+/// Only the thread that forks lives on in the child: what others were in the midst of is given up.
+void child_after_fork() {
   opening = PTHREAD_MUTEX_INITIALIZER;
   reset_driver_locks_after_fork();
   reset_ledger_after_fork();
-  out.store(true);
-  door_thread.state = {&driver_table(), &door_thread.spare_calls};
-  door_thread.current = {};
+  if (opened_by != 0) leave_body_after_fork();
+}
+
+__attribute__((constructor)) void watch_forks() {
+  pthread_atfork(nullptr, nullptr, &child_after_fork);
 }
 
 bool switched_off() {
@@ -56,7 +66,6 @@ const BodyServices* load_body() {
   if (switched_off()) return nullptr;
 
   static constinit DoorServices door;
-  door.driver = &driver_table(/*complete=*/true);
   door.thread_state = &state_of_this_thread;
 
   char path[PATH_MAX];
@@ -95,17 +104,16 @@ const BodyServices* body() {
 const BodyServices* open_body() {
   if (body_is_out()) return nullptr;
   if (const BodyServices* services = opened.load(std::memory_order_acquire)) {
-    // fork runs the handler below; a bare clone() does not.
+    // fork runs the handler above; a bare clone() does not.
     if (opened_by == getpid()) return services;
-    leave_body_after_fork();
+    child_after_fork();
     return nullptr;
   }
   pthread_mutex_lock(&opening);
   if (!out.load() && opened.load() == nullptr) {
+    opened_by = getpid();
     const BodyServices* services = load_body();
     if (services != nullptr) {
-      opened_by = getpid();
-      pthread_atfork(nullptr, nullptr, &leave_body_after_fork);
       opened.store(services, std::memory_order_release);
     } else {
       out.store(true, std::memory_order_release);

@@ -14,6 +14,7 @@
 #include "dispatch/call_id.h"
 #include "interceptor/door_thread.h"
 #include "interceptor/gl_names.h"
+#include "interceptor/osmesa.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -21,17 +22,35 @@ namespace {
 using GetProcAddress = void* (*)(const char*);
 
 struct DriverLibrary {
+  WindowSystem system;
+  const char* file;
+  const char* file_without_glvnd;  ///< null: none
+  const char* lookup;              ///< the function that looks up the others
   std::atomic<void*> handle = nullptr;
   GetProcAddress get_proc_address = nullptr;
   bool failed = false;  ///< looked for and not found: not looked for again
 };
 
-constinit DriverLibrary glx_library;
-constinit DriverLibrary egl_library;
+constinit DriverLibrary libraries[] = {
+    {WindowSystem::glx, "libGLX.so.0", "libGL.so.1", "glXGetProcAddressARB"},
+    {WindowSystem::egl, "libEGL.so.1", nullptr, "eglGetProcAddress"},
+    {WindowSystem::osmesa, "libOSMesa.so.8", nullptr, "OSMesaGetProcAddress"},
+};
 constinit void* opengl_handle = nullptr;  ///< libOpenGL.so.0, or libGL.so.1 where there is no glvnd
-constinit spu::DispatchTable real_functions{};
-constinit std::atomic<bool> real_functions_filled = false;
-constinit bool real_functions_complete = false;
+
+DriverLibrary& library_of(WindowSystem system) {
+  return libraries[static_cast<int>(system)];
+}
+
+/// The GL functions of a driver, looked up when they are first asked for.
+struct DriverFunctions {
+  spu::DispatchTable table{};
+  std::atomic<bool> filled = false;
+  bool complete = false;  ///< filled with a context current: some drivers have answers only then
+};
+
+constinit DriverFunctions glvnd_functions;  ///< of GLX and EGL
+constinit DriverFunctions osmesa_functions;
 constinit pthread_mutex_t driver_lock = PTHREAD_RECURSIVE_MUTEX_INITIALIZER_NP;
 
 constinit char folder_of_this_library[PATH_MAX] = {};
@@ -41,7 +60,7 @@ constinit StubPaths stubs{};
 /// folder.
 __attribute__((constructor)) void find_own_folder() {
   Dl_info info;
-  if (dladdr(&glx_library, &info) == 0 || info.dli_fname == nullptr) return;
+  if (dladdr(&libraries, &info) == 0 || info.dli_fname == nullptr) return;
   if (realpath(info.dli_fname, folder_of_this_library) == nullptr) return;
   if (char* slash = strrchr(folder_of_this_library, '/')) *slash = '\0';
   char door[PATH_MAX];
@@ -67,20 +86,20 @@ void* open_in(const char* folder, const char* name) {
   return real_dlopen(path, RTLD_LAZY | RTLD_LOCAL);
 }
 
-/// Uses `folder` for the window system if a driver is there that is not ourselves.
-bool open_from(const char* folder, WindowSystem system, DriverLibrary& library) {
-  const bool glx = system == WindowSystem::glx;
-  const char* get_proc_address = glx ? "glXGetProcAddressARB" : "eglGetProcAddress";
-  void* handle = open_in(folder, glx ? "libGLX.so.0" : "libEGL.so.1");
-  const bool classic = glx && handle == nullptr;
-  if (classic) handle = open_in(folder, "libGL.so.1");
+/// Takes the library from `folder` if it is there and is not ourselves.
+bool open_from(const char* folder, DriverLibrary& library) {
+  void* handle = open_in(folder, library.file);
+  const bool classic = handle == nullptr && library.file_without_glvnd != nullptr;
+  if (classic) handle = open_in(folder, library.file_without_glvnd);
   if (handle == nullptr) return false;
 
-  void* const found = dlsym(handle, get_proc_address);
-  if (found == nullptr || found == own_entry(get_proc_address)) return false;  // a stub of ours: look further
+  void* const found = dlsym(handle, library.lookup);
+  if (found == nullptr || found == own_entry(library.lookup)) return false;  // a stub of ours: look further
 
   library.get_proc_address = reinterpret_cast<GetProcAddress>(found);
-  if (opengl_handle == nullptr) opengl_handle = classic ? handle : open_in(folder, "libOpenGL.so.0");
+  if (opengl_handle == nullptr && library.system != WindowSystem::osmesa) {
+    opengl_handle = classic ? handle : open_in(folder, "libOpenGL.so.0");
+  }
   library.handle.store(handle, std::memory_order_release);
   return true;
 }
@@ -98,7 +117,7 @@ bool libc_folder(char (&folder)[PATH_MAX]) {
 
 /// The folders that the loader itself would look into: LD_LIBRARY_PATH and the program's RPATH first, so that a
 /// user who gave the application a driver of its own gets that one.
-bool open_from_search_path(WindowSystem system, DriverLibrary& library) {
+bool open_from_search_path(DriverLibrary& library) {
   void* program = real_dlopen(nullptr, RTLD_LAZY);
   Dl_serinfo size;
   if (program == nullptr || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return false;
@@ -107,53 +126,95 @@ bool open_from_search_path(WindowSystem system, DriverLibrary& library) {
   bool opened = false;
   if (dlinfo(program, RTLD_DI_SERINFOSIZE, folders) == 0 && dlinfo(program, RTLD_DI_SERINFO, folders) == 0) {
     for (unsigned i = 0; i < folders->dls_cnt && !opened; ++i) {
-      opened = open_from(folders->dls_serpath[i].dls_name, system, library);
+      opened = open_from(folders->dls_serpath[i].dls_name, library);
     }
   }
   free(folders);
   return opened;
 }
 
-bool open_driver(WindowSystem system, DriverLibrary& library) {
+enum class Failure { said, silent };
+
+bool open_driver(DriverLibrary& library, Failure failure) {
+  const char* const or_classic = library.file_without_glvnd != nullptr ? " or libGL.so.1" : "";
   if (const char* folder = getenv("UNDERSTUDY_DRIVER_DIR"); folder != nullptr && *folder != '\0') {
-    if (open_from(folder, system, library)) return true;
-    dprintf(STDERR_FILENO,
-            "understudy: UNDERSTUDY_DRIVER_DIR=%s holds no %s that can be opened and is not Understudy's own; "
-            "looking in the system's folders\n",
-            folder, system == WindowSystem::glx ? "libGLX.so.0 or libGL.so.1" : "libEGL.so.1");
+    if (open_from(folder, library)) return true;
+    // A folder for a driver of GLX or EGL need not have an OSMesa too.
+    if (library.system != WindowSystem::osmesa) {
+      dprintf(
+          STDERR_FILENO,
+          "understudy: UNDERSTUDY_DRIVER_DIR=%s holds no %s%s that can be opened and is not Understudy's own; "
+          "looking in the system's folders\n",
+          folder, library.file, or_classic);
+    }
   }
-  if (open_from_search_path(system, library)) return true;
+  if (open_from_search_path(library)) return true;
   char folder[PATH_MAX];
-  if (libc_folder(folder) && open_from(folder, system, library)) return true;
+  if (libc_folder(folder) && open_from(folder, library)) return true;
   for (const char* usual : {"/usr/lib/x86_64-linux-gnu", "/usr/lib64", "/usr/lib", "/lib64"}) {
-    if (open_from(usual, system, library)) return true;
+    if (open_from(usual, library)) return true;
   }
-  dprintf(STDERR_FILENO,
-          "understudy: no OpenGL driver found: no %s in UNDERSTUDY_DRIVER_DIR, LD_LIBRARY_PATH or the system's "
-          "library "
-          "folders; set UNDERSTUDY_DRIVER_DIR to the folder that holds it\n",
-          system == WindowSystem::glx ? "libGLX.so.0 or libGL.so.1" : "libEGL.so.1");
+  if (failure == Failure::said) {
+    dprintf(
+        STDERR_FILENO,
+        "understudy: no OpenGL driver found: no %s%s in UNDERSTUDY_DRIVER_DIR, LD_LIBRARY_PATH or the system's "
+        "library folders; set UNDERSTUDY_DRIVER_DIR to the folder that holds it\n",
+        library.file, or_classic);
+  }
   return false;
 }
 
 /// Null when the driver is not to be had; said once.
-DriverLibrary* open_library(WindowSystem system) {
-  DriverLibrary& library = system == WindowSystem::glx ? glx_library : egl_library;
+DriverLibrary* open_library(WindowSystem system, Failure failure = Failure::said) {
+  DriverLibrary& library = library_of(system);
   if (library.handle.load(std::memory_order_acquire) != nullptr) return &library;
   const Locked locked;
   if (library.handle.load(std::memory_order_relaxed) == nullptr && !library.failed) {
     const InsideDriver inside;  // constructors of the libraries run now
     claim_names();
-    library.failed = !open_driver(system, library);
+    const bool opened = open_driver(library, failure);
+    if (!opened && failure == Failure::silent) return nullptr;
+    library.failed = !opened;
   }
   return library.failed ? nullptr : &library;
+}
+
+void* osmesa_function(const char* name) {
+  void* exported = dlsym(library_of(WindowSystem::osmesa).handle.load(std::memory_order_relaxed), name);
+  return exported != nullptr ? exported : real_proc_address(WindowSystem::osmesa, name);
+}
+
+void* glvnd_function(const char* name) {
+  void* function = opengl_handle != nullptr ? dlsym(opengl_handle, name) : nullptr;
+  for (const WindowSystem system : {WindowSystem::glx, WindowSystem::egl}) {
+    if (function == nullptr && driver_is_open(system)) function = real_proc_address(system, name);
+  }
+  return function;
+}
+
+const spu::DispatchTable& filled(DriverFunctions& functions, void* (*look_up)(const char*), bool complete) {
+  if (functions.filled.load(std::memory_order_acquire) && !complete) return functions.table;
+  const Locked locked;
+  if (functions.complete) return functions.table;
+  for (std::size_t number = 0; number < spu::call_count; ++number) {
+    const auto call = static_cast<spu::CallId>(number);
+    if (spu::slot(functions.table, call) != nullptr) continue;  // another thread may be calling it
+    spu::set_slot(functions.table, call, reinterpret_cast<spu::AnyFunction>(look_up(spu::call_name(call))));
+  }
+  if (look_up == &osmesa_function) end_frames_of_osmesa(functions.table);
+  functions.complete = complete;
+  functions.filled.store(true, std::memory_order_release);
+  return functions.table;
 }
 
 }  // namespace
 
 bool driver_is_open(WindowSystem system) {
-  const DriverLibrary& library = system == WindowSystem::glx ? glx_library : egl_library;
-  return library.handle.load(std::memory_order_acquire) != nullptr;
+  return library_of(system).handle.load(std::memory_order_acquire) != nullptr;
+}
+
+bool driver_is_there(WindowSystem system) {
+  return open_library(system, Failure::silent) != nullptr;
 }
 
 void* real_proc_address(WindowSystem system, const char* name) {
@@ -171,28 +232,19 @@ void* real_symbol(WindowSystem system, const char* name) {
   return library->get_proc_address(name);
 }
 
-const spu::DispatchTable& driver_table(bool complete) {
-  if (real_functions_filled.load(std::memory_order_acquire) && !complete) return real_functions;
-  const Locked locked;
-  if (real_functions_complete) return real_functions;
+const spu::DispatchTable& driver_table(WindowSystem system) {
+  const bool osmesa = system == WindowSystem::osmesa;
+  return filled(osmesa ? osmesa_functions : glvnd_functions, osmesa ? &osmesa_function : &glvnd_function,
+                /*complete=*/true);
+}
 
-  // Before any window system is in use, GLX's library is as good a source as any: without a context every GL
-  // call does nothing.
+const spu::DispatchTable& driver_table_without_context() {
   if (!driver_is_open(WindowSystem::glx) && !driver_is_open(WindowSystem::egl)) {
+    if (driver_is_open(WindowSystem::osmesa)) return filled(osmesa_functions, &osmesa_function, false);
+    // GLX's library is as good a source as any: without a context every GL call does nothing.
     if (open_library(WindowSystem::glx) == nullptr) open_library(WindowSystem::egl);
   }
-  for (std::size_t number = 0; number < spu::call_count; ++number) {
-    const auto call = static_cast<spu::CallId>(number);
-    const char* name = spu::call_name(call);
-    void* function = opengl_handle != nullptr ? dlsym(opengl_handle, name) : nullptr;
-    for (const WindowSystem system : {WindowSystem::glx, WindowSystem::egl}) {
-      if (function == nullptr && driver_is_open(system)) function = real_proc_address(system, name);
-    }
-    spu::set_slot(real_functions, call, reinterpret_cast<spu::AnyFunction>(function));
-  }
-  real_functions_complete = complete;
-  real_functions_filled.store(true, std::memory_order_release);
-  return real_functions;
+  return filled(glvnd_functions, &glvnd_function, false);
 }
 
 const char* own_folder() {
@@ -208,7 +260,7 @@ void* own_entry(const char* name) {
   void* handle = self.load(std::memory_order_acquire);
   if (handle == nullptr) {
     Dl_info info;
-    if (dladdr(&glx_library, &info) == 0 || info.dli_fname == nullptr) return nullptr;
+    if (dladdr(&libraries, &info) == 0 || info.dli_fname == nullptr) return nullptr;
     handle = real_dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD);
     if (handle == nullptr) return nullptr;
     self.store(handle, std::memory_order_release);
@@ -219,8 +271,9 @@ void* own_entry(const char* name) {
 void claim_names() {
   static constinit std::atomic_flag claimed{};
   if (claimed.test_and_set()) return;
-  for (const auto& path : stubs.path) {
-    if (path[0] != '\0') real_dlopen(path, RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs a door, no more
+  for (int stub = 0; stub < stub_count; ++stub) {
+    if (stub == osmesa_stub || stubs.path[stub][0] == '\0') continue;
+    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs a door, no more
   }
 }
 

@@ -25,7 +25,8 @@ enum class Phase {
 };
 constexpr int phase_count = 5;
 
-enum class FrameEnd { swap, wait, make_current, destroy };
+/// `finish` ends a frame where there is no swap: the buffers keep their contents.
+enum class FrameEnd { swap, finish, wait, make_current, destroy };
 
 class Chain;
 

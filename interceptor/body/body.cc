@@ -30,10 +30,10 @@ class Body {
     ThreadState& thread = *door_.thread_state();
     thread.calls = spu::thread_call_counter();
     if (!desktop_gl) {
-      thread.table = door_.driver;
+      thread.table = thread.driver;
       return;
     }
-    chain_of(context, share).make_current();
+    chain_of(context, share, *thread.driver).make_current();
   }
 
   void context_destroyed(std::uintptr_t context) {
@@ -65,14 +65,14 @@ class Body {
     spu::Chain chain;
   };
 
-  spu::Chain& chain_of(std::uintptr_t context, std::uintptr_t share) {
+  spu::Chain& chain_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
     const std::scoped_lock lock(mutex_);
     auto& member = contexts_[context];
     if (!member) {
       const auto relative = contexts_.find(share);
       auto group = relative != contexts_.end() && relative->second ? relative->second->group
                                                                    : std::make_shared<spu::ShareGroup>();
-      member.reset(new Member{group, spu::Chain(*door_.driver, group, &install)});
+      member.reset(new Member{group, spu::Chain(driver, group, &install)});
       if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
         fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
       }
@@ -103,7 +103,10 @@ void guarded(Action action) noexcept {
     action();
   } catch (const std::exception& error) {
     fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
-    if (body != nullptr) body->door().thread_state()->table = body->door().driver;
+    if (body != nullptr) {
+      ThreadState& thread = *body->door().thread_state();
+      thread.table = thread.driver;
+    }
   }
 }
 
@@ -132,8 +135,19 @@ void before_frame_end(FrameEnd) {
   });
 }
 
+spu::FrameEnd frame_end(FrameEnd kind) {
+  switch (kind) {
+    case FrameEnd::swap:
+      return spu::FrameEnd::swap;
+    case FrameEnd::finish:
+      return spu::FrameEnd::finish;
+    default:
+      return spu::FrameEnd::wait;
+  }
+}
+
 void after_frame_end(FrameEnd kind) {
-  guarded([&] { body->frame_ended(kind == FrameEnd::swap ? spu::FrameEnd::swap : spu::FrameEnd::wait); });
+  guarded([&] { body->frame_ended(frame_end(kind)); });
 }
 
 constinit BodyServices services;
@@ -149,7 +163,7 @@ constinit BodyServices services;
 extern "C" [[gnu::visibility("default")]] const understudy::interceptor::BodyServices* understudy_open_body(
     const understudy::interceptor::DoorServices* door) {
   using namespace understudy::interceptor;
-  if (door == nullptr || door->abi != body_abi || door->driver == nullptr) return nullptr;
+  if (door == nullptr || door->abi != body_abi) return nullptr;
   try {
     understudy::spu::Options options = understudy::spu::options_from_environment();
     if (options.disable) return nullptr;

@@ -586,9 +586,9 @@ void VolumeUnit::depth_cleared() {
 }
 
 void VolumeUnit::frame_ended(FrameEnd kind) {
-  if (kind != FrameEnd::swap) return;
+  if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   // After a swap the depth buffer's contents are undefined.
-  if (depth_watched_ != 0) depth_cleared();
+  if (kind == FrameEnd::swap && depth_watched_ != 0) depth_cleared();
   ++frames_;
   frame_.time_ms = milliseconds_since(frame_started_);
   count_frame(frame_);

@@ -11,13 +11,15 @@ using understudy::spu::DispatchTable;
 namespace {
 
 DoorServices door;
-DispatchTable table;
+thread_local DispatchTable table;
 thread_local std::uint64_t calls = 0;
 
 const char* text(FrameEnd kind) {
   switch (kind) {
     case FrameEnd::swap:
       return "swap";
+    case FrameEnd::finish:
+      return "finish";
     case FrameEnd::wait:
       return "wait";
     case FrameEnd::make_current:
@@ -28,21 +30,36 @@ const char* text(FrameEnd kind) {
   return "?";
 }
 
+const char* text(WindowSystem system) {
+  switch (system) {
+    case WindowSystem::glx:
+      return "glx";
+    case WindowSystem::egl:
+      return "egl";
+    case WindowSystem::osmesa:
+      return "osmesa";
+  }
+  return "?";
+}
+
 void clear(GLbitfield mask) {
   say("body: glClear\n");
-  door.driver->Clear(mask);
+  door.thread_state()->driver->Clear(mask);
 }
 void flush() {
   say("body: glFlush\n");
-  door.driver->Flush();
+  door.thread_state()->driver->Flush();
 }
 
 void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                      std::uintptr_t drawable) {
-  say("body: current %lu share %lu %s %s drawable %lu\n", context, share,
-      system == WindowSystem::glx ? "glx" : "egl", desktop_gl ? "desktop" : "es", drawable);
+  say("body: current %lu share %lu %s %s drawable %lu\n", context, share, text(system),
+      desktop_gl ? "desktop" : "es", drawable);
   ThreadState& thread = *door.thread_state();
-  thread.table = desktop_gl ? &table : door.driver;
+  table = *thread.driver;
+  table.Clear = &clear;
+  table.Flush = &flush;
+  thread.table = desktop_gl ? &table : thread.driver;
   thread.calls = &calls;
 }
 void context_leaving() {
@@ -68,8 +85,5 @@ DRIVER_FUNCTION const BodyServices* understudy_open_body(const DoorServices* ser
   say("body: open\n");
   if (std::getenv("TEST_BODY_REFUSES") != nullptr) return nullptr;
   door = *services_of_door;
-  table = *door.driver;
-  table.Clear = &clear;
-  table.Flush = &flush;
   return &services;
 }

@@ -7,6 +7,9 @@ namespace {
 
 thread_local Chain* current_chain = nullptr;
 
+constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watching, Phase::deferring,
+                                                       Phase::owing, Phase::compiling};
+
 }  // namespace
 
 Chain::Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
@@ -31,20 +34,100 @@ void Chain::release_current() {
   current_chain = nullptr;
 }
 
+void Chain::add(std::unique_ptr<Unit> unit) {
+  unit->place_ = units_.size();
+  const char* tag = unit->tag_address();
+  units_.push_back({tag, std::move(unit)});
+}
+
 void Chain::build(Phase phase) const {
-  auto& tables = tables_[int(phase)];
+  auto& tables = tables_[std::size_t(phase)];
   tables.resize(units_.size());
-  for (std::size_t u = units_.size(); u-- > 0;) {
-    const DispatchTable& next = u + 1 < units_.size() ? *tables[u + 1] : driver_;
-    tables[u] = std::make_unique<DispatchTable>(next);
-    units_[u]->fill(phase, *tables[u]);
+  for (std::size_t place = units_.size(); place-- > 0;) {
+    const DispatchTable& next = below(place, phase);
+    // A table stays where it is for ever: threads and units hold its address.
+    if (!tables[place]) tables[place] = std::make_unique<DispatchTable>();
+    DispatchTable& face = *tables[place];
+    face = next;
+    units_[place].unit->fill(phase, face);
+    for (std::size_t i = 0; i < call_count; ++i) {
+      if (slot(next, CallId(i)) == nullptr) set_slot(face, CallId(i), nullptr);
+    }
+    for (Replacement& replacement : replacements_) {
+      if (replacement.place != place) continue;
+      note_original(replacement, phase);
+      set_slot(face, replacement.call, replacement.function);
+    }
   }
+}
+
+void Chain::note_original(Replacement& replacement, Phase phase) const {
+  const AnyFunction own = slot(*tables_[std::size_t(phase)][replacement.place], replacement.call);
+  const bool inherited = own == slot(below(replacement.place, phase), replacement.call);
+  replacement.originals[std::size_t(phase)] = {inherited, own};
+}
+
+std::vector<Chain::Replacement>::iterator Chain::find_replacement(const Unit& unit, CallId call) {
+  return std::find_if(replacements_.begin(), replacements_.end(), [&](const Replacement& replacement) {
+    return replacement.place == unit.place_ && replacement.call == call;
+  });
+}
+
+void Chain::set_inherited(std::size_t place, Phase phase, CallId call, AnyFunction function) {
+  const auto& tables = tables_[std::size_t(phase)];
+  const AnyFunction before = slot(*tables[place], call);
+  set_slot(*tables[place], call, function);
+  while (place-- > 0 && slot(*tables[place], call) == before) set_slot(*tables[place], call, function);
+}
+
+void Chain::replace_slot(const Unit& unit, CallId call, AnyFunction function) {
+  auto found = find_replacement(unit, call);
+  const bool first = found == replacements_.end();
+  if (first) found = replacements_.insert(found, {unit.place_, call, function, {}});
+  found->function = function;
+  for (const Phase phase : all_phases) {
+    if (!built(phase)) continue;
+    if (first) note_original(*found, phase);
+    set_inherited(unit.place_, phase, call, function);
+  }
+}
+
+void Chain::restore_slot(const Unit& unit, CallId call) {
+  const auto found = find_replacement(unit, call);
+  if (found == replacements_.end()) return;
+  for (const Phase phase : all_phases) {
+    if (!built(phase)) continue;
+    const Original& original = found->originals[std::size_t(phase)];
+    set_inherited(unit.place_, phase, call,
+                  original.inherited ? slot(below(unit.place_, phase), call) : original.own);
+  }
+  replacements_.erase(found);
+}
+
+void Chain::refill() {
+  for (const Phase phase : all_phases) {
+    if (built(phase)) build(phase);
+  }
+}
+
+const DispatchTable& Chain::below(std::size_t place, Phase phase) const {
+  return place + 1 < units_.size() ? *tables_[std::size_t(phase)][place + 1] : driver_;
+}
+
+const DispatchTable& Chain::below(const Unit& unit, Phase phase) const {
+  if (!built(phase)) build(phase);
+  return below(unit.place_, phase);
+}
+
+const DispatchTable& Chain::face(const Unit& unit, Phase phase) const {
+  if (!built(phase)) build(phase);
+  return *tables_[std::size_t(phase)][unit.place_];
 }
 
 const DispatchTable& Chain::head(Phase phase) const {
   if (units_.empty()) return driver_;
-  if (tables_[int(phase)].empty()) build(phase);
-  return *tables_[int(phase)].front();
+  if (!built(phase)) build(phase);
+  return *tables_[std::size_t(phase)].front();
 }
 
 void Chain::set_phase(Phase phase) {
@@ -52,32 +135,20 @@ void Chain::set_phase(Phase phase) {
   switch_table_(&head(phase));
 }
 
-const DispatchTable& Chain::below(const Unit& unit, Phase phase) const {
-  if (tables_[int(phase)].empty()) build(phase);
-  for (std::size_t u = 0; u + 1 < units_.size(); ++u) {
-    if (units_[u].get() == &unit) return *tables_[int(phase)][u + 1];
-  }
-  return driver_;
-}
-
-const DispatchTable& Chain::face(const Unit& unit, Phase phase) const {
-  if (tables_[int(phase)].empty()) build(phase);
-  for (std::size_t u = 0; u < units_.size(); ++u) {
-    if (units_[u].get() == &unit) return *tables_[int(phase)][u];
-  }
-  return driver_;
-}
-
 void Chain::settle() {
-  for (const auto& unit : units_) unit->settle();
+  for (const Place& place : units_) place.unit->settle();
 }
 
 void Chain::frame_ended(FrameEnd kind) {
-  for (const auto& unit : units_) unit->frame_ended(kind);
+  for (const Place& place : units_) place.unit->frame_ended(kind);
 }
 
 void Chain::abandon() {
-  for (const auto& unit : units_) unit->abandon();
+  for (const Place& place : units_) place.unit->abandon();
+}
+
+void Chain::process_ends() {
+  for (const Place& place : units_) place.unit->process_ends();
 }
 
 }  // namespace understudy::spu

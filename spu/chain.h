@@ -3,14 +3,18 @@
 // A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a
 // unit, starting from a copy of the next unit's: a slot that a unit leaves alone *is* the next unit's pointer,
 // down to the driver's own, and costs nothing. Changing the phase is one store: the thread's entry points read
-// another table.
+// another table. A unit may also replace single slots of its face while the chain runs (Chromium's change of
+// interface): whoever inherited the slot sees the new one at once.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "dispatch/call_id.h"
 #include "dispatch/table.h"
 
 namespace understudy::spu {
@@ -36,7 +40,8 @@ class Unit {
   /// Tells units apart without run-time type information on the way of every call: the address of the type's
   /// `tag`.
   virtual const char* tag_address() const = 0;
-  /// Overrides slots of `table`, which holds the next unit's slots of the same phase.
+  /// Overrides slots of `table`, which holds the next unit's slots of the same phase. Slots that are null
+  /// there, commands that the driver lacks, stay null whatever is put into them.
   virtual void fill(Phase phase, DispatchTable& table) = 0;
   /// Whatever was held back must be in the framebuffer when this returns. The context is current.
   virtual void settle() {}
@@ -44,6 +49,13 @@ class Unit {
   virtual void frame_ended(FrameEnd) {}
   /// The context goes away; it may not be current, so no GL call is allowed.
   virtual void abandon() {}
+  /// The process may end without another word: figures that belong into a file are written. Called by any
+  /// thread.
+  virtual void process_ends() {}
+
+ private:
+  friend class Chain;
+  std::size_t place_ = 0;  ///< in its chain
 };
 
 /// All context shared state lives in the share group; see track/share_group.h.
@@ -63,9 +75,10 @@ class Chain {
   T& add(Arguments&&... arguments) {
     auto unit = std::make_unique<T>(*this, std::forward<Arguments>(arguments)...);
     T& reference = *unit;
-    units_.push_back(std::move(unit));
+    add(std::move(unit));
     return reference;
   }
+  void add(std::unique_ptr<Unit> unit);
 
   /// The chain whose context is current on this thread; null when none is.
   static Chain* current();
@@ -84,26 +97,70 @@ class Chain {
   const DispatchTable& driver() const { return driver_; }
   ShareGroup& group() { return *group_; }
 
+  /// Puts `function` into one slot of the face of `unit`, in all phases. Units above it that inherited the slot
+  /// inherit the new one, those that override it do not notice.
+  void replace_slot(const Unit& unit, CallId call, AnyFunction function);
+  template <class Function>
+  void replace_slot(const Unit& unit, Function DispatchTable::*member,
+                    std::type_identity_t<Function> function) {
+    replace_slot(unit, call_of(member), reinterpret_cast<AnyFunction>(function));
+  }
+  /// Takes that back: the slot is again what fill() makes of it.
+  void restore_slot(const Unit& unit, CallId call);
+  /// Asks every unit to fill its slots anew, for units whose wishes have changed. The tables stay where they
+  /// are.
+  void refill();
+
   void settle();
   void frame_ended(FrameEnd kind);
   void abandon();
+  void process_ends();
 
   /// The unit of type T; null when the chain has none.
   template <class T>
   T* find() const {
-    for (const auto& unit : units_) {
-      if (unit->tag_address() == &T::tag) return static_cast<T*>(unit.get());
+    for (const Place& place : units_) {
+      if (place.tag == &T::tag) return static_cast<T*>(place.unit.get());
     }
     return nullptr;
   }
 
  private:
+  struct Place {
+    const char* tag;  ///< the unit's own; kept here because units are looked up on every call
+    std::unique_ptr<Unit> unit;
+  };
+  /// What a slot was before it was replaced.
+  struct Original {
+    bool inherited;
+    AnyFunction own;  ///< where it was not inherited
+  };
+  struct Replacement {
+    std::size_t place;
+    CallId call;
+    AnyFunction function;
+    std::array<Original, phase_count> originals;  ///< of the phases that are built
+  };
+
+  template <class Function>
+  CallId call_of(Function DispatchTable::*member) const {
+    const auto* slot = reinterpret_cast<const char*>(&(driver_.*member));
+    return CallId((slot - reinterpret_cast<const char*>(&driver_)) / std::ptrdiff_t{sizeof(AnyFunction)});
+  }
+
+  bool built(Phase phase) const { return !tables_[std::size_t(phase)].empty(); }
   void build(Phase phase) const;
+  const DispatchTable& below(std::size_t place, Phase phase) const;
+  std::vector<Replacement>::iterator find_replacement(const Unit& unit, CallId call);
+  void note_original(Replacement& replacement, Phase phase) const;
+  /// Of the unit at `place`, and of the units above it that inherit the slot from there.
+  void set_inherited(std::size_t place, Phase phase, CallId call, AnyFunction function);
 
   const DispatchTable& driver_;
   std::shared_ptr<ShareGroup> group_;
   void (*switch_table_)(const DispatchTable*);
-  std::vector<std::unique_ptr<Unit>> units_;
+  std::vector<Place> units_;
+  mutable std::vector<Replacement> replacements_;
   Phase phase_ = Phase::plain;
   /// tables_[phase][u] is unit u's face; built when the phase is first entered.
   mutable std::array<std::vector<std::unique_ptr<DispatchTable>>, phase_count> tables_;

@@ -1,0 +1,17 @@
+// A chain as a JSON file: {"chain": ["track", {"unit": "trace", "file": "a.ust", "level": 3}, "driver"]}.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "spu/chain_text.h"
+
+namespace understudy::spu {
+
+/// `name` stands for the text in messages. Throws ChainError.
+ChainSettings parse_chain_json(std::string_view json, const std::string& name);
+
+/// Throws ChainError, also when there is no such file or it cannot be a chain.
+ChainSettings read_chain_file(const std::string& path);
+
+}  // namespace understudy::spu

@@ -1,0 +1,53 @@
+// A chain as its user writes it: unit names in order, each with its options in parentheses.
+//
+//   chain  = { unit }
+//   unit   = name [ "(" [ option { "," option } ] ")" ]
+//   option = name [ "=" value ]                           without a value: "on"
+//   value  = characters other than space , ( ) " or, between double quotes, any; there \" is " and \\ is \.
+//
+//   trace(file=a.ust, level=3) track volume driver
+//
+// Which units and options there are is not known here; see assemble.h.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace understudy::spu {
+
+constexpr std::size_t max_chain_bytes = 65536;
+constexpr std::size_t max_chain_units = 64;
+
+/// What is wrong with a chain, where, and what there is instead.
+class ChainError : public std::runtime_error {
+ public:
+  ChainError(const std::string& where, const std::string& what) : std::runtime_error(where + ": " + what) {}
+};
+
+struct OptionSetting {
+  std::string name;
+  std::string value;
+  std::string where;  ///< "chain, character 7"
+};
+
+struct UnitSetting {
+  std::string name;
+  std::vector<OptionSetting> options;
+  std::string where;
+};
+
+using ChainSettings = std::vector<UnitSetting>;
+
+/// Throws ChainError.
+ChainSettings parse_chain(std::string_view text);
+
+/// Text that parse_chain() reads as the same chain.
+std::string chain_text(const ChainSettings& chain);
+
+/// At most forty characters of a user's text, without control characters, to be shown in a message.
+std::string shown(std::string_view text);
+
+}  // namespace understudy::spu

@@ -1,0 +1,8 @@
+#include "spu/driver/driver.h"
+
+namespace understudy::spu {
+
+constinit const UnitDescription driver_description{
+    .name = "driver", .help = "the real OpenGL; every chain ends in it", .standing = Standing::last};
+
+}  // namespace understudy::spu

@@ -1,0 +1,10 @@
+// The end of every chain: the real OpenGL. It is no unit of its own, its slots are the driver's pointers.
+#pragma once
+
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+extern const UnitDescription driver_description;
+
+}  // namespace understudy::spu

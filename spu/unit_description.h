@@ -1,0 +1,37 @@
+// What a unit says about itself, so that chains can be made from text (Chromium's units did the same).
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "spu/chain.h"
+#include "spu/unit_options.h"
+
+namespace understudy::spu {
+
+class RenderSession;
+
+/// What a unit gets when it is made.
+struct UnitPlace {
+  Chain& chain;
+  const OptionValues& options;
+  std::shared_ptr<RenderSession> session;  ///< of the process
+};
+
+enum class Standing {
+  once,        ///< it finds itself by its type, so a chain can hold one
+  repeatable,  ///< any number of times
+  last,        ///< the end of every chain
+};
+
+struct UnitDescription {
+  const char* name;
+  const char* help;  ///< one line
+  std::span<const UnitOption> options = {};
+  Standing standing = Standing::once;
+  const char* needs = nullptr;  ///< a unit that must stand somewhere before it
+  /// Null for what is no unit but the driver.
+  std::unique_ptr<Unit> (*make)(const UnitPlace& place) = nullptr;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,15 @@
+#include "spu/volume/description.h"
+
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+
+constinit const UnitDescription volume_description{
+    .name = "volume",
+    .help = "recognises volumes drawn as slices, and lets the render nodes draw them",
+    .needs = "track",
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      return std::make_unique<VolumeUnit>(place.chain, place.session);
+    }};
+
+}  // namespace understudy::spu

@@ -1,0 +1,9 @@
+#pragma once
+
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+extern const UnitDescription volume_description;
+
+}  // namespace understudy::spu

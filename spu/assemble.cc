@@ -10,14 +10,18 @@
 #include "spu/chain_json.h"
 #include "spu/chain_text.h"
 #include "spu/driver/driver.h"
+#include "spu/pack/pack.h"
 #include "spu/pass/pass.h"
+#include "spu/trace/trace.h"
 #include "spu/track/description.h"
+#include "spu/unpack/unpack.h"
 #include "spu/volume/description.h"
 
 namespace understudy::spu {
 namespace {
 
-constexpr std::array units_by_name = {&driver_description, &pass_description, &track_description,
+constexpr std::array units_by_name = {&pack_description,   &trace_description, &unpack_description,
+                                      &driver_description, &pass_description,  &track_description,
                                       &volume_description};
 
 struct PlannedUnit {
@@ -66,6 +70,16 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
                        fmt::format("{0} needs {1} before it; write \"{1} {0}\"", unit.name, unit.needs));
     }
     planned.push_back({&unit, option_values(setting, unit.options)});
+  }
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    const char* wanted = planned[i].description->leads_to;
+    const auto is_wanted = [&](const PlannedUnit& unit) {
+      return std::string_view(wanted) == unit.description->name;
+    };
+    if (wanted == nullptr || std::any_of(planned.begin() + std::ptrdiff_t(i), planned.end(), is_wanted))
+      continue;
+    throw ChainError(settings[i].where, fmt::format("{0} needs {1} behind it; write \"{0} {1}\"",
+                                                    planned[i].description->name, wanted));
   }
   if (planned.empty() || planned.back().description->standing != Standing::last) {
     throw ChainError(settings.empty() ? "chain" : settings.back().where,

@@ -13,11 +13,13 @@ constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watc
 }  // namespace
 
 Chain::Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
-             void (*switch_table)(const DispatchTable*))
-    : driver_(driver), group_(std::move(group)), switch_table_(switch_table) {}
+             void (*switch_table)(const DispatchTable*), Surroundings surroundings)
+    : driver_(driver), group_(std::move(group)), surroundings_(surroundings), switch_table_(switch_table) {}
 
 Chain::~Chain() {
-  if (current_chain == this) release_current();
+  if (current_chain != this) return;
+  switch_table_(nullptr);
+  current_chain = nullptr;
 }
 
 Chain* Chain::current() {
@@ -27,10 +29,13 @@ Chain* Chain::current() {
 void Chain::make_current() {
   current_chain = this;
   set_phase(phase_);
+  for (const Place& place : units_) place.unit->made_current();
 }
 
 void Chain::release_current() {
-  if (current_chain != nullptr) current_chain->switch_table_(nullptr);
+  if (current_chain == nullptr) return;
+  for (const Place& place : current_chain->units_) place.unit->left();
+  current_chain->switch_table_(nullptr);
   current_chain = nullptr;
 }
 

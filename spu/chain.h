@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -45,6 +46,9 @@ class Unit {
   virtual void fill(Phase phase, DispatchTable& table) = 0;
   /// Whatever was held back must be in the framebuffer when this returns. The context is current.
   virtual void settle() {}
+  /// The chain's context has become current on the calling thread, or stops being it.
+  virtual void made_current() {}
+  virtual void left() {}
   /// A frame ends (after the real swap when `kind` is swap).
   virtual void frame_ended(FrameEnd) {}
   /// The context goes away; it may not be current, so no GL call is allowed.
@@ -61,11 +65,17 @@ class Unit {
 /// All context shared state lives in the share group; see track/share_group.h.
 class ShareGroup;
 
+/// What a context is among the contexts of the process.
+struct Surroundings {
+  std::uint64_t context = 0;      ///< its number
+  std::uint64_t shares_with = 0;  ///< number of one that it shares objects with; 0: none
+};
+
 class Chain {
  public:
   /// `switch_table` installs a table as the calling thread's; the door provides it.
   Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
-        void (*switch_table)(const DispatchTable*));
+        void (*switch_table)(const DispatchTable*), Surroundings surroundings = {});
   ~Chain();
   Chain(const Chain&) = delete;
   Chain& operator=(const Chain&) = delete;
@@ -96,6 +106,7 @@ class Chain {
   const DispatchTable& head(Phase phase) const;
   const DispatchTable& driver() const { return driver_; }
   ShareGroup& group() { return *group_; }
+  const Surroundings& surroundings() const { return surroundings_; }
 
   /// Puts `function` into one slot of the face of `unit`, in all phases. Units above it that inherited the slot
   /// inherit the new one, those that override it do not notice.
@@ -158,6 +169,7 @@ class Chain {
 
   const DispatchTable& driver_;
   std::shared_ptr<ShareGroup> group_;
+  const Surroundings surroundings_;
   void (*switch_table_)(const DispatchTable*);
   std::vector<Place> units_;
   mutable std::vector<Replacement> replacements_;

@@ -72,7 +72,7 @@ class Body {
       const auto relative = contexts_.find(share);
       auto group = relative != contexts_.end() && relative->second ? relative->second->group
                                                                    : std::make_shared<spu::ShareGroup>();
-      member.reset(new Member{group, spu::Chain(driver, group, &install)});
+      member.reset(new Member{group, spu::Chain(driver, group, &install, {context, share})});
       if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
         fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
       }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "dispatch/call_words.h"
+#include "spu/stream/answers.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 
@@ -38,26 +39,6 @@ bool only_asks(CallId call) {
   const std::string_view name = call_name(call);
   if (name.starts_with("glGetUniformLocation")) return false;
   return name.starts_with("glGet") || name.starts_with("glIs") || name.starts_with("glAre");
-}
-
-bool is_location_query(CallId call) {
-  return call == CallId::GetUniformLocation || call == CallId::GetUniformLocationARB;
-}
-
-bool maps_a_buffer(CallId call) {
-  return call == CallId::MapBuffer || call == CallId::MapBufferARB || call == CallId::MapBufferRange ||
-         call == CallId::MapNamedBuffer || call == CallId::MapNamedBufferRange ||
-         call == CallId::MapNamedBufferEXT || call == CallId::MapNamedBufferRangeEXT;
-}
-
-/// Whether what the call answers here must be known when the stream tells what it had answered there.
-bool names_something(CallId call) {
-  const CallShape& shape = call_shape(call);
-  if (shape.result_object != ObjectKind::none || is_location_query(call) || maps_a_buffer(call)) return true;
-  const auto parameters = shape.parameters();
-  return std::any_of(parameters.begin(), parameters.end(), [](const ParameterShape& parameter) {
-    return parameter.pointer == 1 && !parameter.input && parameter.object != ObjectKind::none;
-  });
 }
 
 /// Kinds that contexts of a share group have in common.
@@ -409,7 +390,7 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
     answer_.mapped_bytes = mapped_bytes(call.id, call.words.data(), gl);
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].pointer != 1 || parameters[p].input || parameters[p].object == ObjectKind::none) continue;
+    if (!answers_names(parameters[p])) continue;
     const auto bytes = pointee_bytes(call.id, p, call.words.data());
     if (!bytes || call.words[p] == 0) continue;
     const auto* first = reinterpret_cast<const std::uint32_t*>(address(call.words[p]));
@@ -509,7 +490,7 @@ Decoded Decoder::take_answers(const Record& record) {
   std::size_t at = 2;
   std::size_t output = 0;
   for (const ParameterShape& parameter : shape.parameters()) {
-    if (parameter.pointer != 1 || parameter.input || parameter.object == ObjectKind::none) continue;
+    if (!answers_names(parameter)) continue;
     if (at >= arguments.size() || output >= answer_.names.size()) break;
     const auto there = record.bytes(arguments[at++]);
     const auto& here = answer_.names[output++];

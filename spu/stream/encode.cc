@@ -52,13 +52,6 @@ bool needs_answer(CallId call) noexcept {
   return false;
 }
 
-/// A pointer argument on its way into a record.
-struct Encoder::Argument {
-  Reference reference;
-  std::span<const std::byte> bytes;  ///< what `reference` is to point at, when its kind is inside
-  std::vector<std::byte> owned;      ///< where bytes point, when they are ours
-};
-
 Encoder::Encoder(const DispatchTable& questions, std::function<void()> before_question)
     : questions_(questions), before_question_(std::move(before_question)) {
   arguments_.reserve(max_parameters);
@@ -82,6 +75,7 @@ void Encoder::follow_begin_and_end(CallId call, const std::uint64_t* words, Reco
       inside_begin_ = true;
       elements_since_begin_ = {};
       begin_position_ = to.words().size();
+      begin_generation_ = to.generation();
       break;
     case CallId::End:
       inside_begin_ = false;
@@ -292,7 +286,7 @@ void Encoder::encode(CallId call, const std::uint64_t* words, Records& to) {
     write(call, words, arguments_, to);
   }
   if (between_events) to.begin(event::arrays_end);
-  if (ended && !elements_since_begin_.empty()) {
+  if (ended && !elements_since_begin_.empty() && begin_generation_ == to.generation()) {
     insert_arrays_before_begin(to);
     elements_since_begin_ = {};
   }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "dispatch/call_shape.h"
@@ -36,7 +37,12 @@ class Encoder {
   bool inside_begin() const { return inside_begin_; }
 
  private:
-  struct Argument;
+  /// A pointer argument on its way into a record.
+  struct Argument {
+    Reference reference;
+    std::span<const std::byte> bytes;  ///< what `reference` is to point at, when its kind is inside
+    std::vector<std::byte> owned;      ///< where bytes point, when they are ours
+  };
 
   GLint ask(GLenum name);
   const DispatchTable& ask();
@@ -59,6 +65,7 @@ class Encoder {
   std::vector<ClientArray> arrays_at_begin_;
   ElementRange elements_since_begin_;
   std::size_t begin_position_ = 0;
+  std::uint64_t begin_generation_ = 0;
 };
 
 /// The `arrays` event for `range` of `arrays`.

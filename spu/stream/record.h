@@ -130,7 +130,10 @@ class Records {
     words_.clear();
     payload_.clear();
     start_ = 0;
+    ++generation_;
   }
+  /// Changes whenever the records are cleared: positions from before mean nothing any more.
+  std::uint64_t generation() const { return generation_; }
 
  private:
   void close() {
@@ -140,6 +143,7 @@ class Records {
   std::vector<std::uint64_t> words_;
   std::vector<std::uint64_t> payload_;
   std::size_t start_ = 0;
+  std::uint64_t generation_ = 0;
   std::size_t threshold_ = payload_threshold;
 };
 

@@ -1,0 +1,26 @@
+// What all contexts of a process that write into one file share, since a process has one such file.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace understudy::spu {
+
+/// The T of this file, made as T(file) when it is first asked for. It lives as long as the process: an
+/// application may make contexts one after another, and may call OpenGL until its very last instruction.
+template <class T>
+T& shared_by_file(const std::string& file) {
+  struct Known {
+    std::mutex mutex;
+    std::map<std::string, std::unique_ptr<T>> by_file;
+  };
+  static Known& known = *new Known;
+  const std::scoped_lock lock(known.mutex);
+  auto& found = known.by_file[file];
+  if (!found) found = std::make_unique<T>(file);
+  return *found;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,55 @@
+// The trace unit: keeps every call of a context in the process's recording, with what it reads and what it
+// answers.
+#pragma once
+
+#include <cstdint>
+
+#include "spu/stream/encode.h"
+#include "spu/trace/mapped_buffers.h"
+#include "spu/trace/recording.h"
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+class Trace final : public Unit {
+ public:
+  static constexpr char tag = 'r';
+
+  Trace(Chain& chain, Recording& recording);
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase phase, DispatchTable& table) override;
+  void made_current() override;
+  void left() override;
+  void frame_ended(FrameEnd kind) override;
+  void abandon() override;
+  void process_ends() override { recording_.flush(true); }
+
+  std::uint64_t call(CallId call, const std::uint64_t* words);
+
+ private:
+  struct Extent {
+    std::uint64_t width = 0;
+    std::uint64_t height = 0;
+    bool operator==(const Extent&) const = default;
+  };
+
+  void introduce_context();
+  void tell_current();
+  void note_viewport(const std::uint64_t* words);
+
+  Chain& chain_;
+  Recording& recording_;
+  Encoder encoder_;
+  MappedBuffers mapped_;
+  bool introduced_ = false;
+  // Nobody but the window system knows how large the drawable is, and asking it may end in an X error. OpenGL's
+  // first viewport is as large, and applications set one of its size whenever it changes: the largest viewport
+  // of a frame onto the drawable is taken for it.
+  Extent drawable_;
+  Extent in_frame_;
+};
+
+extern const UnitDescription trace_description;
+
+}  // namespace understudy::spu

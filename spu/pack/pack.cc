@@ -1,5 +1,10 @@
 #include "spu/pack/pack.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
 #include "dispatch/call_words.h"
 #include "spu/unpack/unpack.h"
 
@@ -11,6 +16,23 @@ struct Packed {
     return Chain::current()->find<Pack>()->call(call, words);
   }
 };
+
+/// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end without
+/// another word: by then the driver is no longer able to draw what it had never heard of.
+bool makes_pixels(CallId call) {
+  static const std::vector<bool> all = [] {
+    constexpr std::array<std::string_view, 14> beginnings = {
+        "glDraw",      "glMultiDraw", "glEnd",   "glCallList", "glRect",     "glClear",     "glBitmap",
+        "glCopyPixel", "glBlit",      "glEvalM", "glAccum",    "glDispatch", "glGenerate", "glArrayElement"};
+    std::vector<bool> table(call_count);
+    for (std::size_t i = 0; i < call_count; ++i) {
+      const std::string_view name = call_name(CallId(i));
+      table[i] = std::any_of(beginnings.begin(), beginnings.end(), [&](auto start) { return name.starts_with(start); });
+    }
+    return table;
+  }();
+  return all[std::size_t(call)];
+}
 
 constexpr UnitOption options[] = {{.name = "block",
                                    .type = OptionType::integer,
@@ -30,7 +52,8 @@ void Pack::fill(Phase, DispatchTable& table) {
 
 std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
   encoder_.encode(call, words, records_);
-  const bool wanted = needs_answer(call) || call == CallId::Flush || call == CallId::Finish;
+  const bool wanted = needs_answer(call) || call == CallId::Flush || call == CallId::Finish ||
+                      (makes_pixels(call) && !encoder_.inside_begin());
   // Between glBegin and glEnd the block stays open: what follows may have to be put before glBegin.
   const bool full =
       records_.words().size() + records_.payload().size() >= block_words_ && !encoder_.inside_begin();
@@ -38,8 +61,11 @@ std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
 }
 
 std::uint64_t Pack::hand_on() {
-  if (records_.empty()) return 0;
+  // A unit behind us may settle the chain while our calls are being made.
+  if (records_.empty() || handing_on_) return 0;
+  handing_on_ = true;
   const std::uint64_t result = chain_.find<Unpack>()->make(records_);
+  handing_on_ = false;
   records_.clear();
   return result;
 }

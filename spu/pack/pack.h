@@ -27,6 +27,7 @@ class Pack final : public Unit {
   const std::size_t block_words_;
   Records records_;
   Encoder encoder_;
+  bool handing_on_ = false;
 };
 
 extern const UnitDescription pack_description;

@@ -154,6 +154,9 @@ void include(ElementRange& range, std::int64_t first, std::int64_t last) {
 
 /// Indices that mean "start a new primitive" name no vertex.
 std::optional<std::uint32_t> restart_index(const DispatchTable& gl, std::size_t index_size) {
+  // NV_primitive_restart, which is older, has names of its own and counts as client state.
+  if (gl.PrimitiveRestartIndexNV != nullptr && gl.IsEnabled(GL_PRIMITIVE_RESTART_NV))
+    return std::uint32_t(integer(gl, GL_PRIMITIVE_RESTART_INDEX_NV));
   if (gl.PrimitiveRestartIndex == nullptr) return std::nullopt;
   if (gl.IsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX))
     return std::uint32_t(std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * index_size));

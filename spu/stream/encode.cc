@@ -73,22 +73,36 @@ void Encoder::follow_begin_and_end(CallId call, const std::uint64_t* words, Reco
     case CallId::Begin:
       if (inside_begin_) break;
       inside_begin_ = true;
+      list_leaves_ = true;
       elements_since_begin_ = {};
       begin_position_ = to.words().size();
       begin_generation_ = to.generation();
       break;
     case CallId::End:
       inside_begin_ = false;
+      list_leaves_ = false;
       break;
     case CallId::NewList:
-      compiling_ = true;
-      began_before_list_ = inside_begin_ && GLenum(words[1]) == GL_COMPILE_AND_EXECUTE;
+      list_ = GLuint(words[0]);
+      list_only_compiles_ = GLenum(words[1]) == GL_COMPILE;
+      inside_before_list_ = inside_begin_;
+      list_leaves_.reset();
       break;
     case CallId::EndList:
-      // What a list holds has not happened; it may begin something that another list ends.
-      compiling_ = false;
-      inside_begin_ = began_before_list_;
+      // What a list holds has happened only if it was executed as well.
+      if (list_only_compiles_) inside_begin_ = inside_before_list_;
+      list_effects_[list_] = list_leaves_;
+      list_only_compiles_ = false;
       break;
+    case CallId::CallList: {
+      const auto effect = list_effects_.find(GLuint(words[0]));
+      if (effect == list_effects_.end() || !effect->second) break;
+      inside_begin_ = *effect->second;
+      list_leaves_ = effect->second;
+      elements_since_begin_ = {};
+      begin_generation_ = ~std::uint64_t(0);
+      break;
+    }
     default:
       break;
   }

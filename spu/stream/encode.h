@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,8 +60,12 @@ class Encoder {
   std::function<void()> before_question_;
   std::vector<Argument> arguments_;  ///< kept for its memory
   bool inside_begin_ = false;
-  bool began_before_list_ = false;
-  bool compiling_ = false;
+  // Display lists may begin what others end. What each leaves behind, once executed: inside, outside, or as it was.
+  std::map<GLuint, std::optional<bool>> list_effects_;
+  GLuint list_ = 0;  ///< being defined
+  std::optional<bool> list_leaves_;
+  bool list_only_compiles_ = false;
+  bool inside_before_list_ = false;
   /// The application pointed an array at its own memory at least once: draws must look.
   bool client_memory_ = false;
   std::vector<ClientArray> arrays_at_begin_;

@@ -10,8 +10,11 @@
 #include "spu/chain_json.h"
 #include "spu/chain_text.h"
 #include "spu/driver/driver.h"
+#include "spu/null/null.h"
 #include "spu/pack/pack.h"
 #include "spu/pass/pass.h"
+#include "spu/perf/perf.h"
+#include "spu/print/print.h"
 #include "spu/trace/trace.h"
 #include "spu/track/description.h"
 #include "spu/unpack/unpack.h"
@@ -20,9 +23,9 @@
 namespace understudy::spu {
 namespace {
 
-constexpr std::array units_by_name = {&pack_description,   &trace_description, &unpack_description,
-                                      &driver_description, &pass_description,  &track_description,
-                                      &volume_description};
+constexpr std::array units_by_name = {
+    &driver_description, &null_description,  &pack_description,  &pass_description,   &perf_description,
+    &print_description,  &trace_description, &track_description, &unpack_description, &volume_description};
 
 struct PlannedUnit {
   const UnitDescription* description;

@@ -72,7 +72,9 @@ constexpr std::array rows{
         set_switch<&Options::debug_tint>},
     Row{{"", "UNDERSTUDY_DISABLE", "", "off", "leave every call to the real OpenGL"},
         set_switch<&Options::disable>},
-    Row{{"", "UNDERSTUDY_CHAIN", "NAMES", "track volume driver", "the stream processing units, first to last"},
+    Row{{"--chain", "UNDERSTUDY_CHAIN", "TEXT", "track volume driver",
+         "the stream processing units, first to last, with their options, or @FILE.json; `understudy units` "
+         "lists them"},
         set_text<&Options::chain>},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},

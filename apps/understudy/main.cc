@@ -8,6 +8,7 @@
 #include "apps/understudy/doctor.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
+#include "apps/understudy/units.h"
 
 namespace launcher = understudy::launcher;
 
@@ -22,6 +23,7 @@ int main(int argc, char** argv) try {
   launcher::add_serve(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);
+  launcher::add_units(app, chosen);
   try {
     app.parse(static_cast<int>(line.own.size()), line.own.data());
   } catch (const CLI::ParseError& error) {

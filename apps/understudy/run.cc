@@ -18,6 +18,7 @@
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "spu/assemble.h"
 #include "spu/options.h"
 #include "spu/report/report.h"
 
@@ -53,6 +54,7 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
   Environment environment = current_environment();
   for (const auto& [name, value] : arguments.settings) environment[name] = value;
   environment["UNDERSTUDY_RUN_DIR"] = folder.path();
+  environment["UNDERSTUDY_CHAIN"] = options.chain;
   // The report is the launcher's to write, from all processes of the run.
   environment.erase("UNDERSTUDY_REPORT");
   if (!options.save_frames.empty())
@@ -141,7 +143,13 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say("which viewer? Put -- before its command: understudy run [options] -- viewer args…");
     return usage_error;
   }
-  const spu::Options options = options_of(arguments);
+  spu::Options options = options_of(arguments);
+  try {
+    options.chain = spu::resolved_chain(options.chain, std::filesystem::current_path());
+  } catch (const spu::ChainError& error) {
+    say(error.what());
+    return usage_error;
+  }
   if (!options.save_frames.empty()) std::filesystem::create_directories(options.save_frames);
 
   const Installation installation = this_installation();

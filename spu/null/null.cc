@@ -1,0 +1,23 @@
+#include "spu/null/null.h"
+
+#include "dispatch/call_words.h"
+
+namespace understudy::spu {
+namespace {
+
+struct Swallow {
+  static std::uint64_t call(CallId, const std::uint64_t*) { return 0; }
+};
+
+}  // namespace
+
+void Null::fill(Phase, DispatchTable& table) {
+  AsWords<Swallow>::fill(table);
+}
+
+constinit const UnitDescription null_description{
+    .name = "null",
+    .help = "swallows every call: results are 0, what OpenGL would write stays untouched",
+    .make = [](const UnitPlace&) -> std::unique_ptr<Unit> { return std::make_unique<Null>(); }};
+
+}  // namespace understudy::spu

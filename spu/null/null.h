@@ -1,0 +1,18 @@
+// The null unit: swallows every call. What the application's own half of the work costs is what is left.
+#pragma once
+
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+class Null final : public Unit {
+ public:
+  static constexpr char tag = '0';
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase phase, DispatchTable& table) override;
+};
+
+extern const UnitDescription null_description;
+
+}  // namespace understudy::spu

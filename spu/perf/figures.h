@@ -1,0 +1,54 @@
+// What is counted of calls and of frames, and how it is told.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "dispatch/call_id.h"
+
+namespace understudy::spu {
+
+/// Counted by one thread, read by any.
+class Count {
+ public:
+  Count() = default;
+  Count(const Count& other) { set(other.get()); }
+  Count& operator=(const Count& other) {
+    set(other.get());
+    return *this;
+  }
+  void add(std::uint64_t amount) { set(get() + amount); }
+  void set(std::uint64_t value) { value_.store(value, std::memory_order_relaxed); }
+  std::uint64_t get() const { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> value_{0};
+};
+
+struct CallFigures {
+  Count calls;
+  Count nanoseconds;  ///< in everything below the unit, with the reading of the clock
+  Count bytes;        ///< that the call's pointers stand for
+
+  void add(const CallFigures& other);
+  void keep_largest(const CallFigures& other);
+};
+
+struct Figures {
+  std::array<CallFigures, call_count> by_call;
+  Count frames;             ///< that ended
+  CallFigures in_frames;    ///< the sum over frames that ended
+  CallFigures largest;      ///< each figure of the frame that had most of it
+  Count frame_nanoseconds;  ///< from frame end to frame end
+
+  void add(const Figures& other);
+  CallFigures total() const;
+};
+
+/// Calls that were made, the costliest first, as a table for people.
+std::string figures_text(const Figures& figures);
+std::string figures_json(const Figures& figures);
+
+}  // namespace understudy::spu

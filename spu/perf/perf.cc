@@ -1,0 +1,80 @@
+#include "spu/perf/perf.h"
+
+#include "dispatch/call_words.h"
+#include "spu/argument_bytes.h"
+#include "spu/shared_by_file.h"
+
+namespace understudy::spu {
+namespace {
+
+std::uint64_t nanoseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::uint64_t(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace
+
+struct Perf::Counted {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    Perf& perf = *Chain::current()->find<Perf>();
+    const std::uint64_t bytes = call_bytes(call, words);
+    const Clock::time_point start = Clock::now();
+    const std::uint64_t result = invoke(perf.chain_.below(perf), call, words);
+    const std::uint64_t nanoseconds = nanoseconds_since(start);
+    for (CallFigures* figures : {&perf.figures_.by_call[std::size_t(call)], &perf.frame_}) {
+      figures->calls.add(1);
+      figures->nanoseconds.add(nanoseconds);
+      figures->bytes.add(bytes);
+    }
+    return result;
+  }
+};
+
+Perf::Perf(Chain& chain, const std::string& file)
+    : chain_(chain), file_(shared_by_file<PerfFile>(file)), figures_(file_.begin_context()) {}
+
+Perf::~Perf() {
+  abandon();
+}
+
+void Perf::fill(Phase, DispatchTable& table) {
+  AsWords<Counted>::fill(table);
+}
+
+void Perf::frame_ended(FrameEnd kind) {
+  if (kind != FrameEnd::swap) return;
+  figures_.frame_nanoseconds.add(nanoseconds_since(frame_started_));
+  frame_started_ = Clock::now();
+  figures_.frames.add(1);
+  figures_.in_frames.add(frame_);
+  figures_.largest.keep_largest(frame_);
+  frame_ = {};
+  file_.write_when_due();
+}
+
+void Perf::abandon() {
+  if (abandoned_) return;
+  abandoned_ = true;
+  file_.end_context(figures_);
+}
+
+namespace {
+
+constexpr UnitOption perf_options[] = {{.name = "file",
+                                        .type = OptionType::file,
+                                        .fallback = "",
+                                        .help = "the table goes here, as JSON when the name ends in .json; "
+                                                "without a file to the standard error output "
+                                                "at the end"}};
+
+}  // namespace
+
+constinit const UnitDescription perf_description{
+    .name = "perf",
+    .help = "counts calls, their time and their bytes, by command and by frame",
+    .options = perf_options,
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      return std::make_unique<Perf>(place.chain, place.options.text("file"));
+    }};
+
+}  // namespace understudy::spu

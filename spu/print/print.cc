@@ -1,0 +1,112 @@
+#include "spu/print/print.h"
+
+#include <fnmatch.h>
+
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "dispatch/call_words.h"
+#include "spu/print/call_text.h"
+#include "spu/shared_by_file.h"
+
+namespace understudy::spu {
+
+PrintFile::PrintFile(const std::string& name) : file_(name.empty() ? stderr : std::fopen(name.c_str(), "we")) {
+  if (file_ != nullptr) return;
+  fmt::print(stderr, "understudy: print: cannot write {}: {}; printing here instead\n", name,
+             std::strerror(errno));
+  file_ = stderr;
+}
+
+int PrintFile::begin_context() {
+  const std::scoped_lock lock(mutex_);
+  return ++contexts_;
+}
+
+void PrintFile::line(int context, std::string_view text) {
+  const std::scoped_lock lock(mutex_);
+  // Most applications have one context: only further ones are told apart.
+  if (context > 1) fmt::print(file_, "[context {}] ", context);
+  fmt::print(file_, "{}\n", text);
+  std::fflush(file_);
+}
+
+struct Print::Printed {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    Print& print = *Chain::current()->find<Print>();
+    const DispatchTable& next = print.chain_.below(print);
+    const bool afterwards = shows_outcome(call);
+    if (!afterwards) print.tell(call, words, 0);
+    const std::uint64_t result = invoke(next, call, words);
+    if (afterwards) print.tell(call, words, result);
+    return result;
+  }
+};
+
+Print::Print(Chain& chain, const std::string& file, IntegerRange frames, const std::string& calls)
+    : chain_(chain),
+      file_(shared_by_file<PrintFile>(file)),
+      context_(file_.begin_context()),
+      frames_(frames),
+      wanted_(call_count) {
+  std::istringstream patterns(calls);
+  for (std::string pattern; patterns >> pattern;) {
+    for (std::size_t i = 0; i < call_count; ++i) {
+      if (fnmatch(pattern.c_str(), call_name(CallId(i)), 0) == 0) wanted_[i] = true;
+    }
+  }
+}
+
+void Print::tell(CallId call, const std::uint64_t* words, std::uint64_t result) {
+  line_.clear();
+  append_call(line_, call, words, result);
+  file_.line(context_, {line_.data(), line_.size()});
+}
+
+void Print::fill(Phase, DispatchTable& table) {
+  if (!prints()) return;
+  DispatchTable printing{};
+  AsWords<Printed>::fill(printing);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    if (wanted_[i]) set_slot(table, CallId(i), slot(printing, CallId(i)));
+  }
+}
+
+void Print::frame_ended(FrameEnd kind) {
+  if (kind != FrameEnd::swap) return;
+  const bool printed = prints();
+  if (printed) file_.line(context_, fmt::format("// frame {} ends", frame_));
+  ++frame_;
+  // Frames that are not printed cost nothing: the slots are the next unit's then.
+  if (printed != prints()) chain_.refill();
+}
+
+namespace {
+
+constexpr UnitOption print_options[] = {
+    {.name = "file",
+     .type = OptionType::file,
+     .fallback = "",
+     .help = "the lines go here; without a file to the standard error output"},
+    {.name = "frames",
+     .type = OptionType::range,
+     .fallback = "1-",
+     .help = "the frames that are printed, from 1; the others cost nothing"},
+    {.name = "calls",
+     .type = OptionType::text,
+     .fallback = "*",
+     .help = "the commands that are printed, as shell patterns with spaces between: \"glTex* glBind*\""}};
+
+}  // namespace
+
+constinit const UnitDescription print_description{
+    .name = "print",
+    .help = "writes a line for every call, with the names of its arguments and of their values",
+    .options = print_options,
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      return std::make_unique<Print>(place.chain, place.options.text("file"), place.options.range("frames"),
+                                     place.options.text("calls"));
+    }};
+
+}  // namespace understudy::spu

@@ -53,11 +53,19 @@ class Body {
     if (reports_itself()) spu::write_report_when_due(options_.report);
   }
 
+  /// Another thread may be in a context's chain, or holds the lock for ever: then its figures stay as last
+  /// written.
+  void process_ends() {
+    if (reports_itself()) spu::write_report_now(options_.report);
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return;
+    for (const auto& [context, member] : contexts_) {
+      if (member) member->chain.process_ends();
+    }
+  }
+
   /// Without a launcher nobody else writes the report.
   bool reports_itself() const { return !options_.report.empty() && options_.run_dir.empty(); }
-  void write_report() const {
-    if (reports_itself()) spu::write_report_now(options_.report);
-  }
 
  private:
   struct Member {
@@ -152,9 +160,9 @@ void after_frame_end(FrameEnd kind) {
 
 constinit BodyServices services;
 
-/// A courtesy: a program that ends in order leaves its last half second in the report too.
+/// A courtesy: a program that ends in order leaves its last half second in the report and in units' files too.
 [[gnu::destructor]] void at_library_end() {
-  if (body != nullptr) body->write_report();
+  if (body != nullptr) guarded([] { body->process_ends(); });
 }
 
 }  // namespace

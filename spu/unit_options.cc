@@ -131,8 +131,8 @@ OptionValues option_values(const UnitSetting& unit, std::span<const UnitOption> 
       const std::string meant = nearest_name(setting.name, names);
       throw ChainError(
           setting.where,
-          fmt::format("{} has no option {}{}. {}", unit.name, shown(setting.name),
-                      meant.empty() ? "" : "; did you mean " + meant + "?",
+          fmt::format("{} has no option {}{} {}", unit.name, shown(setting.name),
+                      meant.empty() ? "." : "; did you mean " + meant + "?",
                       names.empty() ? "It has none" : fmt::format("It has: {}", fmt::join(names, ", "))));
     }
     if (std::find(given.begin(), given.end(), setting.name) != given.end()) {

@@ -69,9 +69,12 @@ void append_value(Text& text, ValueType type, std::uint16_t group, std::uint64_t
       return append_enumerant(text, std::uint32_t(word), group);
     case ValueType::bitfield:
       return append_bits(text, std::uint32_t(word), group);
+    case ValueType::int32:
+      // Commands of OpenGL 1.0 take some enumerants as integers, 1 to 4 among them as numbers of components.
+      if (group != 0 && std::int64_t(word) > 0xff) return append_enumerant(text, std::uint32_t(word), group);
+      [[fallthrough]];
     case ValueType::int8:
     case ValueType::int16:
-    case ValueType::int32:
     case ValueType::int64:
       return append(text, "{}", std::int64_t(word));
     case ValueType::uint8:

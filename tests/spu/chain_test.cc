@@ -1,41 +1,33 @@
 #include "spu/chain.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
+
 #include "dispatch/call_id.h"
-#include "dispatch/pass_through.h"
+#include "spu/assemble.h"
+#include "spu/pass/pass.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
+#include "tests/spu/mock_driver.h"
 
 namespace understudy::spu {
 namespace {
 
-int driver_clears = 0;
+using ::testing::ElementsAre;
+using testing::install;
+using testing::installed;
+using testing::MockDriver;
+
+constexpr std::array phases = {Phase::plain, Phase::watching, Phase::deferring, Phase::owing, Phase::compiling};
+
 int unit_clears = 0;
-const DispatchTable* installed = nullptr;
-
-void APIENTRY driver_clear(GLbitfield) {
-  ++driver_clears;
-}
-void install(const DispatchTable* table) {
-  installed = table;
-}
-
-/// A driver without a driver: every slot is distinct from null, glClear counts.
-DispatchTable mock_driver() {
-  struct Nowhere {
-    static const DispatchTable& before(CallId) { return *installed; }
-  };
-  DispatchTable table;
-  PassThrough<Nowhere>::fill(table);
-  table.Clear = driver_clear;
-  return table;
-}
 
 class CountsClears final : public Unit {
  public:
   static constexpr char tag = 'c';
-  explicit CountsClears(Chain&) {}
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override {
     if (phase == Phase::watching) table.Clear = clear;
@@ -47,40 +39,195 @@ class CountsClears final : public Unit {
   }
 };
 
-TEST(Chain, ASlotThatNobodyOverridesIsTheDriversPointer) {
-  const DispatchTable driver = mock_driver();
-  Chain chain(driver, std::make_shared<ShareGroup>(), install);
-  chain.add<CountsClears>();
+/// Overrides glFinish in all phases.
+class OverridesFinish final : public Unit {
+ public:
+  static constexpr char tag = 'f';
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase, DispatchTable& table) override { table.Finish = finish; }
+  static void APIENTRY finish() {}
+};
+
+void APIENTRY another_clear(GLbitfield) {}
+void APIENTRY third_clear(GLbitfield) {}
+void APIENTRY another_finish() {}
+
+template <class T>
+T& add(Chain& chain) {
+  auto unit = std::make_unique<T>();
+  T& reference = *unit;
+  chain.add(std::move(unit));
+  return reference;
+}
+
+class ChainTest : public ::testing::Test {
+ protected:
+  MockDriver mock_;
+  Chain chain_{mock_.table(), std::make_shared<ShareGroup>(), install};
+};
+
+TEST_F(ChainTest, ASlotThatNobodyOverridesIsTheDriversPointer) {
+  add<CountsClears>(chain_);
   for (std::size_t i = 0; i < call_count; ++i) {
-    ASSERT_EQ(slot(chain.head(Phase::plain), CallId(i)), slot(driver, CallId(i))) << call_name(CallId(i));
+    ASSERT_EQ(slot(chain_.head(Phase::plain), CallId(i)), slot(mock_.table(), CallId(i)))
+        << call_name(CallId(i));
     if (CallId(i) == CallId::Clear) continue;
-    ASSERT_EQ(slot(chain.head(Phase::watching), CallId(i)), slot(driver, CallId(i))) << call_name(CallId(i));
+    ASSERT_EQ(slot(chain_.head(Phase::watching), CallId(i)), slot(mock_.table(), CallId(i)))
+        << call_name(CallId(i));
   }
 }
 
-TEST(Chain, APhaseChangesWhatTheApplicationCalls) {
-  const DispatchTable driver = mock_driver();
-  Chain chain(driver, std::make_shared<ShareGroup>(), install);
-  chain.add<CountsClears>();
-  chain.make_current();
-  driver_clears = unit_clears = 0;
-  installed->Clear(0);
-  EXPECT_EQ(driver_clears, 1);
+// Units that do nothing cost nothing, however many there are: what the application calls is the driver's own.
+TEST_F(ChainTest, PassingUnitsLeaveTheDriversPointersToTheApplication) {
+  Chain tracked(mock_.table(), std::make_shared<ShareGroup>(), install);
+  ASSERT_EQ(assemble(tracked, "track driver", nullptr).value_or(""), "");
+  ASSERT_EQ(assemble(chain_, "pass pass pass track driver", nullptr).value_or(""), "");
+  for (const Phase phase : phases) {
+    std::size_t drivers_own = 0;
+    for (std::size_t i = 0; i < call_count; ++i) {
+      ASSERT_EQ(slot(chain_.head(phase), CallId(i)), slot(tracked.head(phase), CallId(i)))
+          << call_name(CallId(i));
+      if (slot(chain_.head(phase), CallId(i)) == slot(mock_.table(), CallId(i))) ++drivers_own;
+    }
+    std::printf("phase %d: %zu of %zu slots are the driver's\n", int(phase), drivers_own, call_count);
+    if (phase != Phase::compiling) {
+      EXPECT_GT(drivers_own, call_count * 9 / 10);
+    }
+  }
+  for (const CallId call : {CallId::Vertex3f, CallId::Uniform1f, CallId::DrawArrays, CallId::PointSize}) {
+    EXPECT_EQ(slot(chain_.head(Phase::plain), call), slot(mock_.table(), call)) << call_name(call);
+  }
+}
+
+TEST_F(ChainTest, APhaseChangesWhatTheApplicationCalls) {
+  add<CountsClears>(chain_);
+  chain_.make_current();
+  unit_clears = 0;
+  installed().Clear(0);
+  EXPECT_EQ(mock_.count(CallId::Clear), 1U);
   EXPECT_EQ(unit_clears, 0);
-  chain.set_phase(Phase::watching);
-  installed->Clear(0);
-  EXPECT_EQ(driver_clears, 2);
+  chain_.set_phase(Phase::watching);
+  installed().Clear(0);
+  EXPECT_EQ(mock_.count(CallId::Clear), 2U);
   EXPECT_EQ(unit_clears, 1);
 }
 
-TEST(Chain, WithoutUnitsTheDriverIsTheChain) {
-  const DispatchTable driver = mock_driver();
-  Chain chain(driver, std::make_shared<ShareGroup>(), install);
-  chain.make_current();
-  EXPECT_EQ(installed, &driver);
+TEST_F(ChainTest, WithoutUnitsTheDriverIsTheChain) {
+  chain_.make_current();
+  EXPECT_EQ(&installed(), &mock_.table());
   Chain::release_current();
-  EXPECT_EQ(installed, nullptr);
   EXPECT_EQ(Chain::current(), nullptr);
+}
+
+TEST_F(ChainTest, WhatTheDriverLacksStaysLacking) {
+  mock_.lacks(CallId::Clear);
+  mock_.lacks(CallId::TexImage3DEXT);
+  ASSERT_EQ(assemble(chain_, "print perf track null driver", nullptr).value_or(""), "");
+  for (const Phase phase : phases) {
+    EXPECT_EQ(chain_.head(phase).Clear, nullptr);
+    EXPECT_EQ(chain_.head(phase).TexImage3DEXT, nullptr);
+    EXPECT_NE(chain_.head(phase).Finish, nullptr);
+  }
+}
+
+TEST_F(ChainTest, AReplacedSlotIsSeenByAllWhoInheritedIt) {
+  add<Pass>(chain_);
+  Unit& middle = add<Pass>(chain_);
+  Unit& low = add<Pass>(chain_);
+  chain_.make_current();
+  const DispatchTable& head = installed();
+  // Some phases are built before the change, the others after it.
+  chain_.head(Phase::watching);
+  chain_.replace_slot(middle, &DispatchTable::Clear, another_clear);
+  EXPECT_EQ(&installed(), &head) << "the table stays where it is";
+  for (const Phase phase : phases) {
+    EXPECT_EQ(chain_.head(phase).Clear, another_clear) << int(phase);
+    EXPECT_EQ(chain_.face(middle, phase).Clear, another_clear) << int(phase);
+    EXPECT_EQ(chain_.face(low, phase).Clear, mock_.table().Clear) << "units below are not concerned";
+    EXPECT_EQ(chain_.head(phase).Finish, mock_.table().Finish) << "nor are other slots";
+  }
+  chain_.replace_slot(middle, &DispatchTable::Clear, third_clear);
+  for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, third_clear);
+  chain_.restore_slot(middle, CallId::Clear);
+  for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, mock_.table().Clear);
+  chain_.restore_slot(middle, CallId::Clear);
+  EXPECT_EQ(head.Clear, mock_.table().Clear) << "what is not replaced is not restored";
+}
+
+TEST_F(ChainTest, AnOverridingUnitHidesAReplacedSlot) {
+  Unit& top = add<Pass>(chain_);
+  Unit& overriding = add<OverridesFinish>(chain_);
+  Unit& low = add<Pass>(chain_);
+  chain_.make_current();
+  chain_.replace_slot(low, &DispatchTable::Finish, another_finish);
+  for (const Phase phase : phases) {
+    EXPECT_EQ(chain_.face(top, phase).Finish, OverridesFinish::finish);
+    EXPECT_EQ(chain_.below(overriding, phase).Finish, another_finish) << "and calls the new one itself";
+  }
+  chain_.replace_slot(overriding, &DispatchTable::Finish, another_finish);
+  EXPECT_EQ(installed().Finish, another_finish);
+  chain_.restore_slot(overriding, CallId::Finish);
+  for (const Phase phase : phases) EXPECT_EQ(chain_.face(top, phase).Finish, OverridesFinish::finish);
+}
+
+// The order in which two units replace and restore the same slot does not matter.
+TEST_F(ChainTest, ARestoredSlotInheritsWhatIsBelowByThen) {
+  Unit& high = add<Pass>(chain_);
+  Unit& low = add<Pass>(chain_);
+  chain_.make_current();
+  chain_.replace_slot(high, &DispatchTable::Clear, another_clear);
+  chain_.replace_slot(low, &DispatchTable::Clear, third_clear);
+  EXPECT_EQ(installed().Clear, another_clear);
+  chain_.restore_slot(high, CallId::Clear);
+  for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, third_clear);
+  chain_.restore_slot(low, CallId::Clear);
+  for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, mock_.table().Clear);
+}
+
+/// Overrides glFlush while it wants to.
+class FlushesAtTimes final : public Unit {
+ public:
+  static constexpr char tag = 'l';
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase, DispatchTable& table) override {
+    if (wants) table.Flush = another_finish;
+  }
+  bool wants = false;
+};
+
+TEST_F(ChainTest, UnitsMayFillTheirSlotsAnew) {
+  add<Pass>(chain_);
+  auto& at_times = add<FlushesAtTimes>(chain_);
+  chain_.make_current();
+  const DispatchTable& head = installed();
+  chain_.replace_slot(at_times, &DispatchTable::Clear, another_clear);
+  at_times.wants = true;
+  chain_.refill();
+  EXPECT_EQ(head.Flush, another_finish);
+  EXPECT_EQ(head.Clear, another_clear) << "replaced slots stay replaced";
+  at_times.wants = false;
+  chain_.refill();
+  EXPECT_EQ(head.Flush, mock_.table().Flush);
+  chain_.restore_slot(at_times, CallId::Clear);
+  EXPECT_EQ(head.Clear, mock_.table().Clear);
+}
+
+TEST_F(ChainTest, NullSwallowsEveryCall) {
+  ASSERT_EQ(assemble(chain_, "null driver", nullptr).value_or(""), "");
+  chain_.make_current();
+  GLuint name = 77;
+  installed().GenTextures(1, &name);
+  EXPECT_EQ(name, 77U);
+  EXPECT_EQ(installed().GetError(), 0U);
+  EXPECT_EQ(installed().GetString(GL_VERSION), nullptr);
+  EXPECT_EQ(installed().MapBuffer(GL_ARRAY_BUFFER, GL_READ_ONLY), nullptr);
+  installed().Vertex3f(1, 2, 3);
+  for (const Phase phase : phases) {
+    for (std::size_t i = 0; i < call_count; ++i) {
+      ASSERT_NE(slot(chain_.head(phase), CallId(i)), slot(mock_.table(), CallId(i))) << call_name(CallId(i));
+    }
+  }
+  EXPECT_THAT(mock_.called(), ElementsAre());
 }
 
 TEST(Calls, AreToldApartByName) {

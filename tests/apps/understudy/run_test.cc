@@ -130,6 +130,35 @@ TEST_F(UnderstudyRun, RefusesAValueThatAnOptionCannotTake) {
   }
 }
 
+TEST_F(UnderstudyRun, ReportsAChainItDoesNotUnderstandBeforeTheViewerStarts) {
+  const Result wrong = understudy("run --chain 'track volme driver' -- echo started");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.output, HasSubstr("chain, character 7: no unit is named volme; did you mean volume?"));
+  EXPECT_THAT(wrong.output, Not(HasSubstr("started")));
+  const Result missing = understudy("run --chain @/none.json -- echo started");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.output, HasSubstr("/none.json: cannot read this chain file"));
+  EXPECT_EQ(shell("UNDERSTUDY_CHAIN=track " UNDERSTUDY_PROGRAM " run -- echo started").status, 2);
+  EXPECT_TRUE(nothing_is_left());
+}
+
+TEST_F(UnderstudyRun, HandsOnAChainThatMeansTheSameInEveryFolder) {
+  std::ofstream(folder_ / "chain.json")
+      << R"({"chain": [{"unit": "perf", "file": "p.json"}, "track", "driver"]})";
+  const std::string command =
+      "cd " + folder_.string() + "; " UNDERSTUDY_PROGRAM " run --chain @chain.json -- env";
+  EXPECT_THAT(shell(command).output,
+              HasSubstr("UNDERSTUDY_CHAIN=perf(file=" + (folder_ / "p.json").string() + ") track driver\n"));
+}
+
+TEST_F(UnderstudyRun, ListsTheUnits) {
+  const Result units = understudy("units");
+  EXPECT_EQ(units.status, 0);
+  EXPECT_THAT(units.output, HasSubstr("\nvolume   "));
+  EXPECT_THAT(units.output, HasSubstr("needs track before it"));
+  EXPECT_THAT(units.output, HasSubstr("frames=a number or a range: 3, 3-10 or 3- [1-]"));
+}
+
 TEST_F(UnderstudyRun, PassesSignalsOnToTheViewer) {
   const fs::path ready = folder_ / "ready";
   const pid_t launcher = fork();

@@ -5,29 +5,12 @@
 #include "spu/stream/pixels.h"
 
 namespace understudy::spu {
-namespace {
-
-std::optional<std::size_t> picture_bytes(const ImageArguments& image, const std::uint64_t* words) {
-  if (image.width == no_argument || image.format == no_argument || image.type == no_argument) return {};
-  PictureShape shape;
-  shape.width = GLsizei(words[image.width]);
-  if (image.height != no_argument) shape.height = GLsizei(words[image.height]);
-  if (image.depth != no_argument) shape.depth = GLsizei(words[image.depth]);
-  shape.format = GLenum(words[image.format]);
-  shape.type = GLenum(words[image.type]);
-  shape.dimensions = image.depth != no_argument ? 3 : 2;
-  return picture_extent(shape, tight_pixels);
-}
-
-}  // namespace
-
 std::optional<std::size_t> argument_bytes(CallId call, std::size_t parameter, const std::uint64_t* words) {
   if (words[parameter] == 0) return 0;
-  const CallShape& shape = call_shape(call);
-  switch (shape.parameters()[parameter].rule) {
+  switch (call_shape(call).parameters()[parameter].rule) {
     case ExtentRule::image:
     case ExtentRule::image_out:
-      return picture_bytes(shape.image, words);
+      return picture_extent(picture_shape(call, words), tight_pixels);
     default:
       return pointee_bytes(call, parameter, words);
   }

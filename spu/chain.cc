@@ -5,38 +5,34 @@
 namespace understudy::spu {
 namespace {
 
-thread_local Chain* current_chain = nullptr;
-
 constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watching, Phase::deferring,
                                                        Phase::owing, Phase::compiling};
 
 }  // namespace
+
+constinit thread_local Chain* Chain::current_ = nullptr;
 
 Chain::Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
              void (*switch_table)(const DispatchTable*), Surroundings surroundings)
     : driver_(driver), group_(std::move(group)), surroundings_(surroundings), switch_table_(switch_table) {}
 
 Chain::~Chain() {
-  if (current_chain != this) return;
+  if (current_ != this) return;
   switch_table_(nullptr);
-  current_chain = nullptr;
-}
-
-Chain* Chain::current() {
-  return current_chain;
+  current_ = nullptr;
 }
 
 void Chain::make_current() {
-  current_chain = this;
+  current_ = this;
   set_phase(phase_);
   for (const Place& place : units_) place.unit->made_current();
 }
 
 void Chain::release_current() {
-  if (current_chain == nullptr) return;
-  for (const Place& place : current_chain->units_) place.unit->left();
-  current_chain->switch_table_(nullptr);
-  current_chain = nullptr;
+  if (current_ == nullptr) return;
+  for (const Place& place : current_->units_) place.unit->left();
+  current_->switch_table_(nullptr);
+  current_ = nullptr;
 }
 
 void Chain::add(std::unique_ptr<Unit> unit) {
@@ -113,15 +109,6 @@ void Chain::refill() {
   for (const Phase phase : all_phases) {
     if (built(phase)) build(phase);
   }
-}
-
-const DispatchTable& Chain::below(std::size_t place, Phase phase) const {
-  return place + 1 < units_.size() ? *tables_[std::size_t(phase)][place + 1] : driver_;
-}
-
-const DispatchTable& Chain::below(const Unit& unit, Phase phase) const {
-  if (!built(phase)) build(phase);
-  return below(unit.place_, phase);
 }
 
 const DispatchTable& Chain::face(const Unit& unit, Phase phase) const {

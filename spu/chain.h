@@ -91,7 +91,7 @@ class Chain {
   void add(std::unique_ptr<Unit> unit);
 
   /// The chain whose context is current on this thread; null when none is.
-  static Chain* current();
+  static Chain* current() { return current_; }
   void make_current();
   static void release_current();
 
@@ -99,7 +99,10 @@ class Chain {
   Phase phase() const { return phase_; }
   /// The table above which `unit` stands, in the current phase and in a given one.
   const DispatchTable& below(const Unit& unit) const { return below(unit, phase_); }
-  const DispatchTable& below(const Unit& unit, Phase phase) const;
+  const DispatchTable& below(const Unit& unit, Phase phase) const {
+    if (!built(phase)) build(phase);
+    return below(unit.place_, phase);
+  }
   /// The table that calls to `unit` come through.
   const DispatchTable& face(const Unit& unit, Phase phase) const;
   /// The table the application sees.
@@ -161,11 +164,15 @@ class Chain {
 
   bool built(Phase phase) const { return !tables_[std::size_t(phase)].empty(); }
   void build(Phase phase) const;
-  const DispatchTable& below(std::size_t place, Phase phase) const;
+  const DispatchTable& below(std::size_t place, Phase phase) const {
+    return place + 1 < units_.size() ? *tables_[std::size_t(phase)][place + 1] : driver_;
+  }
   std::vector<Replacement>::iterator find_replacement(const Unit& unit, CallId call);
   void note_original(Replacement& replacement, Phase phase) const;
   /// Of the unit at `place`, and of the units above it that inherit the slot from there.
   void set_inherited(std::size_t place, Phase phase, CallId call, AnyFunction function);
+
+  static constinit thread_local Chain* current_;
 
   const DispatchTable& driver_;
   std::shared_ptr<ShareGroup> group_;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
 
-A row: name, value and unit, always; ratio_to (another row's name) and ratio = value / its value; rms (error against
-that row's picture), where they apply.
+A row: name, value and unit, always; ratio_to (another row's name), ratio = value / its value and difference = value -
+its value; rms (error against that row's picture), where they apply.
 """
 
 import json
@@ -16,9 +16,10 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
+import calls  # noqa: E402
 import frame  # noqa: E402
 
-BENCHMARKS = {"frame": frame.rows}
+BENCHMARKS = {"frame": frame.rows, "calls": calls.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 
@@ -48,9 +49,11 @@ def compiler():
 
 
 def text_of(row):
-    text = f"{row['name']:32} {row['value']:10.3f} {row['unit']}"
+    text = f"{row['name']:40} {row['value']:12.3f} {row['unit']}"
     if "ratio" in row:
         text += f"   {row['ratio']:7.3f} x {row['ratio_to']}"
+    if "difference" in row:
+        text += f"   {row['difference']:+.1f} {row['unit']}"
     if "rms" in row:
         text += f"   RMS {row['rms']:.2e}"
     return text

@@ -42,7 +42,7 @@ void Perf::fill(Phase, DispatchTable& table) {
 }
 
 void Perf::frame_ended(FrameEnd kind) {
-  if (kind != FrameEnd::swap) return;
+  if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   figures_.frame_nanoseconds.add(nanoseconds_since(frame_started_));
   frame_started_ = Clock::now();
   figures_.frames.add(1);

@@ -74,7 +74,7 @@ void Print::fill(Phase, DispatchTable& table) {
 }
 
 void Print::frame_ended(FrameEnd kind) {
-  if (kind != FrameEnd::swap) return;
+  if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   const bool printed = prints();
   if (printed) file_.line(context_, fmt::format("// frame {} ends", frame_));
   ++frame_;

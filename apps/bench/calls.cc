@@ -1,0 +1,156 @@
+// What single OpenGL calls cost, measured from the application's side. calls.py runs this program bare and
+// under Understudy; it knows nothing of either.
+#define GL_GLEXT_PROTOTYPES
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+constexpr int width = 64;
+
+[[noreturn]] void fail(const char* what) {
+  std::fprintf(stderr, "understudy-bench-calls: %s\n", what);
+  std::exit(1);
+}
+
+/// A current compatibility context with a small framebuffer, without a window.
+void open_context() {
+  const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  if (eglInitialize(display, nullptr, nullptr) == EGL_FALSE || eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) {
+    fail("there is no EGL without a window system; install libegl-mesa0");
+  }
+  const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  const EGLint extent[] = {EGL_WIDTH, width, EGL_HEIGHT, width, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  eglChooseConfig(display, wanted, &config, 1, &count);
+  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, nullptr);
+  const EGLSurface surface = eglCreatePbufferSurface(display, config, extent);
+  if (count == 0 || eglMakeCurrent(display, surface, surface, context) == EGL_FALSE) fail("no OpenGL context");
+}
+
+/// Nothing of a triangle is drawn, so that calls are measured and not pixels.
+void draw_no_pixels() {
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT_AND_BACK);
+}
+
+GLuint use_program_with_uniform() {
+  const char* source = "uniform float level; void main() { gl_FragColor = vec4(level); }";
+  const GLuint shader = glCreateShader(GL_FRAGMENT_SHADER);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  const GLuint program = glCreateProgram();
+  glAttachShader(program, shader);
+  glLinkProgram(program);
+  glUseProgram(program);
+  return program;
+}
+
+/// Mesa gathers vertices until the end of a primitive; its end is outside the time.
+void vertex(benchmark::State& state) {
+  float x = 0;
+  glBegin(GL_POINTS);
+  int since_begin = 0;
+  for (auto _ : state) {
+    glVertex3f(x, 0, 0);
+    x += 0.001F;
+    if (++since_begin == 100'000) {
+      state.PauseTiming();
+      glEnd();
+      glFinish();
+      glBegin(GL_POINTS);
+      since_begin = 0;
+      state.ResumeTiming();
+    }
+  }
+  glEnd();
+  glFinish();
+}
+
+void uniform(benchmark::State& state) {
+  const GLuint program = use_program_with_uniform();
+  const GLint location = glGetUniformLocation(program, "level");
+  float level = 0;
+  for (auto _ : state) glUniform1f(location, level += 0.001F);
+  glUseProgram(0);
+  glDeleteProgram(program);
+}
+
+void point_size(benchmark::State& state) {
+  float size = 1;
+  for (auto _ : state) glPointSize(size = 3 - size);
+}
+
+// Calls that the track unit notes, with next to no work for the driver.
+
+void empty_upload(benchmark::State& state) {
+  glBindTexture(GL_TEXTURE_2D, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  const GLuint texel = 0;
+  for (auto _ : state) glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, &texel);
+  glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void empty_list(benchmark::State& state) {
+  const GLuint list = glGenLists(1);
+  glNewList(list, GL_COMPILE);
+  glEndList();
+  for (auto _ : state) glCallList(list);
+  glDeleteLists(list, 1);
+}
+
+void no_textures(benchmark::State& state) {
+  const GLuint texture = 0;
+  for (auto _ : state) glDeleteTextures(1, &texture);
+}
+
+void draw_arrays(benchmark::State& state) {
+  static const GLfloat triangle[] = {0, 0, 0, 0.1F, 0, 0, 0, 0.1F, 0};
+  glEnableClientState(GL_VERTEX_ARRAY);
+  glVertexPointer(3, GL_FLOAT, 0, triangle);
+  for (auto _ : state) glDrawArrays(GL_TRIANGLES, 0, 3);
+  glFinish();
+  glDisableClientState(GL_VERTEX_ARRAY);
+}
+
+/// 5,000 calls, as programs draw molecules that know no arrays.
+void immediate_frame(benchmark::State& state) {
+  for (auto _ : state) {
+    glClear(GL_COLOR_BUFFER_BIT);
+    glBegin(GL_TRIANGLES);
+    for (int i = 0; i < 1665; ++i) {
+      glColor3f(0.5F, 0.5F, 1);
+      glNormal3f(0, 0, 1);
+      glVertex3f(float(i) / 1665, 0, 0);
+    }
+    glEnd();
+    glFlush();
+  }
+  glFinish();
+}
+
+}  // namespace
+
+BENCHMARK(vertex)->Name("glVertex3f");
+BENCHMARK(uniform)->Name("glUniform1f");
+BENCHMARK(point_size)->Name("glPointSize");
+BENCHMARK(empty_upload)->Name("glTexSubImage2D");
+BENCHMARK(empty_list)->Name("glCallList");
+BENCHMARK(no_textures)->Name("glDeleteTextures");
+BENCHMARK(draw_arrays)->Name("glDrawArrays");
+BENCHMARK(immediate_frame)->Name("immediate frame");
+
+int main(int argc, char** argv) {
+  open_context();
+  draw_no_pixels();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

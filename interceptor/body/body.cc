@@ -2,6 +2,7 @@
 #include "interceptor/body.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <map>
@@ -57,8 +58,9 @@ class Body {
   /// written.
   void process_ends() {
     if (reports_itself()) spu::write_report_now(options_.report);
+    // A child after fork() has its parent's contexts in memory, and its parent's files are not its own.
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) return;
+    if (!lock || getpid() != process_) return;
     for (const auto& [context, member] : contexts_) {
       if (member) member->chain.process_ends();
     }
@@ -90,6 +92,7 @@ class Body {
 
   static void install(const spu::DispatchTable* table);
 
+  const pid_t process_ = getpid();
   const DoorServices door_;
   const spu::Options options_;
   std::shared_ptr<spu::RenderSession> session_;

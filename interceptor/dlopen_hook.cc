@@ -6,6 +6,8 @@
 // loses the caller's RUNPATH, when it does not.
 #include <dlfcn.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "interceptor/entry_point.h"
 #include "interceptor/gl_names.h"
@@ -45,6 +47,7 @@ Dlopen next_dlopen() {
 bool stub_answers(int stub, const char* name, int& mode) {
   if (stub < 0 || own_stub(stub)[0] == '\0') return false;
   if (stub != osmesa_stub) return true;
+  if (strchr(name, '/') != nullptr && access(name, R_OK) != 0) return false;
   if ((mode & RTLD_NOLOAD) == 0) return driver_is_there(WindowSystem::osmesa);
   void* loaded = next_dlopen()(name, RTLD_LAZY | RTLD_NOLOAD);
   if (loaded == nullptr) return false;

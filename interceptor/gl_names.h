@@ -33,7 +33,8 @@ inline int stub_for(const char* requested) {
     const size_t unversioned = strlen(stub_names[stub]) - strlen(".1");
     if (strncmp(base, stub_names[stub], unversioned) != 0) continue;
     const char* version = base + unversioned;
-    if (*version == '\0') return stub;
+    // Debian has libOSMesa.so.6 as another name of libOSMesa.so.8.
+    if (*version == '\0' || (stub == osmesa_stub && *version == '.')) return stub;
     if (!starts_with(version, stub_names[stub] + unversioned)) continue;
     const char* minor = version + strlen(".1");
     if (*minor == '\0' || *minor == '.') return stub;

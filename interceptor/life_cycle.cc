@@ -1,5 +1,7 @@
 #include "interceptor/life_cycle.h"
 
+#include <pthread.h>
+
 #include "interceptor/real_driver.h"
 
 namespace understudy::interceptor {
@@ -23,6 +25,24 @@ bool same_attachment(const WantedContext& wanted, const CurrentContext& current)
 /// Only a context of the same window system is released by its make-current.
 bool touches_current(const WantedContext& wanted, const CurrentContext& current) {
   return current.context != 0 && (wanted.handle != 0 || wanted.system == current.system);
+}
+
+/// A thread that ends lets its context go. The driver may have left the thread already: no call is made on its
+/// behalf, and what it still calls goes past the body.
+void thread_ends(void*) {
+  DoorThread& thread = door_thread;
+  thread.state.table = nullptr;
+  if (thread.current.context == 0) return;
+  note_not_current(thread.current.context);
+  thread.current = {};
+  report_gone();
+}
+
+void watch_end_of_thread() {
+  static constinit pthread_key_t key;
+  static constinit pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, [] { pthread_key_create(&key, &thread_ends); });
+  pthread_setspecific(key, &door_thread);  // any value but null has the key's function called
 }
 
 }  // namespace
@@ -69,6 +89,7 @@ void after_make_current(const WantedContext& wanted, bool succeeded) {
       if (known.context != 0) {
         thread.current = {known.context, wanted.system, wanted.display,
                           wanted.handle, wanted.draw,   wanted.read};
+        watch_end_of_thread();
         enter(*services, known, thread.current);
       }
     }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -34,7 +35,10 @@ class Body {
       thread.table = thread.driver;
       return;
     }
-    chain_of(context, share, *thread.driver).make_current();
+    spu::Chain& chain = chain_of(context, share, *thread.driver);
+    chain.make_current();
+    // Contexts that share objects with it may have brought volumes since its last frame.
+    chain.frame_ended(spu::FrameEnd::make_current);
   }
 
   void context_destroyed(std::uintptr_t context) {
@@ -65,6 +69,8 @@ class Body {
       if (member) member->chain.process_ends();
     }
   }
+
+  void program_ends() { session_->end(); }
 
   /// Without a launcher nobody else writes the report.
   bool reports_itself() const { return !options_.report.empty() && options_.run_dir.empty(); }
@@ -163,6 +169,11 @@ void after_frame_end(FrameEnd kind) {
 
 constinit BodyServices services;
 
+/// Runs before the libraries that the body needs take themselves apart; the application may draw on after that.
+void at_program_end() {
+  if (body != nullptr) body->program_ends();
+}
+
 /// A courtesy: a program that ends in order leaves its last half second in the report and in units' files too.
 [[gnu::destructor]] void at_library_end() {
   if (body != nullptr) guarded([] { body->process_ends(); });
@@ -178,7 +189,10 @@ extern "C" [[gnu::visibility("default")]] const understudy::interceptor::BodySer
   try {
     understudy::spu::Options options = understudy::spu::options_from_environment();
     if (options.disable) return nullptr;
-    if (body == nullptr) body = new Body(*door, std::move(options));
+    if (body == nullptr) {
+      body = new Body(*door, std::move(options));
+      std::atexit(at_program_end);
+    }
   } catch (const std::exception& error) {
     fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
     return nullptr;

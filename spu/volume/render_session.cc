@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <stdexcept>
 
 #include "spu/volume/own_nodes.h"
 
@@ -20,6 +21,7 @@ constexpr auto retry_after = 200ms;
 }  // namespace
 
 compositor::RenderService& RenderSession::service() {
+  if (ended_) throw std::runtime_error("the program is ending");
   if (service_) return *service_;
   if (std::chrono::steady_clock::now() < not_before_) {
     throw compositor::ServiceLost("waiting for a new group of render nodes");

@@ -2,6 +2,7 @@
 // contexts, and made again after a node group was lost.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,10 @@ class RenderSession {
   /// lock.
   void forget(volume::VolumeId id);
 
+  /// The program is ending, and what the ray caster stands on is taken apart: from now on there is no service.
+  /// May be called from a signal handler that calls exit(), whatever the thread is in the midst of.
+  void end() { ended_ = true; }
+
   volume::VolumeId new_volume_id() { return ++last_volume_; }
 
  private:
@@ -50,6 +55,7 @@ class RenderSession {
   std::uint64_t generation_ = 0;
   volume::VolumeId last_volume_ = 0;
   bool connected_once_ = false;
+  std::atomic<bool> ended_ = false;
   std::chrono::steady_clock::time_point not_before_{};
 };
 

@@ -1,6 +1,7 @@
 // The door against the libraries that are installed here: what they export, it must export.
 #include <dlfcn.h>
 #include <elf.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -51,28 +52,22 @@ TEST(EntryPoints, CoverTheWholeRegistry) {
 }
 
 TEST(EntryPoints, CoverWhatTheLibrariesHereExport) {
-  for (const char* library : {REAL_OPENGL, REAL_GLX, REAL_EGL}) {
+  for (const char* library : {REAL_GL, REAL_OPENGL, REAL_GLX, REAL_EGL, REAL_OSMESA}) {
     const std::set<std::string> real = exported_functions(library);
     ASSERT_FALSE(real.empty()) << library;
-    for (const std::string& name : real)
-      EXPECT_TRUE(door_functions().contains(name)) << library << ": " << name;
+    std::set<std::string> missing;
+    for (const std::string& name : real) {
+      if (!door_functions().contains(name)) missing.insert(name);
+    }
+#if !defined(__x86_64__)
+    if (library == std::string(REAL_GL)) {  // interceptor/outside_registry.cc
+      EXPECT_LE(missing.size(), 66U);
+      continue;
+    }
+#endif
+    EXPECT_THAT(missing, ::testing::IsEmpty()) << library;
+    std::printf("%s: %zu functions\n", library, real.size());
   }
-}
-
-// glvnd's libGL.so.1 exports names that were never in the registry, from drivers long gone. Nothing that is
-// built against the registry's headers can call them.
-TEST(EntryPoints, CoverLibGlButForNamesOutsideTheRegistry) {
-  const std::set<std::string> real = exported_functions(REAL_GL);
-  ASSERT_GT(real.size(), 1000u);
-  std::string missing;
-  int count = 0;
-  for (const std::string& name : real) {
-    if (door_functions().contains(name)) continue;
-    missing += " " + name;
-    ++count;
-  }
-  std::printf("%d of libGL's %zu functions are in no registry:%s\n", count, real.size(), missing.c_str());
-  EXPECT_LT(count, 100);
 }
 
 TEST(EntryPoints, TheDoorNeedsNoOpenGlNoXAndNoCxxLibrary) {

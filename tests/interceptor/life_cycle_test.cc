@@ -112,6 +112,14 @@ TEST(LifeCycle, EveryThreadHasItsOwnContextAndCount) {
                   "body: before make_current", "body: leaving after 2 calls", "driver: current 0 drawable 0"));
 }
 
+TEST(LifeCycle, AContextWhoseThreadHasEndedGoesWhenItIsDestroyed) {
+  EXPECT_THAT(play("glx_client", "thread_ends").lines(),
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 11", "body: open",
+                          "body: current 1 share 0 glx desktop drawable 11", "body: glClear",
+                          "driver: glClear",  //
+                          "app: the thread has ended", "driver: destroy 1", "body: destroyed 1"));
+}
+
 TEST(LifeCycle, GetProcAddressGivesOursWhereTheDriverHasOneAndNothingWhereItHasNone) {
   EXPECT_THAT(play("glx_client", "addresses").lines(),
               ElementsAre("app: glClear ours", "app: glXSwapBuffers ours", "app: glAccum null",
@@ -226,6 +234,51 @@ TEST(LifeCycle, EglTerminateEndsTheContextsOfItsDisplay) {
                           "body: current 1 share 0 egl desktop drawable 20", "body: before make_current",
                           "body: leaving after 0 calls", "driver: current 0 drawable 0", "driver: terminate",
                           "body: destroyed 1"));
+}
+
+TEST(LifeCycle, OsMesasFramesEndWhereThePictureIsAskedFor) {
+  EXPECT_THAT(
+      play("osmesa_client", "frames").lines(),
+      ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2", "body: open",
+                  "body: current 1 share 0 osmesa desktop drawable", "body: glClear",
+                  "driver: OSMesa's glClear",                                         //
+                  "body: glFlush", "driver: OSMesa's glFlush", "body: after finish",  //
+                  "driver: OSMesa's glFinish",                                        // the same frame
+                  "body: glClear", "driver: OSMesa's glClear",                        //
+                  "body: before finish", "body: after finish", "body: before make_current",
+                  "driver: OSMesa current 1 of 2 x 2",  // the same again: no change
+                  "body: before finish", "body: before make_current", "body: leaving after 4 calls",
+                  "driver: OSMesa current 1 of 3 x 2", "body: current 1 share 0 osmesa desktop drawable",
+                  "body: before finish", "body: before make_current", "body: leaving after 0 calls",
+                  "driver: OSMesa current 0 of 0 x 0",  //
+                  "driver: OSMesa's glClear",           // the OpenGL of this program, GLX is not opened
+                  "driver: OSMesa destroy 1", "body: destroyed 1"));
+}
+
+TEST(LifeCycle, OsMesasContextsShare) {
+  EXPECT_THAT(play("osmesa_client", "share_group").lines(),
+              ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa create 2 share 1",
+                          "driver: OSMesa current 1 of 2 x 2", "body: open",
+                          "body: current 1 share 0 osmesa desktop drawable",  //
+                          "body: before finish", "body: before make_current", "body: leaving after 0 calls",
+                          "driver: OSMesa current 2 of 2 x 2",
+                          "body: current 2 share 1 osmesa desktop drawable",  //
+                          "driver: OSMesa destroy 1", "body: destroyed 1",    //
+                          "body: glClear", "driver: OSMesa's glClear", "app: glClear ours, glAccum null"));
+}
+
+// With all registers, and what did not fit into them.
+TEST(LifeCycle, AFunctionOutsideTheRegistryGetsItsArguments) {
+  EXPECT_THAT(
+      play("glx_client", "outside_registry").lines(),
+      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
+                  "body: current 1 share 0 glx desktop drawable 10",  //
+                  "body: before wait",
+                  "driver: glDrawMeshNV 1 2 3 4 5 6 7 8, 0.5 1.5 2.5 3.5 4.5 5.5 6.5 7.5 8.5",
+                  "app: 4711",  //
+                  "understudy: the application calls glGpuSyncAcquireNVX, which this OpenGL driver lacks; "
+                  "such calls do nothing",
+                  "app: 0"));
 }
 
 TEST(LifeCycle, AProgramOfOneWindowSystemLoadsThatOneAlone) {

@@ -52,6 +52,7 @@ constexpr Expected miss = Expected::miss;
 constexpr Expected crash = Expected::crash;
 const char* const clear = "driver: glClear";
 const char* const display = "driver: eglGetDisplay";
+const char* const osmesa = "driver: OSMesa create";
 
 std::vector<std::string> python(const std::string& library) {
   return {PYTHON, "-c", "import ctypes; ctypes.CDLL('" + library + "').glClear(0x4000); print('done')"};
@@ -81,6 +82,12 @@ const std::vector<WayIn> ways_in = {
     {"OpenedLibEGLDevelopmentName", {clients + "opened", "libEGL.so", "eglGetDisplay"},            display, hit,   hit,   hit},
     {"OpenedLibEGLByAbsolutePath", {clients + "opened", library_folder + "libEGL.so.1", "eglGetDisplay"},
                                                                                                    display, hit,   miss,  hit},
+    {"LinkedWithLibOSMesa",        {clients + "linked_osmesa"},                                    osmesa,  hit,   hit,   hit},
+    {"OpenedLibOSMesa",            {clients + "opened", "libOSMesa.so.8", "OSMesaCreateContext"},  osmesa,  hit,   hit,   hit},
+    {"OpenedLibOSMesaByItsOldName", {clients + "opened", "libOSMesa.so.6", "OSMesaCreateContext"}, osmesa,  hit,   miss,  hit},
+    {"OpenedLibOSMesaByAbsolutePath", {clients + "opened", library_folder + "libOSMesa.so.8", "OSMesaCreateContext"},
+                                                                                                   osmesa,  hit,   miss,  hit},
+    {"OSMesaGetProcAddress",       {clients + "osmesa_address"},                                   osmesa,  hit,   hit,   hit},
 };
 // clang-format on
 
@@ -131,7 +138,7 @@ TEST_P(WithoutOpenGl, NeitherBodyNorDriverIsLoaded) {
   EXPECT_EQ(outcome.status, 0);
   ASSERT_TRUE(outcome.says("libz.so") && outcome.says("done")) << outcome.text;
   for (const char* unwanted : {LIBRARY_FOLDER "/libGL", LIBRARY_FOLDER "/libOpenGL", LIBRARY_FOLDER "/libEGL",
-                               "libGLdispatch", "libunderstudy-body"}) {
+                               "libGLdispatch", "libOSMesa", "libunderstudy-body"}) {
     EXPECT_FALSE(outcome.says(unwanted)) << unwanted << " in\n" << outcome.text;
   }
 }

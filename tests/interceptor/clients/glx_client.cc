@@ -8,6 +8,10 @@
 
 #include "../driver/driver.h"
 
+extern "C" int glDrawMeshNV(int, int, int, int, int, int, int, int, double, double, double, double, double,
+                            double, double, double, double);
+extern "C" int glGpuSyncAcquireNVX();
+
 namespace {
 
 Display* const display = reinterpret_cast<Display*>(7);
@@ -99,6 +103,22 @@ void two_threads() {
   release();
 }
 
+void* clear_and_end(void* context) {
+  current(static_cast<GLXContext>(context), 11);
+  glClear(0);
+  return nullptr;
+}
+
+/// The context is still current when its thread ends, and is destroyed by another.
+void thread_ends() {
+  GLXContext context = create();
+  pthread_t thread;
+  pthread_create(&thread, nullptr, &clear_and_end, context);
+  pthread_join(thread, nullptr);
+  say("app: the thread has ended\n");
+  glXDestroyContext(display, context);
+}
+
 void addresses() {
   const auto address = [](const char* name) {
     return glXGetProcAddressARB(reinterpret_cast<const GLubyte*>(name));
@@ -115,6 +135,14 @@ void missing_function() {
   glAccum(0, 1);
   glAccum(0, 1);
   say("app: goes on\n");
+}
+
+void outside_registry() {
+  current(create(), 10);
+#if defined(__x86_64__)
+  say("app: %d\n", glDrawMeshNV(1, 2, 3, 4, 5, 6, 7, 8, 0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5));
+  say("app: %d\n", glGpuSyncAcquireNVX());
+#endif
 }
 
 void forked() {
@@ -157,12 +185,19 @@ struct Scene {
   void (*play)();
 };
 constexpr Scene scenes[] = {
-    {"one_frame", one_frame},     {"failed_make_current", failed_make_current},
-    {"same_again", same_again},   {"share_group", share_group},
-    {"addresses", addresses},     {"handle_comes_again", handle_comes_again},
-    {"forked", forked},           {"destroyed_while_current", destroyed_while_current},
-    {"libraries", libraries},     {"missing_function", missing_function},
+    {"one_frame", one_frame},
+    {"failed_make_current", failed_make_current},
+    {"same_again", same_again},
+    {"share_group", share_group},
+    {"addresses", addresses},
+    {"handle_comes_again", handle_comes_again},
+    {"forked", forked},
+    {"destroyed_while_current", destroyed_while_current},
+    {"libraries", libraries},
+    {"missing_function", missing_function},
     {"two_threads", two_threads},
+    {"thread_ends", thread_ends},
+    {"outside_registry", outside_registry},
 };
 
 }  // namespace

@@ -53,8 +53,11 @@ void flush() {
 
 void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                      std::uintptr_t drawable) {
-  say("body: current %lu share %lu %s %s drawable %lu\n", context, share, text(system),
-      desktop_gl ? "desktop" : "es", drawable);
+  // Where a drawable is an address it is another in every run.
+  const bool address = system == WindowSystem::osmesa;
+  say(address ? "body: current %lu share %lu %s %s drawable\n"
+              : "body: current %lu share %lu %s %s drawable %lu\n",
+      context, share, text(system), desktop_gl ? "desktop" : "es", drawable);
   ThreadState& thread = *door.thread_state();
   table = *thread.driver;
   table.Clear = &clear;

@@ -47,9 +47,18 @@ static void vendor_function() {
   say("driver: glVendorFunction\n");
 }
 
+/// A function of no registry: nobody but its caller and itself knows what it takes.
+static int draw_mesh(int a, int b, int c, int d, int e, int f, int g, int h, double p, double q, double r,
+                     double s, double t, double u, double v, double w, double x) {
+  say("driver: glDrawMeshNV %d %d %d %d %d %d %d %d, %g %g %g %g %g %g %g %g %g\n", a, b, c, d, e, f, g, h, p,
+      q, r, s, t, u, v, w, x);
+  return 4711;
+}
+
 DRIVER_FUNCTION void* glXGetProcAddressARB(const char* name) {
   if (strcmp(name, "glClear") == 0) return reinterpret_cast<void*>(&clear);
   if (strcmp(name, "glVendorFunction") == 0) return reinterpret_cast<void*>(&vendor_function);
+  if (strcmp(name, "glDrawMeshNV") == 0) return reinterpret_cast<void*>(&draw_mesh);
   if (strcmp(name, "glXSwapBuffers") == 0) return reinterpret_cast<void*>(&glXSwapBuffers);
   return nullptr;
 }

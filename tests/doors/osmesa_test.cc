@@ -1,0 +1,81 @@
+// Programs of OSMesa: an OpenGL of their own, without a window system.
+#include <cstdio>
+
+#include "tests/doors/behind_a_door.h"
+
+namespace {
+
+using namespace understudy::testing;
+
+/// Pictures may differ by as much as an 8-bit framebuffer rounds.
+constexpr double good_picture = 40;
+
+class OsMesa : public BehindADoor {};
+
+TEST_P(OsMesa, DrawsTheSamePixels) {
+  const CountedRun run = expect_same({client("osmesa")});
+  EXPECT_GT(run.total().calls, 100U);
+}
+
+TEST_P(OsMesa, SwitchedOffDrawsTheSamePixels) {
+  const std::vector<std::string> command{client("osmesa")};
+  const std::string bare = run_behind(Door::none, command).outcome.text;
+  const CountedRun run = run_behind(GetParam(), command, {"UNDERSTUDY_DISABLE=1"});
+  EXPECT_EQ(run.outcome.text, bare);
+  EXPECT_TRUE(run.processes.empty());
+}
+
+TEST_P(OsMesa, AVolumeInSlicesIsSubstituted) {
+  const CountedRun bare = run_behind(Door::none, {client("osmesa"), file("bare")});
+  const CountedRun behind = run_behind(GetParam(), {client("osmesa"), file("behind")});
+  EXPECT_EQ(behind.outcome.text, bare.outcome.text);
+  EXPECT_EQ(behind.total().substituted, 4U) << "one for each picture that the program finished";
+  const double psnr = psnr_of_files(file("bare"), file("behind"));
+  std::printf("%.1f dB, %lu frames, %lu calls\n", psnr, behind.total().frames, behind.total().calls);
+  EXPECT_GT(psnr, good_picture);
+}
+
+TEST_P(OsMesa, TheDepthBufferThatItHandsOutHasTheSlicesDepth) {
+  const CountedRun bare = run_behind(Door::none, {client("osmesa"), file("bare"), "depth"});
+  ASSERT_TRUE(bare.outcome.says("depth 3: 64x64")) << bare.outcome.text;
+  const CountedRun behind = run_behind(GetParam(), {client("osmesa"), file("behind"), "depth"});
+  EXPECT_EQ(behind.outcome.text, bare.outcome.text);
+  EXPECT_GT(behind.total().substituted, 0U);
+}
+
+TEST_P(OsMesa, OpenedByName) {
+  for (const char* how : {"dlsym", "address"}) {
+    EXPECT_GT(expect_same({client("osmesa_opened"), "libOSMesa.so.8", how}).total().calls, 3U) << how;
+  }
+}
+
+TEST_P(OsMesa, OpenedByAbsolutePath) {
+  for (const char* how : {"dlsym", "address"}) {
+    const Words command{client("osmesa_opened"), LIBRARY_FOLDER "/libOSMesa.so.8", how};
+    // A folder of names does not see paths: the program gets the real one, and works without us.
+    if (GetParam() == Door::folder) {
+      const CountedRun run = run_behind(GetParam(), command);
+      EXPECT_EQ(run.outcome.text, run_behind(Door::none, command).outcome.text);
+      EXPECT_TRUE(run.processes.empty());
+    } else {
+      EXPECT_GT(expect_same(command).total().calls, 3U) << how;
+    }
+  }
+}
+
+BEHIND_EVERY_DOOR(OsMesa);
+
+// Programs ask for OSMesa to find out whether it is there. (The folder cannot tell: interceptor/README.md.)
+class WhereThereIsNoOsMesa : public BehindADoor {};
+
+TEST_P(WhereThereIsNoOsMesa, AProgramIsTold) {
+  const CountedRun run =
+      run_behind(GetParam(), {client("osmesa_opened"), "/nonexistent/libOSMesa.so.8", "dlsym"});
+  EXPECT_EQ(run.outcome.text, "cannot be opened\n");
+  EXPECT_EQ(run.outcome.status, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Doors, WhereThereIsNoOsMesa, ::testing::Values(Door::preload, Door::audit),
+                         [](const auto& info) { return name_of(info.param); });
+
+}  // namespace

@@ -1,0 +1,109 @@
+// Programs that use EGL's OpenGL in unusual ways.
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "tests/doors/behind_a_door.h"
+
+namespace {
+
+using namespace understudy::testing;
+
+constexpr double good_picture = 40;
+
+/// Mesa's other software renderer, which still draws when main has ended.
+const Words softpipe{"GALLIUM_DRIVER=softpipe"};
+
+class Programs : public BehindADoor {};
+
+TEST_P(Programs, EglGetProcAddressForAllCalls) {
+  EXPECT_GT(expect_same({client("oddities"), "by_address"}).total().calls, 2U);
+}
+
+TEST_P(Programs, PythonWithCtypes) {
+  if (std::string(PYTHON).empty()) GTEST_SKIP() << "no Python here";
+  for (const Words& libraries :
+       {Words{"libGL.so.1"}, Words{"find", "find"}, Words{"libOpenGL.so.0", "libEGL.so.1"}}) {
+    Words command{PYTHON, PYTHON_CLIENT};
+    command.insert(command.end(), libraries.begin(), libraries.end());
+    const CountedRun run = expect_same(command);
+    EXPECT_EQ(run.outcome.text, "64 128 191 255 0x0\n");
+    EXPECT_GT(run.total().calls, 3U);
+  }
+}
+
+TEST_P(Programs, ForkBeforeAContextExists) {
+  for (const char* scene : {"before_context", "before_context_but_after_a_call"}) {
+    const CountedRun run = expect_same({client("forks"), scene});
+    ASSERT_EQ(run.processes.size(), 2U) << "each counts for itself";
+    EXPECT_EQ(run.processes[0].calls, run.processes[1].calls) << "they draw the same number of pictures";
+    EXPECT_GT(run.processes[0].calls, 50U);
+    EXPECT_EQ(run.processes[0].frames, 1U);
+  }
+}
+
+TEST_P(Programs, ForkWithAContextAndTheChildOnlyLeaves) {
+  for (const char* scene : {"child_only_exits", "child_leaves_at_once"}) {
+    const CountedRun run = expect_same({client("forks"), scene});
+    ASSERT_EQ(run.processes.size(), 2U);
+    EXPECT_GT(std::max(run.processes[0].calls, run.processes[1].calls), 100U);
+    EXPECT_EQ(std::min(run.processes[0].calls, run.processes[1].calls), 0U)
+        << "none of the parent's are the child's";
+  }
+}
+
+TEST_P(Programs, ForkWithAContextAndTheChildDraws) {
+  const CountedRun anew = expect_same({client("forks"), "child_draws_anew"});
+  const CountedRun goes_on = expect_same({client("forks"), "child_goes_on"}, {"LP_NUM_THREADS=0"});
+  // The child is left to the driver; the parent's figures are its own.
+  EXPECT_EQ(anew.total().calls, goes_on.total().calls);
+  EXPECT_EQ(anew.total().frames, 1U);
+}
+
+TEST_P(Programs, TwoThreadsWithContextsOfTheirOwn) {
+  for (const char* scene : {"apart", "shared"}) {
+    EXPECT_GT(expect_same({client("threads"), scene}).total().calls, 10000U) << scene;
+  }
+}
+
+TEST_P(Programs, TwoThreadsThatDrawVolumes) {
+  for (const char* scene : {"volumes", "shared_volume"}) {
+    run_behind(Door::none, {client("threads"), scene, file("bare")});
+    const CountedRun behind = run_behind(GetParam(), {client("threads"), scene, file("behind")});
+    EXPECT_EQ(behind.outcome.status, 0) << behind.outcome.text;
+    EXPECT_EQ(behind.outcome.text, "done\n");
+    EXPECT_EQ(behind.total().substituted, 12U) << scene;
+    const double psnr = psnr_of_files(file("bare"), file("behind"));
+    std::printf("%s: %.1f dB\n", scene, psnr);
+    EXPECT_GT(psnr, good_picture);
+  }
+}
+
+TEST_P(Programs, OpenGlBeforeAndAfterMain) {
+  for (const char* context : {"destroyed", "current"}) {
+    EXPECT_GT(expect_same({client("around_main"), context}, softpipe).total().calls, 50U) << context;
+  }
+}
+
+// What the ray caster needs is gone by then.
+TEST_P(Programs, AVolumeAfterMainIsLeftToTheProgram) {
+  const CountedRun bare = run_behind(Door::none, {client("around_main"), "current", file("bare")}, softpipe);
+  const CountedRun behind =
+      run_behind(GetParam(), {client("around_main"), "current", file("behind")}, softpipe);
+  EXPECT_EQ(behind.outcome.status, 0) << behind.outcome.text;
+  EXPECT_TRUE(behind.outcome.says("left to the application: the program is ending")) << behind.outcome.text;
+  EXPECT_EQ(behind.total().substituted, 2U) << "those of main";
+  EXPECT_EQ(psnr_of_files(file("bare"), file("behind")), std::numeric_limits<double>::infinity());
+}
+
+TEST_P(Programs, CallsWithoutAContext) {
+  expect_same({client("oddities"), "no_context"});
+}
+
+TEST_P(Programs, AThreadThatEndsWithItsContextCurrent) {
+  EXPECT_GT(expect_same({client("oddities"), "thread_ends_with_context"}).total().calls, 200U);
+}
+
+BEHIND_EVERY_DOOR(Programs);
+
+}  // namespace

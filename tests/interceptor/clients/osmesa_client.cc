@@ -1,0 +1,61 @@
+// A program of OSMesa: handles are plain numbers, and the test driver takes them.
+#include <GL/gl.h>
+#include <GL/osmesa.h>
+#include <string.h>
+
+#include "../driver/driver.h"
+
+namespace {
+
+char array[4];
+
+bool current(OSMesaContext context, int width = 2) {
+  return OSMesaMakeCurrent(context, array, GL_UNSIGNED_BYTE, width, 2) != 0;
+}
+void release() {
+  OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
+}
+
+void frames() {
+  OSMesaContext context = OSMesaCreateContext(OSMESA_RGBA, nullptr);
+  current(context);
+  glClear(0);
+  glFlush();
+  glFinish();  // the same frame
+  glClear(0);
+  current(context);  // another
+  current(context, 3);
+  release();
+  glClear(0);
+  OSMesaDestroyContext(context);
+}
+
+void share_group() {
+  OSMesaContext first = OSMesaCreateContext(OSMESA_RGBA, nullptr);
+  OSMesaContext second = OSMesaCreateContext(OSMESA_RGBA, first);
+  current(first);
+  current(second);
+  OSMesaDestroyContext(first);
+  glClear(0);
+  say("app: glClear %s, glAccum %s\n",
+      OSMesaGetProcAddress("glClear") == reinterpret_cast<OSMESAproc>(&glClear) ? "ours" : "not ours",
+      OSMesaGetProcAddress("glAccum") == nullptr ? "null" : "not null");
+}
+
+struct Scene {
+  const char* name;
+  void (*play)();
+};
+constexpr Scene scenes[] = {{"frames", frames}, {"share_group", share_group}};
+
+}  // namespace
+
+int main(int, char** arguments) {
+  for (const Scene& scene : scenes) {
+    if (strcmp(arguments[1], scene.name) == 0) {
+      scene.play();
+      return 0;
+    }
+  }
+  return 2;
+}

@@ -99,6 +99,10 @@ void Broker::hear_newcomers() {
         still_new.push_back(std::move(peer));
       else
         say_(fmt::format("dropped a connection at '{}' that did not say what it is", path_));
+    } catch (const ConnectionLost& error) {
+      // Who connects and leaves without a word only wanted to know whether somebody is here.
+      if (peer.connection.unfinished())
+        say_(fmt::format("dropped a connection at '{}': {}", path_, error.what()));
     } catch (const std::runtime_error& error) {
       say_(fmt::format("dropped a connection at '{}': {}", path_, error.what()));
     }

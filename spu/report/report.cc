@@ -243,9 +243,14 @@ std::string report_json(Processes processes) {
 
 std::string summary_line(Processes processes) {
   const Totals totals = totals_of(processes);
-  const std::string where =
-      totals.nodes > 0 ? counted(static_cast<std::uint64_t>(totals.nodes), "node") : "embedded";
-  std::string line = fmt::format("understudy: {} seen, {}: {} substituted ({}), {} left to the application",
+  // Who draws is known once somebody did.
+  std::string where;
+  if (totals.nodes > 0) {
+    where = fmt::format(" ({})", counted(static_cast<std::uint64_t>(totals.nodes), "node"));
+  } else if (totals.frames_substituted > 0) {
+    where = " (embedded)";
+  }
+  std::string line = fmt::format("understudy: {} seen, {}: {} substituted{}, {} left to the application",
                                  counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
                                  totals.frames_substituted, where, totals.frames_left);
   if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);

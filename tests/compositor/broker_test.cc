@@ -189,6 +189,22 @@ TEST_F(BrokerTest, ARequestInsteadOfAHelloIsDropped) {
   EXPECT_THROW(rude->receive(soon()), ConnectionLost);
 }
 
+TEST_F(BrokerTest, AProbeThatConnectsAndLeavesIsNotSpokenOf) {
+  connect().reset();
+  step();
+  EXPECT_TRUE(said_.empty()) << said_[0];
+}
+
+TEST_F(BrokerTest, AStrangerWhoLeavesInTheMidstOfAWordIsSpokenOf) {
+  const auto stranger = connect();
+  ASSERT_EQ(::send(stranger->fd(), "U", 1, MSG_NOSIGNAL), 1);
+  step();
+  ASSERT_EQ(::shutdown(stranger->fd(), SHUT_RDWR), 0);
+  step();
+  ASSERT_EQ(said_.size(), 1U);
+  EXPECT_THAT(said_[0], HasSubstr("closed the connection"));
+}
+
 TEST_F(BrokerTest, AStrangerWhoSaysNothingIsDroppedInTheEndAndHoldsUpNobody) {
   const auto silent = connect();
   MessageHeader header{.type = MessageType::hello_client};

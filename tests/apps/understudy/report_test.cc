@@ -145,6 +145,21 @@ TEST(Report, SaysInOneLineWhatHappenedAndWhy) {
   EXPECT_THAT(explanation_text(Processes(&one, 1)), HasSubstr("256 x 128 x 110 GL_INTENSITY8"));
 }
 
+TEST(Report, NamesNobodyAsTheOneWhoDrewWhereNothingWasSubstituted) {
+  const auto counters = example();
+  counters->frames_substituted = 0;
+  counters->frames_left = 3;
+  counters->nodes = 0;  // of `--connect` nobody answered
+  std::strcpy(counters->volume[0].left_because[0].reason, "the render nodes did not answer");
+  counters->volume[0].left_because[0].count = 3;
+  const ProcessCounters* const one = counters.get();
+  EXPECT_EQ(summary_line(Processes(&one, 1)),
+            "understudy: 1 volume seen, 3 frames: 0 substituted, 3 left to the application: "
+            "the render nodes did not answer (3x)");
+  counters->frames_substituted = 1;
+  EXPECT_THAT(summary_line(Processes(&one, 1)), HasSubstr("1 substituted (embedded)"));
+}
+
 class CountersInAFolder : public ::testing::Test {
  protected:
   CountersInAFolder() {

@@ -174,7 +174,8 @@ TEST_F(Serve, AViewerWhoseNodesAreNotThereDrawsByItself) {
                                    engine_viewer("table", {"--screenshot", file("under.png")}));
   fmt::print("{}", outcome.err);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("no render nodes at '" + file("absent.sock").string()),
-                                 HasSubstr("understudy serve")));
+                                 HasSubstr("understudy serve"), HasSubstr("the render nodes did not answer"),
+                                 testing::Not(HasSubstr("embedded"))));
   EXPECT_EQ(substituted(json("report.json")), 0);
   EXPECT_EQ(told("nodes that are not there", png("bare.png"), png("under.png")).max, 0);
 }

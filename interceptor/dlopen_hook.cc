@@ -9,6 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <atomic>
+
 #include "interceptor/entry_point.h"
 #include "interceptor/gl_names.h"
 #include "interceptor/real_driver.h"
@@ -32,12 +34,27 @@ __attribute__((visibility("hidden"))) Request understudy_route_dlopen(const char
 
 namespace {
 
+/// The C library's own. Whoever else stands in the process and changes what is opened (apitrace gives itself
+/// for every OpenGL) must not see us look for the driver: it would become the driver of which we are its
+/// driver.
+Dlopen libc_dlopen() {
+  static constinit std::atomic<Dlopen> found = nullptr;
+  Dlopen function = found.load(std::memory_order_relaxed);
+  if (function != nullptr) return function;
+  void* libc = dlmopen(LM_ID_BASE, "libc.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  void* symbol = libc != nullptr ? dlsym(libc, "dlopen") : nullptr;
+  if (symbol == nullptr) symbol = dlsym(RTLD_DEFAULT, "dlopen");  // before glibc 2.34 it was libdl's
+  function = reinterpret_cast<Dlopen>(symbol);
+  found.store(function, std::memory_order_relaxed);
+  return function;
+}
+
+/// Where the application's requests go on to.
 Dlopen next_dlopen() {
   if (understudy_next_dlopen == nullptr) {
-    // Preloaded, we stand before the C library; as what a stub needs, behind it, and it is the first of all.
+    // Preloaded, we stand before the C library; as what a stub needs, behind it.
     void* next = dlsym(RTLD_NEXT, "dlopen");
-    if (next == nullptr) next = dlsym(RTLD_DEFAULT, "dlopen");
-    understudy_next_dlopen = reinterpret_cast<Dlopen>(next);
+    understudy_next_dlopen = next != nullptr ? reinterpret_cast<Dlopen>(next) : libc_dlopen();
   }
   return understudy_next_dlopen;
 }
@@ -49,7 +66,7 @@ bool stub_answers(int stub, const char* name, int& mode) {
   if (stub != osmesa_stub) return true;
   if (strchr(name, '/') != nullptr && access(name, R_OK) != 0) return false;
   if ((mode & RTLD_NOLOAD) == 0) return driver_is_there(WindowSystem::osmesa);
-  void* loaded = next_dlopen()(name, RTLD_LAZY | RTLD_NOLOAD);
+  void* loaded = real_dlopen(name, RTLD_LAZY | RTLD_NOLOAD);
   if (loaded == nullptr) return false;
   dlclose(loaded);
   mode &= ~RTLD_NOLOAD;
@@ -65,7 +82,7 @@ bool caller_may_have_the_real_one(const void* caller) {
 }  // namespace
 
 void* real_dlopen(const char* name, int mode) {
-  return next_dlopen()(name, mode);
+  return libc_dlopen()(name, mode);
 }
 
 Request understudy_route_dlopen(const char* name, int mode, const void* caller) {

@@ -38,7 +38,7 @@ void* own_entry(const char* name);
 /// The absolute path of a stub (a position in stub_names); empty if there is none.
 const char* own_stub(int stub);
 
-/// glibc's dlopen, past our hook.
+/// glibc's dlopen, past our hook and everybody else's.
 void* real_dlopen(const char* name, int mode);
 
 /// Loads the stub libraries of GLX and EGL, so that the SONAMEs libGL.so.1, libGLX.so.0, libOpenGL.so.0 and

@@ -1,10 +1,9 @@
 // No slice reaches the driver to be drawn: a recording of the calls below Understudy, by apitrace.
 //
-// apitrace is made to be the first library that a program calls; here it has to be the second. Three settings
+// apitrace is made to be the first library that a program calls; here it has to be the second. Two settings
 // bring that about. LD_PRELOAD names Understudy before apitrace's library and the real OpenGL after it, which
-// is where apitrace looks for the driver (RTLD_NEXT). Between them stands the C library, so that Understudy
-// finds its dlopen() before apitrace's, which changes what is opened. UNDERSTUDY_DRIVER_DIR is a folder in
-// which the driver's names lead to apitrace's library.
+// is where apitrace looks for the driver (RTLD_NEXT). UNDERSTUDY_DRIVER_DIR is a folder in which the driver's
+// names lead to apitrace's library. (In front of us it stands in tests/doors/tracer_test.cc.)
 //
 // What Understudy asks of the driver itself stays in the recording: it has the slices' vertices computed by the
 // viewer's own pipeline (feedback mode, or transform feedback without rasterisation), which makes no pixel, and
@@ -55,8 +54,8 @@ class DriverCalls : public Stage {
     fs::create_symlink(recorder, drivers / window_system);
     fs::create_symlink(recorder, drivers / "libOpenGL.so.0");
     std::string preload = libraries / "libunderstudy.so";
-    for (const fs::path& library : {fs::path("libc.so.6"), recorder, system_libraries / window_system,
-                                    system_libraries / "libOpenGL.so.0"})
+    for (const fs::path& library :
+         {recorder, system_libraries / window_system, system_libraries / "libOpenGL.so.0"})
       preload += ":" + library.string();
     // The first frame's check against the viewer's own drawing would put its slices into a framebuffer of ours.
     const Words recorded = {"env", "LD_PRELOAD=" + preload, "UNDERSTUDY_DRIVER_DIR=" + drivers.string(),

@@ -10,6 +10,14 @@
 
 using namespace client;
 
+#if defined(__SANITIZE_ADDRESS__)
+/// What Mesa keeps until the process ends is not ours to free.
+extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
+const char* __lsan_default_suppressions() {
+  return "leak:_dri.so\nleak:libEGL_mesa\nleak:libLLVM\n";
+}
+#endif
+
 namespace {
 
 constexpr int pictures = 200;  // of some 60 calls each

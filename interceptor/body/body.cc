@@ -72,8 +72,11 @@ class Body {
 
   void program_ends() { session_->end(); }
 
-  /// Without a launcher nobody else writes the report.
-  bool reports_itself() const { return !options_.report.empty() && options_.run_dir.empty(); }
+  /// Without a launcher nobody else writes the report. A child after fork has none of its own, and its parent's
+  /// is not its to write.
+  bool reports_itself() const {
+    return !options_.report.empty() && options_.run_dir.empty() && getpid() == process_;
+  }
 
  private:
   struct Member {
@@ -98,9 +101,9 @@ class Body {
 
   static void install(const spu::DispatchTable* table);
 
-  const pid_t process_ = getpid();
   const DoorServices door_;
   const spu::Options options_;
+  const pid_t process_ = getpid();
   std::shared_ptr<spu::RenderSession> session_;
   std::mutex mutex_;
   std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;

@@ -25,6 +25,12 @@ TEST_P(OsMesa, SwitchedOffDrawsTheSamePixels) {
   EXPECT_TRUE(run.processes.empty());
 }
 
+TEST_P(OsMesa, AndEglInOneProgram) {
+  EXPECT_GT(expect_same({client("osmesa_and_egl")}).total().calls, 200U);
+  EXPECT_EQ(run_behind(GetParam(), {client("osmesa_and_egl")}, {"UNDERSTUDY_DISABLE=1"}).outcome.text,
+            run_behind(Door::none, {client("osmesa_and_egl")}).outcome.text);
+}
+
 TEST_P(OsMesa, AVolumeInSlicesIsSubstituted) {
   const CountedRun bare = run_behind(Door::none, {client("osmesa"), file("bare")});
   const CountedRun behind = run_behind(GetParam(), {client("osmesa"), file("behind")});

@@ -1,7 +1,9 @@
 // Programs that use EGL's OpenGL in unusual ways.
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "tests/doors/behind_a_door.h"
 
@@ -58,6 +60,16 @@ TEST_P(Programs, ForkWithAContextAndTheChildDraws) {
   // The child is left to the driver; the parent's figures are its own.
   EXPECT_EQ(anew.total().calls, goes_on.total().calls);
   EXPECT_EQ(anew.total().frames, 1U);
+}
+
+TEST_P(Programs, AChildThatOutlivesItsParentLeavesTheReportAlone) {
+  Words environment = environment_of(GetParam());
+  environment.push_back("LIBGL_ALWAYS_SOFTWARE=1");
+  environment.push_back("UNDERSTUDY_REPORT=" + file("report.json"));
+  const Outcome outcome = run_program(environment, {client("forks"), "child_outlives_parent"});
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  std::ifstream report(file("report.json"));
+  EXPECT_GT(nlohmann::json::parse(report).at("processes").at(0).at("calls"), 30) << "the parent's";
 }
 
 TEST_P(Programs, TwoThreadsWithContextsOfTheirOwn) {

@@ -74,6 +74,22 @@ void child_goes_on() {
   with_context([] { show("child", 5); }, _exit);
 }
 
+/// The child's exit is the last that happens.
+void child_outlives_parent() {
+  const Offscreen offscreen;
+  offscreen.make_current();
+  show("parent", 1);
+  fflush(stdout);
+  int parent_is_here[2];
+  if (pipe(parent_is_here) != 0) give_up("pipe");
+  if (fork() != 0) return;
+  close(parent_is_here[1]);
+  char nothing;
+  while (read(parent_is_here[0], &nothing, 1) > 0) {
+  }
+  exit(0);
+}
+
 struct Scene {
   const char* name;
   void (*play)();
@@ -83,7 +99,8 @@ constexpr Scene scenes[] = {{"before_context", before_context},
                             {"child_only_exits", child_only_exits},
                             {"child_leaves_at_once", child_leaves_at_once},
                             {"child_draws_anew", child_draws_anew},
-                            {"child_goes_on", child_goes_on}};
+                            {"child_goes_on", child_goes_on},
+                            {"child_outlives_parent", child_outlives_parent}};
 
 }  // namespace
 

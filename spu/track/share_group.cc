@@ -1,12 +1,13 @@
 #include "spu/track/share_group.h"
 
+#include <algorithm>
+
 namespace understudy::spu {
 
 std::uint64_t ShareGroup::texture_version(GLuint texture) const {
   const std::scoped_lock lock(mutex_);
   const auto found = textures_.find(texture);
-  // Both counters only grow; their sum therefore changes whenever either does.
-  return (found == textures_.end() ? 0 : found->second.version) + epoch_.load(std::memory_order_relaxed);
+  return std::max(found == textures_.end() ? 0 : found->second.version, some_changed_.load());
 }
 
 void ShareGroup::texture_changed(GLuint texture) {
@@ -14,21 +15,25 @@ void ShareGroup::texture_changed(GLuint texture) {
   textures_[texture].version = ++changes_;
 }
 
+void ShareGroup::some_texture_changed() {
+  // Two threads may store in the wrong order; both changes are then newer than whatever was read before them.
+  some_changed_.store(++changes_, std::memory_order_relaxed);
+}
+
 void ShareGroup::texture_deleted(GLuint texture) {
+  ++deletions_;
   const std::scoped_lock lock(mutex_);
   textures_.erase(texture);
 }
 
-void ShareGroup::volume_defined(GLuint texture) {
+void ShareGroup::remember(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  textures_[texture].volume = true;
-  has_volumes_.store(true, std::memory_order_relaxed);
+  textures_.try_emplace(texture);
 }
 
-bool ShareGroup::is_volume(GLuint texture) const {
+bool ShareGroup::remembers(GLuint texture) const {
   const std::scoped_lock lock(mutex_);
-  const auto found = textures_.find(texture);
-  return found != textures_.end() && found->second.volume;
+  return textures_.contains(texture);
 }
 
 void ShareGroup::texture_rendered_to(GLuint texture) {
@@ -42,24 +47,8 @@ bool ShareGroup::is_rendered_to(GLuint texture) const {
   return found != textures_.end() && found->second.rendered_to;
 }
 
-void ShareGroup::program_linked(GLuint program, ProgramRecord record) {
-  const std::scoped_lock lock(mutex_);
-  record.link = ++links_;
-  programs_[program] = std::make_unique<ProgramRecord>(std::move(record));
-}
-
-void ShareGroup::program_deleted(GLuint program) {
-  const std::scoped_lock lock(mutex_);
-  programs_.erase(program);
-}
-
-const ProgramRecord* ShareGroup::program(GLuint program) const {
-  const std::scoped_lock lock(mutex_);
-  const auto found = programs_.find(program);
-  return found == programs_.end() ? nullptr : found->second.get();
-}
-
 void ShareGroup::list_defined(GLuint list, const ListRecord& record) {
+  if (record.changes_textures) lists_change_textures_.store(true, std::memory_order_relaxed);
   const std::scoped_lock lock(mutex_);
   lists_[list] = record;
 }

@@ -1,10 +1,11 @@
 #include "spu/track/track.h"
 
-#include <array>
 #include <span>
+#include <tuple>
 
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
+#include "spu/track/program_slots.h"
 
 namespace understudy::spu {
 namespace {
@@ -38,76 +39,46 @@ struct NoteListContent {
   }
 };
 
-/// A texture changes: what was deferred is drawn first, with the old contents.
+/// Before there are volumes, which texture it is that changes does not matter.
 struct NoteTextureChange {
-  static const DispatchTable& before(CallId call) {
+  static const DispatchTable& before(CallId) {
     Track& track = here();
-    track.chain().settle();
-    if (kind_of(call) == CallKind::bound_texture) {
-      track.bound_textures_change(texture_dimensions(call));
-    } else {
-      track.chain().group().all_textures_changed();
-    }
+    track.chain().group().some_texture_changed();
     return track.below();
   }
 };
 
-/// Commands of direct state access name the texture in their first argument.
-template <auto Slot>
-struct ChangesNamedTexture;
-template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
-struct ChangesNamedTexture<Slot> {
-  static void APIENTRY call(GLuint texture, A... arguments) {
+/// Commands that give a texture contents of three dimensions, if the argument at `Target` is GL_TEXTURE_3D
+/// (PROXY_TEXTURE_3D is a question).
+template <std::size_t Target, auto Slot>
+struct DefinesVolume;
+template <std::size_t Target, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
+struct DefinesVolume<Target, Slot> {
+  static void APIENTRY call(A... arguments) {
     Track& track = here();
-    track.chain().settle();
-    track.chain().group().texture_changed(texture);
-    (track.below().*Slot)(texture, arguments...);
+    track.chain().group().some_texture_changed();
+    if (std::get<Target>(std::tie(arguments...)) == GL_TEXTURE_3D) track.volume_defined();
+    (track.below().*Slot)(arguments...);
   }
 };
-
-/// 3-D textures are what draws are watched for: the first one changes the phase of the stream.
-void note_volume(Track& track, GLuint texture) {
-  ShareGroup& group = track.chain().group();
-  group.texture_changed(texture);
-  group.volume_defined(texture);
-  if (track.chain().phase() == Phase::plain) track.chain().set_phase(Phase::watching);
-}
-
-GLuint bound_volume(const DispatchTable& gl) {
-  GLint texture = 0;
-  gl.GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
-  return GLuint(texture);
-}
-
-void APIENTRY tex_image_3d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,
-                           GLsizei depth, GLint border, GLenum format, GLenum type, const void* pixels) {
-  Track& track = here();
-  track.chain().settle();
-  // PROXY_TEXTURE_3D is a question, not an upload.
-  if (target == GL_TEXTURE_3D) note_volume(track, bound_volume(track.chain().driver()));
-  track.below().TexImage3D(target, level, internal_format, width, height, depth, border, format, type, pixels);
-}
-
-void APIENTRY tex_image_3d_ext(GLenum target, GLint level, GLenum internal_format, GLsizei width,
-                               GLsizei height, GLsizei depth, GLint border, GLenum format, GLenum type,
-                               const void* pixels) {
-  tex_image_3d(target, level, GLint(internal_format), width, height, depth, border, format, type, pixels);
-}
-
-void APIENTRY tex_storage_3d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
-                             GLsizei height, GLsizei depth) {
-  Track& track = here();
-  track.chain().settle();
-  if (target == GL_TEXTURE_3D) note_volume(track, bound_volume(track.chain().driver()));
-  track.below().TexStorage3D(target, levels, internal_format, width, height, depth);
-}
 
 void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal_format, GLsizei width,
                                  GLsizei height, GLsizei depth) {
   Track& track = here();
-  track.chain().settle();
-  note_volume(track, texture);
+  track.chain().group().some_texture_changed();
+  // An array of 2-D textures, perhaps: then there is one watch too many.
+  track.volume_defined();
   track.below().TextureStorage3D(texture, levels, internal_format, width, height, depth);
+}
+
+/// From now on each of the two changes whenever the other does.
+void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenum internal_format,
+                           GLuint first_level, GLuint levels, GLuint first_layer, GLuint layers) {
+  Track& track = here();
+  track.texture_rendered_to(texture);
+  track.texture_rendered_to(original);
+  track.below().TextureView(texture, target, original, internal_format, first_level, levels, first_layer,
+                            layers);
 }
 
 void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
@@ -120,107 +91,62 @@ void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
   track.below().DeleteTextures(count, textures);
 }
 
-void APIENTRY framebuffer_texture(GLenum target, GLenum attachment, GLuint texture, GLint level) {
-  Track& track = here();
-  track.chain().group().texture_rendered_to(texture);
-  track.below().FramebufferTexture(target, attachment, texture, level);
-}
+/// Commands that attach the texture named by the argument at `Position` to a framebuffer.
+template <std::size_t Position, auto Slot>
+struct Attaches;
+template <std::size_t Position, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
+struct Attaches<Position, Slot> {
+  static void APIENTRY call(A... arguments) {
+    Track& track = here();
+    track.texture_rendered_to(std::get<Position>(std::tie(arguments...)));
+    (track.below().*Slot)(arguments...);
+  }
+};
 
-void APIENTRY framebuffer_texture_1d(GLenum target, GLenum attachment, GLenum texture_target, GLuint texture,
-                                     GLint level) {
-  Track& track = here();
-  track.chain().group().texture_rendered_to(texture);
-  track.below().FramebufferTexture1D(target, attachment, texture_target, texture, level);
-}
-
-void APIENTRY framebuffer_texture_3d(GLenum target, GLenum attachment, GLenum texture_target, GLuint texture,
-                                     GLint level, GLint layer) {
-  Track& track = here();
-  track.chain().group().texture_rendered_to(texture);
-  track.below().FramebufferTexture3D(target, attachment, texture_target, texture, level, layer);
-}
-
-void APIENTRY framebuffer_texture_layer(GLenum target, GLenum attachment, GLuint texture, GLint level,
-                                        GLint layer) {
-  Track& track = here();
-  track.chain().group().texture_rendered_to(texture);
-  track.below().FramebufferTextureLayer(target, attachment, texture, level, layer);
+void fill_attachments(DispatchTable& table) {
+  using Table = DispatchTable;
+  table.FramebufferTexture = Attaches<2, &Table::FramebufferTexture>::call;
+  table.FramebufferTextureARB = Attaches<2, &Table::FramebufferTextureARB>::call;
+  table.FramebufferTextureEXT = Attaches<2, &Table::FramebufferTextureEXT>::call;
+  table.FramebufferTexture1D = Attaches<3, &Table::FramebufferTexture1D>::call;
+  table.FramebufferTexture1DEXT = Attaches<3, &Table::FramebufferTexture1DEXT>::call;
+  table.FramebufferTexture2D = Attaches<3, &Table::FramebufferTexture2D>::call;
+  table.FramebufferTexture2DEXT = Attaches<3, &Table::FramebufferTexture2DEXT>::call;
+  table.FramebufferTexture3D = Attaches<3, &Table::FramebufferTexture3D>::call;
+  table.FramebufferTexture3DEXT = Attaches<3, &Table::FramebufferTexture3DEXT>::call;
+  table.FramebufferTextureLayer = Attaches<2, &Table::FramebufferTextureLayer>::call;
+  table.FramebufferTextureLayerARB = Attaches<2, &Table::FramebufferTextureLayerARB>::call;
+  table.FramebufferTextureLayerEXT = Attaches<2, &Table::FramebufferTextureLayerEXT>::call;
+  table.NamedFramebufferTexture = Attaches<2, &Table::NamedFramebufferTexture>::call;
+  table.NamedFramebufferTextureEXT = Attaches<2, &Table::NamedFramebufferTextureEXT>::call;
+  table.NamedFramebufferTexture1DEXT = Attaches<3, &Table::NamedFramebufferTexture1DEXT>::call;
+  table.NamedFramebufferTexture2DEXT = Attaches<3, &Table::NamedFramebufferTexture2DEXT>::call;
+  table.NamedFramebufferTexture3DEXT = Attaches<3, &Table::NamedFramebufferTexture3DEXT>::call;
+  table.NamedFramebufferTextureLayer = Attaches<2, &Table::NamedFramebufferTextureLayer>::call;
+  table.NamedFramebufferTextureLayerEXT = Attaches<2, &Table::NamedFramebufferTextureLayerEXT>::call;
 }
 
 void APIENTRY bind_image_texture(GLuint unit, GLuint texture, GLint level, GLboolean layered, GLint layer,
                                  GLenum access, GLenum format) {
   Track& track = here();
-  if (access != GL_READ_ONLY) track.chain().group().texture_rendered_to(texture);
+  if (access != GL_READ_ONLY) track.texture_rendered_to(texture);
   track.below().BindImageTexture(unit, texture, level, layered, layer, access, format);
 }
 
-/// Reads back what a program was linked from while its shaders are still attached.
-ProgramRecord describe_program(const DispatchTable& gl, GLuint program) {
-  ProgramRecord record;
-  GLint linked = 0;
-  gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
-  if (!linked) return record;
-  std::array<GLuint, 16> shaders{};
-  GLsizei attached = 0;
-  gl.GetAttachedShaders(program, GLsizei(shaders.size()), &attached, shaders.data());
-  for (GLsizei i = 0; i < attached; ++i) {
-    GLint type = 0;
-    GLint length = 0;
-    gl.GetShaderiv(shaders[i], GL_SHADER_TYPE, &type);
-    gl.GetShaderiv(shaders[i], GL_SHADER_SOURCE_LENGTH, &length);
-    std::string source(std::size_t(std::max(length, 1)), '\0');
-    GLsizei written = 0;
-    gl.GetShaderSource(shaders[i], GLsizei(source.size()), &written, source.data());
-    source.resize(std::size_t(written));
-    if (type == GL_VERTEX_SHADER) {
-      record.vertex_shader = true;
-      record.vertex_sources.push_back(std::move(source));
-    } else if (type == GL_FRAGMENT_SHADER) {
-      record.fragment_source_known = !source.empty();
-      record.fragment_sources.push_back(std::move(source));
-    } else {
-      record.other_stages = true;
-    }
+/// Binds for reading and writing.
+void APIENTRY bind_image_textures(GLuint first, GLsizei count, const GLuint* textures) {
+  Track& track = here();
+  if (count > 0 && textures != nullptr) {
+    for (const GLuint texture : std::span(textures, std::size_t(count))) track.texture_rendered_to(texture);
   }
-  GLint uniforms = 0;
-  gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &uniforms);
-  for (GLint i = 0; i < uniforms; ++i) {
-    std::array<char, 256> name{};
-    GLint size = 0;
-    GLenum type = 0;
-    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
-    if (type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_2D_RECT) {
-      record.samplers.push_back({name.data(), type, gl.GetUniformLocation(program, name.data())});
-    }
-  }
-  return record;
-}
-
-void APIENTRY link_program(GLuint program) {
-  Track& track = here();
-  track.below().LinkProgram(program);
-  track.chain().group().program_linked(program, describe_program(track.chain().driver(), program));
-}
-
-void APIENTRY link_program_arb(GLhandleARB program) {
-  Track& track = here();
-  track.below().LinkProgramARB(program);
-  const auto name = GLuint(program);
-  track.chain().group().program_linked(name, describe_program(track.chain().driver(), name));
-}
-
-void APIENTRY delete_program(GLuint program) {
-  Track& track = here();
-  track.below().DeleteProgram(program);
-  track.chain().group().program_deleted(program);
+  track.below().BindImageTextures(first, count, textures);
 }
 
 void APIENTRY new_list(GLuint list, GLenum mode) {
   Track& track = here();
   track.below().NewList(list, mode);
-  GLint open = 0;
-  track.chain().driver().GetIntegerv(GL_LIST_INDEX, &open);
-  if (open != 0) track.begin_list(GLuint(open));
+  // Anything else is refused and opens no list.
+  if (list != 0 && (mode == GL_COMPILE || mode == GL_COMPILE_AND_EXECUTE)) track.begin_list(list, mode);
 }
 
 void APIENTRY close_list() {
@@ -237,9 +163,17 @@ void APIENTRY delete_lists(GLuint first, GLsizei count) {
 
 void APIENTRY call_list(GLuint list) {
   Track& track = here();
-  const auto record = track.chain().group().list(list);
   track.below().CallList(list);
-  if (record && record->changes_textures) track.chain().group().all_textures_changed();
+  ShareGroup& group = track.chain().group();
+  if (!group.lists_change_textures()) return;
+  const auto record = group.list(list);
+  if (record && record->changes_textures) group.some_texture_changed();
+}
+
+void APIENTRY call_lists(GLsizei count, GLenum type, const void* lists) {
+  Track& track = here();
+  track.below().CallLists(count, type, lists);
+  if (track.chain().group().lists_change_textures()) track.chain().group().some_texture_changed();
 }
 
 void APIENTRY call_list_in_list(GLuint list) {
@@ -252,10 +186,50 @@ void APIENTRY call_list_in_list(GLuint list) {
   track.below().CallList(list);
 }
 
+/// Which lists they are depends on glListBase when the open list is called.
+void APIENTRY call_lists_in_list(GLsizei count, GLenum type, const void* lists) {
+  Track& track = here();
+  ListRecord& open = track.open_list();
+  open.draws = true;
+  open.only_geometry = false;
+  open.changes_textures |= track.chain().group().lists_change_textures();
+  track.below().CallLists(count, type, lists);
+}
+
+void fill_compiling(DispatchTable& table) {
+  const DispatchTable next = table;
+  PassThrough<NoteListContent>::fill(table);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    if (kind_of(CallId(i)) == CallKind::not_compiled) set_slot(table, CallId(i), slot(next, CallId(i)));
+  }
+  table.CallList = call_list_in_list;
+  table.CallLists = call_lists_in_list;
+  table.EndList = close_list;
+}
+
+void fill_texture_changes(DispatchTable& table) {
+  DispatchTable changes = table;
+  PassThrough<NoteTextureChange>::fill(changes);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    const CallKind kind = kind_of(CallId(i));
+    if (kind == CallKind::bound_texture || kind == CallKind::unknown_texture) {
+      set_slot(table, CallId(i), slot(changes, CallId(i)));
+    }
+  }
+  table.TexImage3D = DefinesVolume<0, &DispatchTable::TexImage3D>::call;
+  table.TexImage3DEXT = DefinesVolume<0, &DispatchTable::TexImage3DEXT>::call;
+  table.TexStorage3D = DefinesVolume<0, &DispatchTable::TexStorage3D>::call;
+  table.TextureImage3DEXT = DefinesVolume<1, &DispatchTable::TextureImage3DEXT>::call;
+  table.TextureStorage3DEXT = DefinesVolume<1, &DispatchTable::TextureStorage3DEXT>::call;
+  table.MultiTexImage3DEXT = DefinesVolume<1, &DispatchTable::MultiTexImage3DEXT>::call;
+  table.TextureStorage3D = texture_storage_3d;
+}
+
 }  // namespace
 
-void Track::begin_list(GLuint list) {
+void Track::begin_list(GLuint list, GLenum mode) {
   list_ = list;
+  list_is_executed_ = mode == GL_COMPILE_AND_EXECUTE;
   open_list_ = {};
   phase_before_list_ = chain_.phase();
   chain_.set_phase(Phase::compiling);
@@ -263,69 +237,46 @@ void Track::begin_list(GLuint list) {
 
 void Track::end_list() {
   if (list_ != 0) chain_.group().list_defined(list_, open_list_);
+  if (list_is_executed_ && open_list_.changes_textures) chain_.group().some_texture_changed();
   list_ = 0;
   chain_.set_phase(phase_before_list_);
+}
+
+void Track::volume_defined() {
+  chain_.group().volume_defined();
+  if (chain_.phase() == Phase::plain) chain_.set_phase(Phase::watching);
+}
+
+void Track::texture_rendered_to(GLuint texture) {
+  ShareGroup& group = chain_.group();
+  if (const std::uint64_t deletions = group.deletions(); deletions != deletions_) {
+    rendered_to_.fill(0);
+    deletions_ = deletions;
+  }
+  GLuint& told = rendered_to_[texture % rendered_to_.size()];
+  if (texture == told) return;
+  if (texture != 0) group.texture_rendered_to(texture);
+  told = texture;
 }
 
 void Track::frame_ended(FrameEnd) {
   if (chain_.phase() == Phase::plain && chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
 }
 
-void Track::bound_textures_change(int dimensions) {
-  constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
-      {{GL_TEXTURE_BINDING_1D, 0},
-       {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_RECTANGLE},
-       {GL_TEXTURE_BINDING_3D, 0}}};
-  for (const GLenum binding : bindings[std::size_t(dimensions - 1)]) {
-    GLint texture = 0;
-    if (binding != 0) chain_.driver().GetIntegerv(binding, &texture);
-    if (texture != 0) chain_.group().texture_changed(GLuint(texture));
-  }
-}
-
 void Track::fill(Phase phase, DispatchTable& table) {
-  if (phase == Phase::compiling) {
-    const DispatchTable driver = table;
-    PassThrough<NoteListContent>::fill(table);
-    // Nothing that is executed at once needs noting; the texture calls among it are overridden below.
-    for (std::size_t i = 0; i < call_count; ++i) {
-      if (kind_of(CallId(i)) == CallKind::not_compiled) set_slot(table, CallId(i), slot(driver, CallId(i)));
-    }
-    table.CallList = call_list_in_list;
-    table.EndList = close_list;
-    return;
-  }
-  DispatchTable texture_changes = table;
-  PassThrough<NoteTextureChange>::fill(texture_changes);
-  for (std::size_t i = 0; i < call_count; ++i) {
-    const CallKind kind = kind_of(CallId(i));
-    if (kind == CallKind::bound_texture || kind == CallKind::unknown_texture) {
-      set_slot(table, CallId(i), slot(texture_changes, CallId(i)));
-    }
-  }
-  table.TexImage3D = tex_image_3d;
-  table.TexImage3DEXT = tex_image_3d_ext;
-  table.TexStorage3D = tex_storage_3d;
-  table.TextureStorage3D = texture_storage_3d;
-  table.TextureStorage1D = ChangesNamedTexture<&DispatchTable::TextureStorage1D>::call;
-  table.TextureStorage2D = ChangesNamedTexture<&DispatchTable::TextureStorage2D>::call;
-  table.TextureSubImage1D = ChangesNamedTexture<&DispatchTable::TextureSubImage1D>::call;
-  table.TextureSubImage2D = ChangesNamedTexture<&DispatchTable::TextureSubImage2D>::call;
-  table.TextureSubImage3D = ChangesNamedTexture<&DispatchTable::TextureSubImage3D>::call;
-  table.ClearTexImage = ChangesNamedTexture<&DispatchTable::ClearTexImage>::call;
-  table.ClearTexSubImage = ChangesNamedTexture<&DispatchTable::ClearTexSubImage>::call;
-  table.DeleteTextures = delete_textures;
-  table.FramebufferTexture = framebuffer_texture;
-  table.FramebufferTexture1D = framebuffer_texture_1d;
-  table.FramebufferTexture3D = framebuffer_texture_3d;
-  table.FramebufferTextureLayer = framebuffer_texture_layer;
+  if (phase == Phase::compiling) fill_compiling(table);
+  if (phase == Phase::plain) fill_texture_changes(table);
+  fill_program_slots(table);
+  fill_attachments(table);
   table.BindImageTexture = bind_image_texture;
-  table.LinkProgram = link_program;
-  table.LinkProgramARB = link_program_arb;
-  table.DeleteProgram = delete_program;
-  table.NewList = new_list;
+  table.BindImageTextures = bind_image_textures;
+  table.TextureView = texture_view;
+  table.DeleteTextures = delete_textures;
   table.DeleteLists = delete_lists;
+  if (phase == Phase::compiling) return;
+  table.NewList = new_list;
   table.CallList = call_list;
+  table.CallLists = call_lists;
 }
 
 }  // namespace understudy::spu

@@ -1,6 +1,10 @@
 // The track unit: keeps what the driver cannot be asked for later (see share_group.h) and starts the watch for
-// volumes when the first 3-D texture appears.
+// volumes when the first 3-D texture appears. It asks the driver nothing: under it alone, an application's
+// calls reach the driver as they are.
 #pragma once
+
+#include <array>
+#include <cstdint>
 
 #include "spu/chain.h"
 #include "spu/track/share_group.h"
@@ -19,11 +23,12 @@ class Track final : public Unit {
 
   /// What the list being compiled holds so far.
   ListRecord& open_list() { return open_list_; }
-  void begin_list(GLuint list);
+  void begin_list(GLuint list, GLenum mode);
   void end_list();
 
-  /// The textures of `dimensions` dimensions bound to the active unit are about to change.
-  void bound_textures_change(int dimensions);
+  /// A 3-D texture is being defined: from now on draws are watched.
+  void volume_defined();
+  void texture_rendered_to(GLuint texture);
 
   Chain& chain() { return chain_; }
   const DispatchTable& below() const { return chain_.below(*this); }
@@ -31,8 +36,13 @@ class Track final : public Unit {
  private:
   Chain& chain_;
   GLuint list_ = 0;
+  bool list_is_executed_ = false;  ///< the commands of the open list are executed while they are compiled
   Phase phase_before_list_ = Phase::plain;
   ListRecord open_list_;
+  /// Textures that the group was told of already, at their name modulo the size: attaching one again, as many
+  /// viewers do in every frame, takes no lock.
+  std::array<GLuint, 64> rendered_to_{};
+  std::uint64_t deletions_ = 0;  ///< of the group, when rendered_to_ was last right
 };
 
 }  // namespace understudy::spu

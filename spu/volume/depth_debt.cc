@@ -19,6 +19,8 @@ VolumeUnit& here() {
 struct NoteDepthUse {
   static const DispatchTable& before(CallId call) {
     VolumeUnit& unit = here();
+    // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
+    if (unit.inside_begin) return unit.chain().face(unit, Phase::watching);
     const bool draw = kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists;
     if (!draw || unit.context().gl->IsEnabled(GL_DEPTH_TEST)) unit.depth_looked_at();
     return unit.chain().face(unit, Phase::watching);

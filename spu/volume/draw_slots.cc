@@ -6,6 +6,7 @@
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
 #include "spu/volume/client_arrays.h"
+#include "spu/volume/texture_changes.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
@@ -22,7 +23,8 @@ struct CloseRun {
   static const DispatchTable& before(CallId) {
     VolumeUnit& unit = here();
     unit.close_run();
-    return unit.next();
+    // The call may be one that is looked at in the phase that is entered now.
+    return unit.chain().face(unit, unit.chain().phase());
   }
 };
 
@@ -172,6 +174,7 @@ void fill_draws(DispatchTable& table) {
 
 void fill_watching_slots(DispatchTable& table) {
   fill_draws(table);
+  fill_texture_change_slots(table);
   table.End = end_while_watching;
 }
 

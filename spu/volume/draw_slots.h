@@ -5,7 +5,7 @@
 
 namespace understudy::spu {
 
-/// Draws are looked at; everything else stays the next unit's.
+/// Draws and changes of textures are looked at; everything else stays the next unit's.
 void fill_watching_slots(DispatchTable& table);
 
 /// More slices join the run; every other call closes it first and is then made.

@@ -50,12 +50,12 @@ GLenum target_of_sampler(GLenum type) {
 
 /// The one 3-D texture and the tables that a program samples; a reason where that is not the shape of it.
 std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
-                                                 Pipeline& pipeline) {
+                                                 ProgramSamplers& samplers, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
-  const ProgramRecord* record = group.program(pipeline.program);
+  const std::shared_ptr<const ProgramRecord> record = group.programs().program(pipeline.program);
   if (record == nullptr) return std::nullopt;  // never linked in our sight: no 3-D sampler known
   int volumes = 0;
-  for (const SamplerUniform& sampler : record->samplers) {
+  for (const SamplerUniform& sampler : samplers.of(gl, pipeline.program, record->link)) {
     const GLenum target = target_of_sampler(sampler.type);
     GLint unit = 0;
     gl.GetUniformiv(pipeline.program, sampler.location, &unit);
@@ -187,18 +187,18 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
 
 }  // namespace
 
-PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group) {
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers) {
   const DispatchTable& gl = *context.gl;
   if (!gl.IsEnabled(GL_BLEND)) return NotAVolume{};
   Pipeline pipeline;
   pipeline.program = GLuint(integer(gl, GL_CURRENT_PROGRAM));
   std::optional<std::string> reason;
   if (pipeline.program != 0) {
-    reason = read_program_textures(context, group, pipeline);
+    reason = read_program_textures(context, group, samplers, pipeline);
   } else if (!context.core) {
     reason = read_fixed_function_textures(context, pipeline);
   }
-  if (pipeline.volume.texture == 0 || !group.is_volume(pipeline.volume.texture)) return NotAVolume{};
+  if (pipeline.volume.texture == 0) return NotAVolume{};
   if (!reason) reason = read_surroundings(context, pipeline);
   if (reason) return LeftAlone{pipeline.volume.texture, *reason};
   return pipeline;

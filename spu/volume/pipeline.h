@@ -9,6 +9,7 @@
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context.h"
+#include "spu/volume/program_samplers.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
@@ -53,6 +54,6 @@ struct LeftAlone {
 using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;
 
 /// Reads the current state. Outside glBegin/glEnd only.
-PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group);
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers);
 
 }  // namespace understudy::spu

@@ -225,6 +225,7 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
 KnownVolume& VolumeUnit::known(GLuint texture) {
   KnownVolume& volume = known_[texture];
   if (volume.counters == nullptr) {
+    chain_.group().remember(texture);
     ProcessCounters& process = process_counters();
     const std::uint32_t index = process.volumes.fetch_add(1, std::memory_order_relaxed);
     // Past the last slot the counts of further volumes are shared; the drawing is not affected.
@@ -248,7 +249,7 @@ void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
 
 bool VolumeUnit::opens_run() {
   if (inside_begin || !context().sufficient()) return false;
-  const PipelineFinding finding = read_pipeline(context(), chain_.group());
+  const PipelineFinding finding = read_pipeline(context(), chain_.group(), samplers_);
   if (std::holds_alternative<NotAVolume>(finding)) return false;
   std::string reason;
   GLuint texture = 0;
@@ -259,7 +260,7 @@ bool VolumeUnit::opens_run() {
     texture = std::get<Pipeline>(finding).volume.texture;
     reason = known(texture).given_back;
     if (reason.empty() && chain_.group().is_rendered_to(texture))
-      reason = "the volume texture is rendered into";
+      reason = "the volume texture is rendered into, or another texture shares its texels";
   }
   if (!reason.empty()) {
     // Slices drawn one by one are still one run: it is counted once a frame.
@@ -314,8 +315,8 @@ const ProgramStages& VolumeUnit::stages(GLuint program, const ProgramRecord& rec
 
 void VolumeUnit::observe(Substitution& s) {
   const DispatchTable& gl = *context().gl;
-  const ProgramRecord* record = s.pipeline.program != 0 ? chain_.group().program(s.pipeline.program) : nullptr;
-  s.fragment.record = record;
+  if (s.pipeline.program != 0) s.fragment.record = chain_.group().programs().program(s.pipeline.program);
+  const ProgramRecord* const record = s.fragment.record.get();
   s.fragment.application = s.pipeline.program;
   if (record != nullptr) {
     const ProgramStages& parts = stages(s.pipeline.program, *record);
@@ -601,7 +602,7 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
 void VolumeUnit::forget_deleted_volumes() {
   std::erase_if(known_, [&](auto& entry) {
     auto& [texture, volume] = entry;
-    if (chain_.group().is_volume(texture)) return false;
+    if (chain_.group().remembers(texture)) return false;
     if (volume.generation != 0) {
       const auto lock = session_->lock();
       if (volume.generation == session_->generation()) session_->forget(volume.description.id);

@@ -17,6 +17,7 @@
 #include "spu/volume/context.h"
 #include "spu/volume/geometry/slices.h"
 #include "spu/volume/present.h"
+#include "spu/volume/program_samplers.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
 
@@ -94,6 +95,7 @@ class VolumeUnit final : public Unit {
   std::unique_ptr<Presenter> presenter_;
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
+  ProgramSamplers samplers_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
       stages_;                ///< by program, with the link they stem from
   GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none

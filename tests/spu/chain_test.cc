@@ -248,30 +248,5 @@ TEST(Calls, AreToldApartByName) {
   EXPECT_EQ(kind_of(CallId::Color4ubv), CallKind::vertex);
 }
 
-TEST(ShareGroup, AVersionNeverComesBack) {
-  ShareGroup group;
-  group.texture_changed(7);
-  const auto first = group.texture_version(7);
-  group.texture_changed(7);
-  const auto second = group.texture_version(7);
-  EXPECT_GT(second, first);
-  group.all_textures_changed();
-  EXPECT_GT(group.texture_version(7), second);
-  const auto last = group.texture_version(7);
-  group.texture_deleted(7);
-  group.texture_changed(7);
-  EXPECT_GT(group.texture_version(7), last);
-}
-
-TEST(ShareGroup, DeletedTexturesAreNoVolumes) {
-  ShareGroup group;
-  EXPECT_FALSE(group.has_volumes());
-  group.volume_defined(3);
-  EXPECT_TRUE(group.has_volumes());
-  EXPECT_TRUE(group.is_volume(3));
-  group.texture_deleted(3);
-  EXPECT_FALSE(group.is_volume(3));
-}
-
 }  // namespace
 }  // namespace understudy::spu

@@ -247,7 +247,7 @@ ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipe
   Bench bench(context, pipeline);
   if (!bench.complete()) return "the driver offers no float framebuffer to probe with";
   std::string trouble;
-  bench.own(probe_program(context, fragment.record, fragment.inputs, fragment.coordinate, trouble));
+  bench.own(probe_program(context, fragment.record.get(), fragment.inputs, fragment.coordinate, trouble));
   if (bench.program() == 0) return trouble;
   if (fragment.record != nullptr) copy_uniforms(context, fragment.application, bench.program());
   if (texture.base == BaseFormat::rgba) return probe_map(bench, context, pipeline, texture, fragment);

@@ -4,6 +4,7 @@
 // parse.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,8 +19,8 @@ namespace understudy::spu {
 
 /// What the fragment stage gets besides the sample.
 struct FragmentInputs {
-  const ProgramRecord* record = nullptr;  ///< null: fixed-function fragments
-  GLuint application = 0;                 ///< the application's program, for its uniforms
+  std::shared_ptr<const ProgramRecord> record;  ///< null: fixed-function fragments
+  GLuint application = 0;                       ///< the application's program, for its uniforms
   std::vector<StageInput> inputs;
   std::string coordinate;
   InputValues first;  ///< values of all inputs at one vertex, in the order of `inputs`

@@ -1,0 +1,138 @@
+#include "spu/track/program_slots.h"
+
+#include <span>
+
+#include "spu/track/track.h"
+
+namespace understudy::spu {
+namespace {
+
+Track& here() {
+  return *Chain::current()->find<Track>();
+}
+
+ProgramSources& programs() {
+  return here().chain().group().programs();
+}
+
+GLuint APIENTRY create_shader(GLenum type) {
+  const GLuint shader = here().below().CreateShader(type);
+  programs().shader_created(shader, type);
+  return shader;
+}
+
+GLhandleARB APIENTRY create_shader_object(GLenum type) {
+  const GLhandleARB shader = here().below().CreateShaderObjectARB(type);
+  programs().shader_created(GLuint(shader), type);
+  return shader;
+}
+
+GLuint APIENTRY create_program() {
+  const GLuint program = here().below().CreateProgram();
+  programs().program_created(program);
+  return program;
+}
+
+GLhandleARB APIENTRY create_program_object() {
+  const GLhandleARB program = here().below().CreateProgramObjectARB();
+  programs().program_created(GLuint(program));
+  return program;
+}
+
+GLuint APIENTRY create_shader_program(GLenum type, GLsizei count, const GLchar* const* strings) {
+  const GLuint program = here().below().CreateShaderProgramv(type, count, strings);
+  programs().program_linked_from(program, type, joined(count, strings, nullptr));
+  return program;
+}
+
+GLuint APIENTRY create_shader_program_ext(GLenum type, const GLchar* string) {
+  const GLuint program = here().below().CreateShaderProgramEXT(type, string);
+  programs().program_linked_from(program, type, joined(1, &string, nullptr));
+  return program;
+}
+
+void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
+  programs().source_given(shader, joined(count, strings, lengths));
+  here().below().ShaderSource(shader, count, strings, lengths);
+}
+
+void APIENTRY shader_source_arb(GLhandleARB shader, GLsizei count, const GLcharARB** strings,
+                                const GLint* lengths) {
+  programs().source_given(GLuint(shader), joined(count, strings, lengths));
+  here().below().ShaderSourceARB(shader, count, strings, lengths);
+}
+
+void APIENTRY shader_binary(GLsizei count, const GLuint* shaders, GLenum format, const void* binary,
+                            GLsizei length) {
+  if (count > 0 && shaders != nullptr) {
+    for (const GLuint shader : std::span(shaders, std::size_t(count))) programs().binary_given(shader);
+  }
+  here().below().ShaderBinary(count, shaders, format, binary, length);
+}
+
+void APIENTRY specialize_shader(GLuint shader, const GLchar* entry, GLuint count, const GLuint* indices,
+                                const GLuint* values) {
+  programs().binary_given(shader);
+  here().below().SpecializeShader(shader, entry, count, indices, values);
+}
+
+void APIENTRY specialize_shader_arb(GLuint shader, const GLchar* entry, GLuint count, const GLuint* indices,
+                                    const GLuint* values) {
+  programs().binary_given(shader);
+  here().below().SpecializeShaderARB(shader, entry, count, indices, values);
+}
+
+void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
+  here().below().ProgramBinary(program, format, binary, length);
+  programs().program_loaded(program);
+}
+
+void APIENTRY delete_object(GLhandleARB object) {
+  here().below().DeleteObjectARB(object);
+  // The one name is a shader's or a program's.
+  programs().shader_deleted(GLuint(object));
+  programs().program_deleted(GLuint(object));
+}
+
+/// Commands that name one object, or two, and answer nothing: made, then noted.
+template <auto Slot, auto Note>
+struct Noted;
+template <class... Names, void (APIENTRY* DispatchTable::*Slot)(Names...), auto Note>
+struct Noted<Slot, Note> {
+  static void APIENTRY call(Names... names) {
+    (here().below().*Slot)(names...);
+    (programs().*Note)(GLuint(names)...);
+  }
+};
+
+}  // namespace
+
+void fill_program_slots(DispatchTable& table) {
+  table.CreateShader = create_shader;
+  table.CreateShaderObjectARB = create_shader_object;
+  table.CreateProgram = create_program;
+  table.CreateProgramObjectARB = create_program_object;
+  table.CreateShaderProgramv = create_shader_program;
+  table.CreateShaderProgramEXT = create_shader_program_ext;
+  table.ShaderSource = shader_source;
+  table.ShaderSourceARB = shader_source_arb;
+  table.ShaderBinary = shader_binary;
+  table.SpecializeShader = specialize_shader;
+  table.SpecializeShaderARB = specialize_shader_arb;
+  table.ProgramBinary = program_binary;
+  table.DeleteObjectARB = delete_object;
+  using Table = DispatchTable;
+  using Sources = ProgramSources;
+  table.CompileShader = Noted<&Table::CompileShader, &Sources::shader_compiled>::call;
+  table.CompileShaderARB = Noted<&Table::CompileShaderARB, &Sources::shader_compiled>::call;
+  table.AttachShader = Noted<&Table::AttachShader, &Sources::shader_attached>::call;
+  table.AttachObjectARB = Noted<&Table::AttachObjectARB, &Sources::shader_attached>::call;
+  table.DetachShader = Noted<&Table::DetachShader, &Sources::shader_detached>::call;
+  table.DetachObjectARB = Noted<&Table::DetachObjectARB, &Sources::shader_detached>::call;
+  table.LinkProgram = Noted<&Table::LinkProgram, &Sources::program_linked>::call;
+  table.LinkProgramARB = Noted<&Table::LinkProgramARB, &Sources::program_linked>::call;
+  table.DeleteShader = Noted<&Table::DeleteShader, &Sources::shader_deleted>::call;
+  table.DeleteProgram = Noted<&Table::DeleteProgram, &Sources::program_deleted>::call;
+}
+
+}  // namespace understudy::spu

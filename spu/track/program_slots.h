@@ -1,0 +1,11 @@
+// The slots of the dispatch table through which shaders and programs are made.
+#pragma once
+
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+/// The same in every phase: none of these commands is ever compiled into a display list.
+void fill_program_slots(DispatchTable& table);
+
+}  // namespace understudy::spu

@@ -1,0 +1,165 @@
+// What is kept for all contexts of a group.
+#include "spu/track/share_group.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace understudy::spu {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(ShareGroup, AVersionNeverComesBack) {
+  ShareGroup group;
+  group.texture_changed(7);
+  const auto first = group.texture_version(7);
+  group.texture_changed(7);
+  const auto second = group.texture_version(7);
+  EXPECT_GT(second, first);
+  group.some_texture_changed();
+  EXPECT_GT(group.texture_version(7), second);
+  const auto last = group.texture_version(7);
+  group.texture_deleted(7);
+  group.some_texture_changed();
+  EXPECT_GT(group.texture_version(7), last);
+  group.texture_changed(7);
+  EXPECT_GT(group.texture_version(7), last + 1);
+}
+
+TEST(ShareGroup, ADeletedTextureIsForgotten) {
+  ShareGroup group;
+  EXPECT_FALSE(group.remembers(3));
+  group.remember(3);
+  group.texture_rendered_to(3);
+  EXPECT_TRUE(group.remembers(3));
+  EXPECT_TRUE(group.is_rendered_to(3));
+  const auto deletions = group.deletions();
+  group.texture_deleted(3);
+  EXPECT_FALSE(group.remembers(3));
+  EXPECT_FALSE(group.is_rendered_to(3));
+  EXPECT_GT(group.deletions(), deletions);
+}
+
+TEST(ShareGroup, TellsOnceListsMayChangeTextures) {
+  ShareGroup group;
+  group.list_defined(1, {.draws = true});
+  EXPECT_FALSE(group.lists_change_textures());
+  group.list_defined(2, {.only_geometry = false, .changes_textures = true});
+  EXPECT_TRUE(group.lists_change_textures());
+  group.lists_deleted(1, 2);
+  EXPECT_FALSE(group.list(1));
+  EXPECT_FALSE(group.list(2));
+}
+
+/// A program of one vertex shader and one fragment shader, not yet linked.
+class Sources : public testing::Test {
+ protected:
+  static constexpr GLuint vertex = 1;
+  static constexpr GLuint fragment = 2;
+  static constexpr GLuint program = 3;
+
+  Sources() {
+    given(vertex, GL_VERTEX_SHADER, "vertex text");
+    given(fragment, GL_FRAGMENT_SHADER, "fragment text");
+    kept.program_created(program);
+    kept.shader_attached(program, vertex);
+    kept.shader_attached(program, fragment);
+  }
+
+  void given(GLuint shader, GLenum type, const char* text) {
+    kept.shader_created(shader, type);
+    kept.source_given(shader, text);
+    kept.shader_compiled(shader);
+  }
+
+  ProgramSources kept;
+};
+
+TEST_F(Sources, AreThoseOfTheLink) {
+  EXPECT_EQ(kept.program(program), nullptr);
+  kept.program_linked(program);
+  kept.source_given(fragment, "later text");
+  kept.shader_compiled(fragment);
+  const auto record = kept.program(program);
+  ASSERT_NE(record, nullptr);
+  EXPECT_THAT(record->vertex_sources, ElementsAre("vertex text"));
+  EXPECT_THAT(record->fragment_sources, ElementsAre("fragment text"));
+  EXPECT_TRUE(record->vertex_shader);
+  EXPECT_TRUE(record->fragment_source_known);
+  EXPECT_FALSE(record->other_stages);
+  kept.program_linked(program);
+  EXPECT_THAT(kept.program(program)->fragment_sources, ElementsAre("later text"));
+  EXPECT_NE(kept.program(program)->link, record->link);
+  EXPECT_THAT(record->fragment_sources, ElementsAre("fragment text")) << "what is held stays as it was";
+}
+
+TEST_F(Sources, AreWhatWasCompiledNotWhatWasGiven) {
+  kept.source_given(fragment, "never compiled");
+  kept.program_linked(program);
+  EXPECT_THAT(kept.program(program)->fragment_sources, ElementsAre("fragment text"));
+}
+
+TEST_F(Sources, OutliveShadersThatAreDetachedAndDeleted) {
+  kept.program_linked(program);
+  for (const GLuint shader : {vertex, fragment}) {
+    kept.shader_detached(program, shader);
+    kept.shader_deleted(shader);
+  }
+  EXPECT_THAT(kept.program(program)->fragment_sources, ElementsAre("fragment text"));
+  kept.program_linked(program);
+  EXPECT_FALSE(kept.program(program)->fragment_source_known) << "nothing is attached any more";
+}
+
+TEST_F(Sources, OfAShaderDeletedWhileAttachedAreLinked) {
+  kept.shader_deleted(vertex);
+  kept.shader_deleted(fragment);
+  kept.program_linked(program);
+  EXPECT_THAT(kept.program(program)->vertex_sources, ElementsAre("vertex text"));
+  kept.program_deleted(program);
+  EXPECT_EQ(kept.program(program), nullptr);
+  // The names are free, and mean other shaders now.
+  given(fragment, GL_FRAGMENT_SHADER, "another");
+  kept.program_created(program);
+  kept.shader_attached(program, fragment);
+  kept.program_linked(program);
+  EXPECT_THAT(kept.program(program)->fragment_sources, ElementsAre("another"));
+}
+
+TEST_F(Sources, OfBinariesAreNotKnown) {
+  kept.binary_given(fragment);
+  kept.program_linked(program);
+  EXPECT_FALSE(kept.program(program)->fragment_source_known);
+  kept.shader_compiled(fragment);
+  kept.program_linked(program);
+  EXPECT_TRUE(kept.program(program)->fragment_source_known);
+  kept.program_loaded(program);
+  EXPECT_FALSE(kept.program(program)->fragment_source_known);
+  EXPECT_THAT(kept.program(program)->vertex_sources, ElementsAre());
+}
+
+TEST_F(Sources, OfStagesBesideVertexAndFragmentAreOnlyNoted) {
+  given(9, GL_GEOMETRY_SHADER, "geometry text");
+  kept.shader_attached(program, 9);
+  kept.program_linked(program);
+  EXPECT_TRUE(kept.program(program)->other_stages);
+}
+
+TEST_F(Sources, OfAProgramMadeInOneCallAreIts) {
+  kept.program_linked_from(12, GL_FRAGMENT_SHADER, "alone");
+  EXPECT_THAT(kept.program(12)->fragment_sources, ElementsAre("alone"));
+  EXPECT_FALSE(kept.program(12)->vertex_shader);
+}
+
+TEST(JoinedSource, FollowsTheLengths) {
+  const std::array<const char*, 3> strings = {"one ", "two cut here", "three"};
+  const std::array<GLint, 3> lengths = {-1, 4, 5};
+  EXPECT_EQ(joined(3, strings.data(), lengths.data()), "one two three");
+  EXPECT_EQ(joined(1, strings.data(), nullptr), "one ");
+  EXPECT_EQ(joined(0, nullptr, nullptr), "");
+  EXPECT_EQ(joined(2, nullptr, nullptr), "");
+}
+
+}  // namespace
+}  // namespace understudy::spu

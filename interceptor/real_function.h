@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "interceptor/contextless_calls.h"
 #include "interceptor/door_thread.h"
 #include "interceptor/entry_point.h"
 #include "interceptor/real_driver.h"
@@ -29,6 +30,7 @@ class RealFunction<Result (*)(Arguments...)> {
       }
       function_.store(function, std::memory_order_relaxed);
     }
+    if (door_thread.level == 0) count_window_system_call();
     const InsideDriver inside;
     return reinterpret_cast<Result (*)(Arguments...)>(function)(arguments...);
   }

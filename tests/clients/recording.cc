@@ -57,6 +57,24 @@ std::vector<RecordedFrame> frames_in(const std::string& dump) {
   return frames;
 }
 
+std::vector<std::string> calls_in(const std::string& dump) {
+  std::vector<std::string> calls;
+  std::istringstream stream(dump);
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t digits = line.find_first_not_of("0123456789");
+    const bool first_line = digits != 0 && digits != std::string::npos && line[digits] == ' ';
+    if (first_line) line.erase(0, digits + 1);
+    if (first_line && has(line.substr(0, line.find('(')), "GetProcAddress")) continue;
+    for (std::size_t at = line.find("0x"); at != std::string::npos; at = line.find("0x", at + 2)) {
+      const std::size_t end = line.find_first_not_of("0123456789abcdef", at + 2);
+      line.erase(at + 2, end == std::string::npos ? end : end - at - 2);
+    }
+    if (has(line, "pname = GL_TIMESTAMP")) line.erase(line.find("params"));
+    if (!line.empty()) calls.push_back(std::move(line));
+  }
+  return calls;
+}
+
 std::string summary(const std::vector<std::string>& draws) {
   std::map<std::string, int> counts;
   for (const std::string& draw : draws) ++counts[draw.substr(0, draw.find('('))];

@@ -18,6 +18,10 @@ struct RecordedFrame {
 /// The words of `apitrace dump`, up to the last end of a frame.
 std::vector<RecordedFrame> frames_in(const std::string& dump);
 
+/// Every call with its arguments, in order, as comparable text: without the number it has in its recording,
+/// with addresses masked, and without look-ups of entry points, which make nothing happen.
+std::vector<std::string> calls_in(const std::string& dump);
+
 /// The names of the draws, and how often each occurs, for printing.
 std::string summary(const std::vector<std::string>& draws);
 

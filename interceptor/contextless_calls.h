@@ -1,0 +1,10 @@
+// Calls of a process that never has a context: no body is opened for it, so the door itself leaves their number
+// for the launcher's report.
+#pragma once
+
+namespace understudy::interceptor {
+
+/// The application called GLX or EGL.
+void count_window_system_call();
+
+}  // namespace understudy::interceptor

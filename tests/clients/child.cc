@@ -103,9 +103,9 @@ std::string Child::err() const {
   return contents(err_);
 }
 
-Outcome Child::finish() {
+Outcome Child::finish(std::chrono::milliseconds limit) {
   const auto ended = [this] { return !running(); };
-  if (comes_true_within(patience, ended)) return {*status_, out(), err()};
+  if (comes_true_within(limit, ended)) return {*status_, out(), err()};
   signal(SIGTERM);
   comes_true_within(patience_with_an_end, ended);
   return {-1, out(), err() + "(it had to be ended)\n"};

@@ -43,8 +43,8 @@ class Child {
   /// What it has said up to now.
   std::string out() const;
   std::string err() const;
-  /// Waits for its end; past `patience` it is told to end, and then killed.
-  Outcome finish();
+  /// Waits for its end; past `limit` it is told to end, and then killed.
+  Outcome finish(std::chrono::milliseconds limit = patience);
 
  private:
   pid_t pid_ = -1;

@@ -42,6 +42,8 @@ bool is_here(Need need) {
       return on_path("import");
     case Need::apitrace:
       return on_path("apitrace") && fs::exists(system_libraries / "apitrace/wrappers/egltrace.so");
+    case Need::piglit:
+      return on_path("piglit");
   }
   return false;
 }
@@ -60,6 +62,8 @@ const char* remedy(Need need) {
       return "there is no import (apt install imagemagick)";
     case Need::apitrace:
       return "there is no apitrace (apt install apitrace)";
+    case Need::piglit:
+      return "there is no piglit (apt install piglit)";
   }
   return "";
 }

@@ -22,7 +22,7 @@ using Words = std::vector<std::string>;
 Words operator+(Words first, const Words& second);
 
 /// Something a test cannot do without, and where it comes from.
-enum class Need { engine, mpi, x_server, osgvolume, imagemagick, apitrace };
+enum class Need { engine, mpi, x_server, osgvolume, imagemagick, apitrace, piglit };
 
 /// What of it this machine lacks, as a sentence for GTEST_SKIP; empty when all is there.
 std::string missing(std::initializer_list<Need> needs);

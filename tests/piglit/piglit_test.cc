@@ -1,0 +1,70 @@
+// OpenGL as piglit's tests see it is the same bare and under Understudy, whatever the chain.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Empty: the default.
+constexpr std::array chains = {""};
+
+/// For one run over all tests; on two cores it takes less than one minute.
+constexpr std::chrono::minutes patience_with_piglit{12};
+
+class Piglit : public Stage {
+ protected:
+  /// Runs all tests, with `before` in front of piglit, and leaves the results in a folder of that name.
+  void run_all(const std::string& results, const std::string& before, const std::string& chain) const {
+    const auto jobs = std::to_string(std::max(2U, std::thread::hardware_concurrency()));
+    Child piglit(on_stage({script.string(), file(results).string()},
+                          {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
+                 file(""));
+    const Outcome outcome = piglit.finish(patience_with_piglit);
+    ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  }
+
+  const fs::path script = fs::path(SOURCE_FOLDER) / "../shared/clients/piglit";
+};
+
+TEST_F(Piglit, SeesTheSameOpenGlUnderEveryChain) {
+  if (!fs::exists(script)) {
+    GTEST_SKIP() << "the list of piglit's tests is not here: it stands beside the project, as "
+                 << script.lexically_normal().string();
+  }
+  if (const std::string lacking = missing({Need::piglit, Need::x_server}); !lacking.empty())
+    GTEST_SKIP() << lacking;
+  run_all("bare", "", "");
+  for (const std::string chain : chains) {
+    SCOPED_TRACE(chain.empty() ? "the default chain" : chain);
+    const std::string results = fmt::format("under-{}", chain.empty() ? "default" : chain);
+    const fs::path report = file("report.json");
+    fs::remove(report);
+    std::string launcher;
+    for (const std::string& word : under({"--report", report.string()})) launcher += word + " ";
+    ASSERT_NO_FATAL_FAILURE(run_all(results, launcher, chain));
+
+    const Outcome comparison = run({script.string(), "--diff", file("bare").string(), file(results).string()});
+    EXPECT_EQ(comparison.status, 0) << comparison.out << comparison.err;
+    EXPECT_THAT(comparison.out, testing::IsEmpty()) << "the status of a test alone, and under Understudy";
+
+    const nlohmann::json processes = json("report.json").at("processes");
+    const auto counted =
+        std::count_if(processes.begin(), processes.end(), [](const auto& p) { return p.at("calls") > 0; });
+    fmt::print("{}: {} processes with calls\n", results, counted);
+    EXPECT_GT(counted, 500) << "piglit did not run under Understudy";
+  }
+}
+
+}  // namespace
+}  // namespace clients

@@ -1,8 +1,23 @@
 #include "spu/volume/context.h"
 
 #include <cstdio>
+#include <string_view>
 
 namespace understudy::spu {
+namespace {
+
+/// From OpenGL 3.0 on.
+bool has_extension(const DispatchTable& gl, std::string_view name) {
+  GLint count = 0;
+  gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* extension = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, GLuint(i)));
+    if (extension != nullptr && name == extension) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 GlContext describe_context(const DispatchTable& gl) {
   GlContext context;
@@ -20,6 +35,9 @@ GlContext describe_context(const DispatchTable& gl) {
   } else if (context.version >= 310) {
     context.core = true;  // 3.1 without ARB_compatibility; with it Mesa reports 3.2 or later
   }
+  context.pipeline_statistics =
+      context.version >= 460 ||
+      (context.version >= 300 && has_extension(gl, "GL_ARB_pipeline_statistics_query"));
   if (!context.core) gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
   return context;
 }

@@ -138,6 +138,32 @@ std::optional<std::string> read_alpha_result(const DispatchTable& gl, Pipeline& 
   return std::nullopt;
 }
 
+/// Queries in progress whose answer our own drawing would change.
+std::optional<std::string> read_queries(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  const auto in_progress = [&](GLenum target) {
+    GLint query = 0;
+    gl.GetQueryiv(target, GL_CURRENT_QUERY, &query);
+    return query != 0;
+  };
+  if (in_progress(GL_SAMPLES_PASSED) || (context.version >= 330 && in_progress(GL_ANY_SAMPLES_PASSED)) ||
+      (context.version >= 430 && in_progress(GL_ANY_SAMPLES_PASSED_CONSERVATIVE))) {
+    return "an occlusion query surrounds the slices";
+  }
+  if (context.version >= 300 &&
+      (in_progress(GL_PRIMITIVES_GENERATED) || in_progress(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN))) {
+    return "a query counts the primitives of the slices";
+  }
+  if (context.pipeline_statistics) {
+    for (const GLenum target :
+         {GL_VERTICES_SUBMITTED, GL_PRIMITIVES_SUBMITTED, GL_VERTEX_SHADER_INVOCATIONS,
+          GL_FRAGMENT_SHADER_INVOCATIONS, GL_CLIPPING_INPUT_PRIMITIVES, GL_CLIPPING_OUTPUT_PRIMITIVES}) {
+      if (in_progress(target)) return "a query counts what the slices' pipeline does";
+    }
+  }
+  return std::nullopt;
+}
+
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
@@ -175,10 +201,7 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   }
   if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
     return "the application is in feedback or select mode";
-  GLint query = 0;
-  gl.GetQueryiv(GL_SAMPLES_PASSED, GL_CURRENT_QUERY, &query);
-  if (query == 0 && context.version >= 330) gl.GetQueryiv(GL_ANY_SAMPLES_PASSED, GL_CURRENT_QUERY, &query);
-  if (query != 0) return "an occlusion query surrounds the slices";
+  if (auto reason = read_queries(context)) return reason;
   if (context.version >= 400) {
     if (integer(gl, GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE) != 0) return "transform feedback is active";
   }

@@ -59,6 +59,15 @@ struct GlApplication::Egl {
 };
 
 std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options options) {
+  return start(profile, std::make_shared<RenderSession>(std::move(options)), nullptr);
+}
+
+std::unique_ptr<GlApplication> GlApplication::start_companion() const {
+  return start(profile_, session_, this);
+}
+
+std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared_ptr<RenderSession> session,
+                                                    const GlApplication* companion) {
   auto egl = std::make_unique<Egl>();
   egl->display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (!eglInitialize(egl->display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) return nullptr;
@@ -88,7 +97,8 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options opt
                                profile == Profile::core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
                                                         : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
                                EGL_NONE};
-  egl->context = eglCreateContext(egl->display, config, EGL_NO_CONTEXT, attributes);
+  egl->context = eglCreateContext(egl->display, config,
+                                  companion != nullptr ? companion->egl_->context : EGL_NO_CONTEXT, attributes);
   const EGLint extent[] = {EGL_WIDTH, size, EGL_HEIGHT, size, EGL_NONE};
   egl->surface = eglCreatePbufferSurface(egl->display, config, extent);
   if (egl->context == EGL_NO_CONTEXT || egl->surface == EGL_NO_SURFACE ||
@@ -97,11 +107,11 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options opt
   }
   std::unique_ptr<GlApplication> application(new GlApplication);
   application->egl_ = std::move(egl);
-  application->chain_ = std::make_unique<Chain>(real_driver(), std::make_shared<ShareGroup>(), &install);
-  if (assemble(*application->chain_, "track volume driver",
-               std::make_shared<RenderSession>(std::move(options)))) {
-    return nullptr;
-  }
+  application->profile_ = profile;
+  application->session_ = std::move(session);
+  application->group_ = companion != nullptr ? companion->group_ : std::make_shared<ShareGroup>();
+  application->chain_ = std::make_unique<Chain>(real_driver(), application->group_, &install);
+  if (assemble(*application->chain_, "track volume driver", application->session_)) return nullptr;
   application->chain_->make_current();
   application->substituted_before_ = application->substituted();
   application->left_before_ = application->left();

@@ -20,6 +20,8 @@ class GlApplication {
   static constexpr int size = 96;  ///< of the framebuffer, both ways
 
   static std::unique_ptr<GlApplication> start(Profile profile, Options options = {});
+  /// A second context that shares its objects, current on the calling thread, where no other may be.
+  std::unique_ptr<GlApplication> start_companion() const;
   ~GlApplication();
   GlApplication(const GlApplication&) = delete;
   GlApplication& operator=(const GlApplication&) = delete;
@@ -46,8 +48,13 @@ class GlApplication {
 
  private:
   GlApplication() = default;
+  static std::unique_ptr<GlApplication> start(Profile profile, std::shared_ptr<RenderSession> session,
+                                              const GlApplication* companion);
   struct Egl;
   std::unique_ptr<Egl> egl_;
+  Profile profile_ = Profile::compatibility;
+  std::shared_ptr<RenderSession> session_;
+  std::shared_ptr<ShareGroup> group_;
   std::unique_ptr<Chain> chain_;
   std::uint64_t substituted_before_ = 0;
   std::uint64_t left_before_ = 0;

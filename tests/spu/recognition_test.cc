@@ -165,7 +165,7 @@ TEST(RecognitionOfDepth, OpaqueGeometryBeforeTheVolumeHidesIt) {
       }
       app->gl().End();
       app->gl().DepthMask(GL_FALSE);
-      scene.slices(*app, 25);
+      scene.slices_and_tidy_up(*app, 25);
       app->end_frame();
       return app->read_pixels();
     };

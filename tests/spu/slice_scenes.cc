@@ -110,7 +110,17 @@ void quad_corners(double z, std::array<GLfloat, 12>& corners) {
 
 }  // namespace
 
+void SliceScene::slices_and_tidy_up(GlApplication& app, double angle) const {
+  slices(app, angle);
+  tidy_up(app);
+}
+
 void SliceScene::draw(GlApplication& app, double angle) const {
+  draw_to_the_last_slice(app, angle);
+  tidy_up(app);
+}
+
+void SliceScene::draw_to_the_last_slice(GlApplication& app, double angle) const {
   app.gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
   app.gl().ClearColor(0.1F, 0.2F, 0.3F, 0.0F);
   app.gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -146,6 +156,8 @@ SliceScene immediate_rgba() {
       }
       app.gl().End();
     }
+  };
+  scene.tidy_up = [](GlApplication& app) {
     app.gl().Disable(GL_TEXTURE_3D);
     app.gl().Disable(GL_BLEND);
   };
@@ -217,8 +229,11 @@ SliceScene display_list_texgen() {
     app.gl().Enable(GL_TEXTURE_3D);
     app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
     app.gl().CallList(*list);
-    for (const GLenum off : {GL_TEXTURE_3D, GL_LIGHTING, GL_ALPHA_TEST, GL_BLEND}) app.gl().Disable(off);
-    for (std::size_t k = 0; k < 3; ++k) app.gl().Disable(generators[k]);
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    for (const GLenum off : {GL_TEXTURE_3D, GL_LIGHTING, GL_ALPHA_TEST, GL_BLEND, GL_TEXTURE_GEN_S,
+                             GL_TEXTURE_GEN_T, GL_TEXTURE_GEN_R})
+      app.gl().Disable(off);
     for (int i = 0; i < 6; ++i) app.gl().Disable(GLenum(GL_CLIP_PLANE0 + i));
   };
   return scene;
@@ -240,11 +255,12 @@ SliceScene client_arrays_table() {
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
     app.gl().UseProgram(0);
   };
-  scene.slices = [name](GlApplication& app, double angle) {
+  auto array = std::make_shared<std::array<GLfloat, 12>>();
+  scene.slices = [name, array](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
     blend_over(app.gl());
     app.gl().UseProgram(*name);
-    std::array<GLfloat, 12> corners{};
+    std::array<GLfloat, 12>& corners = *array;
     app.gl().EnableClientState(GL_VERTEX_ARRAY);
     app.gl().EnableClientState(GL_TEXTURE_COORD_ARRAY);
     app.gl().VertexPointer(3, GL_FLOAT, 0, corners.data());
@@ -253,6 +269,8 @@ SliceScene client_arrays_table() {
       quad_corners(slice_z(i), corners);
       app.gl().DrawArrays(GL_TRIANGLE_FAN, 0, 4);
     }
+  };
+  scene.tidy_up = [](GlApplication& app) {
     app.gl().DisableClientState(GL_VERTEX_ARRAY);
     app.gl().DisableClientState(GL_TEXTURE_COORD_ARRAY);
     app.gl().UseProgram(0);
@@ -280,16 +298,19 @@ SliceScene vertex_shader_varying() {
     app.gl().Uniform1i(app.gl().GetUniformLocation(*name, "table"), 1);
     app.gl().UseProgram(0);
   };
-  scene.slices = [name](GlApplication& app, double angle) {
+  auto array = std::make_shared<std::vector<std::array<GLfloat, 12>>>(slices);
+  scene.slices = [name, array](GlApplication& app, double angle) {
     blend_over(app.gl());
     app.gl().UseProgram(*name);
     const Matrix camera = camera_matrix(angle);
     app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
-    std::vector<std::array<GLfloat, 12>> quads(slices);
+    std::vector<std::array<GLfloat, 12>>& quads = *array;
     for (int i = 0; i < slices; ++i) quad_corners(slice_z(i), quads[std::size_t(i)]);
     app.gl().EnableVertexAttribArray(3);
     app.gl().VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, quads.data());
     app.gl().DrawArrays(GL_QUADS, 0, 4 * slices);
+  };
+  scene.tidy_up = [](GlApplication& app) {
     app.gl().DisableVertexAttribArray(3);
     app.gl().UseProgram(0);
     app.gl().Disable(GL_BLEND);
@@ -340,8 +361,8 @@ SliceScene core_batched() {
     app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
     app.gl().BindVertexArray(*array);
     app.gl().DrawArrays(GL_TRIANGLES, 0, 6 * slices);
-    app.gl().Disable(GL_BLEND);
   };
+  scene.tidy_up = [](GlApplication& app) { app.gl().Disable(GL_BLEND); };
   return scene;
 }
 

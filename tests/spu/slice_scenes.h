@@ -14,10 +14,14 @@ struct SliceScene {
   std::string name;
   Profile profile = Profile::compatibility;
   std::function<void(GlApplication&)> set_up;
-  std::function<void(GlApplication&, double angle)> slices;
+  std::function<void(GlApplication&, double angle)> slices;  ///< its last call is a slice's
+  std::function<void(GlApplication&)> tidy_up;               ///< switches off what they switched on
 
+  void slices_and_tidy_up(GlApplication& app, double angle) const;
   /// A whole frame: clears, then draws the slices.
   void draw(GlApplication& app, double angle) const;
+  /// The same up to the last slice.
+  void draw_to_the_last_slice(GlApplication& app, double angle) const;
 };
 
 /// glBegin/glEnd quads, fixed function, RGBA8 voxels.

@@ -37,8 +37,11 @@ bool looks_at_depth(CallId call) {
   if (call == CallId::End || kind_of(call) == CallKind::vertex) return false;
   if (kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists) return true;
   const std::string_view name = call_name(call);
-  for (const std::string_view reader : {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glBlit",
-                                        "glDrawPixels", "glBitmap", "glBindFramebuffer"}) {
+  // Framebuffers that change may give their depth texture away.
+  for (const std::string_view reader :
+       {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glCopyImageSubData", "glBlit",
+        "glDrawPixels", "glBitmap", "glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer", "glGetTexImage",
+        "glGetnTexImage", "glGetTextureImage", "glGetTextureSubImage"}) {
     if (name.starts_with(reader)) return true;
   }
   return false;

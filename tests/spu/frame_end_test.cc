@@ -560,6 +560,31 @@ TEST(OtherThreads, SeeInASharedTextureWhatWasDrawnBeforeTheFence) {
   }
 }
 
+/// As the first call after the slices, in every frame: the first frame has the depth because it is the first,
+/// the others because somebody was seen looking.
+TEST(Depth, IsThereForAReadRightAfterTheSlices) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  const auto depth = [&](bool under) {
+    app->use_chain(under);
+    app->gl().Enable(GL_DEPTH_TEST);
+    app->gl().DepthMask(GL_TRUE);
+    scene.draw_to_the_last_slice(*app, 25);
+    Picture read = app->read_depth();
+    scene.tidy_up(*app);
+    app->end_frame();
+    return read;
+  };
+  const Picture bare = depth(false);
+  EXPECT_LT(*std::min_element(bare.begin(), bare.end()), 1) << "the slices write no depth";
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    EXPECT_EQ(depth(true), bare) << "frame " << i;
+    EXPECT_EQ(app->substituted(), i) << app->last_reason();
+  }
+}
+
 /// Queries that count what is drawn would count our drawing instead: such slices are the application's.
 TEST(Queries, AroundTheSlicesCountTheApplicationsOwn) {
   for (const GLenum target :

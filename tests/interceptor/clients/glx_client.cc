@@ -180,6 +180,10 @@ void libraries() {
   say("app: driver's GLX %s, EGL %s\n", glx ? "loaded" : "not loaded", egl ? "loaded" : "not loaded");
 }
 
+void never_current() {
+  glXDestroyContext(display, create());
+}
+
 struct Scene {
   const char* name;
   void (*play)();
@@ -198,6 +202,7 @@ constexpr Scene scenes[] = {
     {"two_threads", two_threads},
     {"thread_ends", thread_ends},
     {"outside_registry", outside_registry},
+    {"never_current", never_current},
 };
 
 }  // namespace

@@ -39,11 +39,10 @@ struct NoteListContent {
   }
 };
 
-/// Before there are volumes, which texture it is that changes does not matter.
 struct NoteTextureChange {
   static const DispatchTable& before(CallId) {
     Track& track = here();
-    track.chain().group().some_texture_changed();
+    track.texture_changes();
     return track.below();
   }
 };
@@ -56,7 +55,7 @@ template <std::size_t Target, class... A, void (APIENTRY* DispatchTable::*Slot)(
 struct DefinesVolume<Target, Slot> {
   static void APIENTRY call(A... arguments) {
     Track& track = here();
-    track.chain().group().some_texture_changed();
+    track.texture_changes();
     if (std::get<Target>(std::tie(arguments...)) == GL_TEXTURE_3D) track.volume_defined();
     (track.below().*Slot)(arguments...);
   }
@@ -65,7 +64,7 @@ struct DefinesVolume<Target, Slot> {
 void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal_format, GLsizei width,
                                  GLsizei height, GLsizei depth) {
   Track& track = here();
-  track.chain().group().some_texture_changed();
+  track.texture_changes();
   // An array of 2-D textures, perhaps: then there is one watch too many.
   track.volume_defined();
   track.below().TextureStorage3D(texture, levels, internal_format, width, height, depth);
@@ -240,6 +239,14 @@ void Track::end_list() {
   if (list_is_executed_ && open_list_.changes_textures) chain_.group().some_texture_changed();
   list_ = 0;
   chain_.set_phase(phase_before_list_);
+}
+
+void Track::texture_changes() {
+  if (chain_.group().has_volumes()) {
+    chain_.set_phase(Phase::watching);
+  } else {
+    chain_.group().some_texture_changed();
+  }
 }
 
 void Track::volume_defined() {

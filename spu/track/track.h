@@ -26,6 +26,9 @@ class Track final : public Unit {
   void begin_list(GLuint list, GLenum mode);
   void end_list();
 
+  /// A texture is about to change in the plain phase. Which one does not matter while there are no volumes;
+  /// once another context of the group has one, those below who want to know it are to see the call.
+  void texture_changes();
   /// A 3-D texture is being defined: from now on draws are watched.
   void volume_defined();
   void texture_rendered_to(GLuint texture);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "slice_scenes.h"
 
@@ -70,6 +71,37 @@ TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
   EXPECT_LT(psnr(before, under), 30) << "the upload changes nothing: the test tests nothing";
   EXPECT_GE(psnr(under, bare), 40);
   EXPECT_EQ(app->left(), 0U) << app->last_reason();
+}
+
+/// A context that loads and never draws a frame.
+TEST(RecognitionOfChanges, ATextureUploadedAgainByAnotherContextIsSeen) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  scene.draw(*app, 10);
+  const auto before = app->read_pixels();
+  GLint texture = 0;
+  app->driver().GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
+  std::thread([&] {
+    const auto loader = app->start_companion();
+    ASSERT_TRUE(loader);
+    const Blob blob;
+    const std::vector<std::uint8_t> half(std::size_t(blob.x * blob.y * 8), 200);
+    loader->gl().BindTexture(GL_TEXTURE_3D, GLuint(texture));
+    loader->gl().PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    loader->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 4, blob.x, blob.y, 8, GL_LUMINANCE, GL_UNSIGNED_BYTE,
+                               half.data());
+    loader->gl().Finish();
+  }).join();
+  app->gl().BindTexture(GL_TEXTURE_3D, GLuint(texture));
+  scene.draw(*app, 10);
+  const auto under = app->read_pixels();
+  app->use_chain(false);
+  scene.draw(*app, 10);
+  EXPECT_LT(psnr(before, under), 30) << "the upload changes nothing: the test tests nothing";
+  EXPECT_GE(psnr(under, app->read_pixels()), 40);
+  EXPECT_EQ(app->substituted(), 2U) << app->last_reason();
 }
 
 TEST(RecognitionOfChanges, ATableUploadedAgainIsSeen) {

@@ -98,7 +98,7 @@ UnitTable unit_table() {
 }
 
 std::optional<std::string> assemble(Chain& chain, std::string_view description,
-                                    std::shared_ptr<RenderSession> session, UnitTable units) {
+                                    const std::shared_ptr<RenderSession>& session, UnitTable units) {
   try {
     for (const PlannedUnit& unit : plan(settings_of(description), units)) {
       if (unit.description->make != nullptr) {

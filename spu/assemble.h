@@ -24,7 +24,8 @@ UnitTable unit_table();
 /// real OpenGL and must be last. Returns what is wrong with the description, or nothing; a chain with an error
 /// adds no unit.
 std::optional<std::string> assemble(Chain& chain, std::string_view description,
-                                    std::shared_ptr<RenderSession> session, UnitTable units = unit_table());
+                                    const std::shared_ptr<RenderSession>& session,
+                                    UnitTable units = unit_table());
 
 /// The same chain as text that means the same in every folder: the chain's file is read, and files named in it
 /// are absolute, starting from `folder`. Throws ChainError when `description` is not a chain that can be

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "dispatch/call_shape.h"
+#include "dispatch/call_words.h"
 #include "spu/argument_bytes.h"
 
 namespace understudy::spu {
@@ -173,7 +174,7 @@ void append_pointer(Text& text, CallId call, std::size_t index, const std::uint6
   const std::size_t size = std::max<std::size_t>(value_size(parameter.type), 1);
   const std::size_t count = *bytes / size;
   if (!may_be_read(parameter)) return append(text, "{} bytes", *bytes);
-  const auto* values = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(words[index]));
+  const auto* values = argument<const std::byte*>(words[index]);
   if (parameter.type == ValueType::character && parameter.input) {
     const auto* characters = reinterpret_cast<const char*>(values);
     return append_quoted(text, {characters, strnlen(characters, count)});
@@ -193,7 +194,7 @@ void append_result(Text& text, CallId call, std::uint64_t result) {
   if (shape.result == ValueType::none && shape.result_pointer == 0) return;
   append(text, " = ");
   if ((call == CallId::GetString || call == CallId::GetStringi) && result != 0) {
-    append_quoted(text, reinterpret_cast<const char*>(static_cast<std::uintptr_t>(result)));
+    append_quoted(text, argument<const char*>(result));
   } else if (shape.result_pointer > 0) {
     append(text, "0x{:x}", result);
   } else if (call == CallId::GetError && result == GL_NO_ERROR) {

@@ -62,7 +62,7 @@ TEST(CallText, ShowsWhatPointersStandFor) {
 
 // Such pointers are positions in a buffer object: nothing is read there.
 TEST(CallText, FollowsNoOffset) {
-  const auto* offset = reinterpret_cast<const void*>(std::uintptr_t{24});
+  const auto* offset = argument<const void*>(24);
   EXPECT_EQ(
       text_of(CallId::DrawElements, GLenum(GL_TRIANGLES), 6, GLenum(GL_UNSIGNED_SHORT), offset),
       "glDrawElements(mode = GL_TRIANGLES, count = 6, type = GL_UNSIGNED_SHORT, indices = 12 bytes at 24)");

@@ -96,7 +96,7 @@ void ProgramSources::program_linked(GLuint program) {
   found->second.linked = std::move(record);
 }
 
-void ProgramSources::program_linked_from(GLuint program, GLenum type, std::string source) {
+void ProgramSources::program_linked_from(GLuint program, GLenum type, const std::string& source) {
   if (program == 0) return;
   const std::scoped_lock lock(mutex_);
   auto record = std::make_shared<ProgramRecord>();

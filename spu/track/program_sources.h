@@ -40,7 +40,7 @@ class ProgramSources {
   void shader_detached(GLuint program, GLuint shader);
   void program_linked(GLuint program);
   /// By glCreateShaderProgramv: created, attached, linked and detached in one call.
-  void program_linked_from(GLuint program, GLenum type, std::string source);
+  void program_linked_from(GLuint program, GLenum type, const std::string& source);
   /// By glProgramBinary: there are no sources.
   void program_loaded(GLuint program);
   void program_deleted(GLuint program);

@@ -6,6 +6,8 @@
 
 #include "apps/understudy/compare.h"
 #include "apps/understudy/doctor.h"
+#include "apps/understudy/play.h"
+#include "apps/understudy/replay.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
 #include "apps/understudy/units.h"
@@ -20,6 +22,8 @@ int main(int argc, char** argv) try {
   app.require_subcommand(1);
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
+  launcher::add_replay(app, chosen);
+  launcher::add_play(app, chosen);
   launcher::add_serve(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);

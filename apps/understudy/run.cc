@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -18,6 +19,7 @@
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "apps/understudy/trace_option.h"
 #include "spu/assemble.h"
 #include "spu/options.h"
 #include "spu/report/report.h"
@@ -26,11 +28,6 @@ namespace understudy::launcher {
 namespace {
 
 constexpr int not_executable = 126;
-
-struct RunArguments {
-  std::map<std::string, std::string> settings;  ///< environment variable → value, as given on the command line
-  Door door = Door::audit;
-};
 
 void say(const std::string& line) {
   std::fprintf(stderr, "understudy: %s\n", line.c_str());
@@ -67,7 +64,8 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
     environment.erase("UNDERSTUDY_CONNECT");
     if (!options.connect.empty()) environment["UNDERSTUDY_CONNECT"] = absolute_or_empty(options.connect);
   }
-  const DoorSettings door = settings_of(arguments.door, installation);
+  if (!arguments.door) return environment;
+  const DoorSettings door = settings_of(*arguments.door, installation);
   if (std::filesystem::exists(door.value)) {
     put_in_front(environment, door.variable, door.value);
   } else {
@@ -138,11 +136,20 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
   }
 }
 
-int run(const RunArguments& arguments, const std::vector<std::string>& command) {
+int run_viewer(RunArguments arguments, const std::vector<std::string>& command) {
   if (command.empty()) {
     say("which viewer? Put -- before its command: understudy run [options] -- viewer args…");
     return usage_error;
   }
+  if (!arguments.trace.empty()) prepare_trace(arguments);
+  const int status = run(arguments, command);
+  if (!arguments.trace.empty()) say(trace_summary(arguments.trace));
+  return status;
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments, const std::vector<std::string>& command) {
   spu::Options options = options_of(arguments);
   try {
     options.chain = spu::resolved_chain(options.chain, std::filesystem::current_path());
@@ -175,13 +182,13 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   return ending.exit_status();
 }
 
-/// One command-line option for every row of the option table that has a flag.
-void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments) {
+void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments,
+                              std::span<const std::string_view> without) {
   for (const spu::OptionText& option : spu::option_table()) {
     const std::string flag = option.flag;
     const std::string variable = option.environment;
     const std::string value = option.value;
-    if (flag.empty()) continue;
+    if (flag.empty() || std::find(without.begin(), without.end(), flag) != without.end()) continue;
     const auto take = [arguments, variable, flag](const std::string& text) {
       spu::Options scratch;
       if (!spu::set_option(scratch, variable, text)) {
@@ -205,8 +212,6 @@ void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArg
   }
 }
 
-}  // namespace
-
 CommandLine split_at_double_dash(int argc, char** argv) {
   CommandLine line;
   int position = 0;
@@ -227,8 +232,14 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
                    "how OpenGL calls are caught: audit (all of them), preload, folder")
       ->transform(CLI::CheckedTransformer(doors, CLI::ignore_case).description(""))
       ->type_name("audit|preload|folder");
-  subcommand->callback(
-      [arguments, &viewer, &chosen] { chosen = [arguments, &viewer] { return run(*arguments, viewer); }; });
+  subcommand
+      ->add_option("--trace", arguments->trace,
+                   "record every call in FILE, for `understudy replay`; a further process of the viewer is "
+                   "recorded in FILE.PID")
+      ->type_name("FILE");
+  subcommand->callback([arguments, &viewer, &chosen] {
+    chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
+  });
 }
 
 }  // namespace understudy::launcher

@@ -4,9 +4,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "apps/understudy/environment.h"
 
 namespace understudy::launcher {
 
@@ -20,6 +28,20 @@ struct CommandLine {
 };
 
 CommandLine split_at_double_dash(int argc, char** argv);
+
+struct RunArguments {
+  std::map<std::string, std::string> settings;  ///< environment variable → value, as given on the command line
+  std::optional<Door> door = Door::audit;       ///< none: the program makes its own chains
+  std::filesystem::path trace;                  ///< empty: nothing is recorded
+};
+
+/// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit
+/// status.
+int run(const RunArguments& arguments, const std::vector<std::string>& command);
+
+/// One command-line option for every row of the option table that has a flag, but for the flags in `without`.
+void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments,
+                              std::span<const std::string_view> without = {});
 
 /// Adds the subcommand; when it is parsed, `chosen` runs it.
 void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::function<int()>& chosen);

@@ -104,6 +104,14 @@ void count_frame(const FrameRecord& frame) {
   add(counters.total, frame.counts);
 }
 
+void forget_counted_frames() {
+  ProcessCounters& counters = process_counters();
+  counters.frames = 0;
+  counters.frames_substituted = 0;
+  counters.frames_left = 0;
+  counters.total = {};
+}
+
 std::uint64_t* thread_call_counter() {
   thread_local std::uint64_t* slot = nullptr;
   if (slot == nullptr) {

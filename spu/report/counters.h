@@ -70,6 +70,9 @@ ProcessCounters& process_counters();
 /// Counts one finished frame: its ring slot, and the totals.
 void count_frame(const FrameRecord& frame);
 
+/// The frames so far are no part of what is to be told: counting starts again. Not while another thread counts.
+void forget_counted_frames();
+
 /// The slot of the calling thread's call count. Threads beyond max_counted_threads share the last slot.
 std::uint64_t* thread_call_counter();
 

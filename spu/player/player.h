@@ -1,0 +1,81 @@
+// Plays a recorded stream: contexts appear, become current and go as they did, every record becomes its call
+// again, and each context's calls run through a chain of units.
+//
+// The threads of a recorded application are played on one thread in the order of the stream.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "spu/chain.h"
+#include "spu/options.h"
+#include "spu/player/window_system.h"
+#include "spu/stream/decode.h"
+#include "spu/stream/record.h"
+
+namespace understudy::spu {
+
+class RenderSession;
+
+/// The drawable shows what was drawn. Its context is current and nothing is held back.
+struct ShownFrame {
+  std::uint64_t number = 0;  ///< as recorded
+  Extent2D extent;
+};
+
+class Player {
+ public:
+  /// `options.chain` is what stands above the driver in every context.
+  Player(WindowSystem& windows, const Options& options);
+  ~Player();
+  Player(const Player&) = delete;
+  Player& operator=(const Player&) = delete;
+
+  /// Plays one record. Returns what is wrong with it, or nothing; playing may go on in both cases. Throws
+  /// std::runtime_error when a context or the chain cannot be made.
+  std::string play(const Record& record);
+
+  /// Called before the frame counts as ended.
+  std::function<void(const ShownFrame&)> on_frame;
+  /// The application read this picture back.
+  std::function<void(const Decoder::ReadPicture&)> on_read;
+
+  /// Number of the context that is current, 0: none, and the decoder that knows its names.
+  std::uint64_t current_context() const { return active_; }
+  const Decoder* current_decoder() const;
+  const DispatchTable& driver() const { return windows_.driver(); }
+
+ private:
+  struct Group;
+  struct Context;
+  struct Thread {
+    std::uint64_t context = 0;
+    Extent2D drawable;
+  };
+
+  std::string introduce(const Record& record);
+  std::string make_current(const Record& record);
+  std::string end_context(const Record& record);
+  std::string end_frame(const Record& record);
+  std::string call(const Record& record);
+  std::shared_ptr<Group> group_of(const RecordedContext& context);
+  void leave();
+  /// Makes the context of the thread whose records are being played the current one.
+  Context* activate();
+
+  WindowSystem& windows_;
+  const Options options_;
+  std::shared_ptr<RenderSession> session_;
+  std::map<std::uint64_t, std::unique_ptr<Context>> contexts_;
+  std::map<std::uint64_t, std::shared_ptr<Group>> groups_;  ///< by context, also of those that are gone
+  std::map<std::uint64_t, Thread> threads_;
+  std::uint64_t thread_ = 0;  ///< whose records are being played
+  std::uint64_t active_ = 0;
+  Extent2D active_drawable_;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,45 @@
+// What plays the part of the recorded application's window system: whoever plays a stream says how contexts
+// come to be here.
+#pragma once
+
+#include <cstdint>
+
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+struct Extent2D {
+  int width = 0;
+  int height = 0;
+  bool operator==(const Extent2D&) const = default;
+};
+
+/// The words of a `context` event (stream/event.h).
+struct RecordedContext {
+  std::uint64_t number = 0;
+  std::uint64_t shares_with = 0;  ///< number of a context made before; 0: none
+  int version = 0;                ///< 100 * major + 10 * minor
+  std::uint32_t profile = 0;      ///< GL_CONTEXT_PROFILE_MASK; 0 before OpenGL 3.2
+  int red = 8, green = 8, blue = 8, alpha = 8;
+  int depth = 24;
+  int stencil = 8;
+  int samples = 0;
+  bool double_buffered = true;
+};
+
+class WindowSystem {
+ public:
+  virtual ~WindowSystem() = default;
+  /// Throws std::runtime_error when no such context, nor one that can take its place, can be made.
+  virtual void create(const RecordedContext& context) = 0;
+  /// Makes the context current with a drawable of this size; a drawable that changes its size loses its
+  /// contents, as windows may. Throws std::runtime_error.
+  virtual void make_current(std::uint64_t context, Extent2D drawable) = 0;
+  virtual void release_current() = 0;
+  /// The context is not current.
+  virtual void destroy(std::uint64_t context) = 0;
+  /// The driver's functions, for all contexts.
+  virtual const DispatchTable& driver() const = 0;
+};
+
+}  // namespace understudy::spu

@@ -5,6 +5,7 @@
 
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
+#include "spu/volume/array_calls.h"
 #include "spu/volume/client_arrays.h"
 #include "spu/volume/texture_changes.h"
 #include "spu/volume/volume_unit.h"
@@ -85,6 +86,7 @@ bool defer_arrays(VolumeUnit& unit, GLenum mode, GLint first, GLsizei count) {
     run.expanded_arrays = true;
   } else {
     pack_DrawArrays(run.calls(), mode, first, count);
+    run.reads_arrays = true;
   }
   ++run.draws;
   return true;
@@ -188,6 +190,7 @@ void fill_deferring_slots(DispatchTable& table) {
   }
   table.End = end_in_run;
   fill_draws(table);
+  fill_array_calls(table);
 }
 
 }  // namespace understudy::spu

@@ -20,9 +20,12 @@ class Run {
   /// glDrawElements whose indices lie in the bound element buffer; `offset` as the application gave it.
   void draw_elements(GLenum mode, GLsizei count, GLenum type, const void* offset) {
     elements_.push_back({calls_.words().size(), mode, count, type, offset});
+    reads_arrays = true;
   }
   /// Array draws were kept as immediate calls, which move the current attributes; the arrays would not have.
   bool expanded_arrays = false;
+  /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
+  bool reads_arrays = false;
   bool inside_begin = false;
   std::size_t draws = 0;
 

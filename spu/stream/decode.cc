@@ -18,7 +18,7 @@ namespace {
 /// Answers of calls whose extent nobody knows are smaller than this.
 constexpr std::size_t unknown_output_bytes = 64 * 1024;
 /// Answers of a stream from elsewhere are given no more memory than this: a length there is only a claim.
-constexpr std::size_t most_output_bytes = std::size_t(1) << 30;
+constexpr std::size_t most_output_bytes = std::size_t(64) << 20;
 
 const std::byte* address(std::uint64_t word) {
   return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));

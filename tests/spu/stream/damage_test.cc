@@ -14,6 +14,7 @@
 #include "spu/stream/encode.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
+#include "tests/fuzz/played_input.h"
 #include "tests/spu/stream/any_call.h"
 #include "tests/spu/stream/stateful_driver.h"
 
@@ -149,6 +150,18 @@ TEST_F(Damage, AddressesOfElsewhereNeverReachOpenGl) {
       << "the indices are an offset without a buffer";
   ASSERT_EQ(driver.calls().size(), 1U);
   EXPECT_EQ(driver.calls()[0].call, CallId::VertexPointer);
+}
+
+TEST_F(Damage, TheKeptCorpusIsPlayed) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(FUZZ_CORPUS)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    play_input(std::as_bytes(std::span(text)), driver.table());
+    ++files;
+  }
+  std::printf("%d files\n", files);
+  EXPECT_GT(files, 10);
 }
 
 class DamagedFile : public Damage {

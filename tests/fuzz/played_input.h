@@ -1,0 +1,43 @@
+// How the bytes of a fuzzer, or a file of its corpus, are played: once as a trace file, once as bare records.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "spu/stream/decode.h"
+#include "spu/stream/trace_file.h"
+
+namespace understudy::spu::testing {
+
+inline void play_records(std::span<const std::uint64_t> words, std::span<const std::uint64_t> payload,
+                         const DispatchTable& gl) {
+  Decoder decoder(StreamOrigin::elsewhere, std::make_shared<ObjectNames>());
+  for (std::size_t at = 0; at < words.size();) {
+    const auto record = record_at(words, at, payload);
+    if (!record) return;
+    decoder.decode(*record, gl);
+    at += record->words.size();
+  }
+}
+
+inline void play_input(std::span<const std::byte> input, const DispatchTable& gl) {
+  try {
+    TraceReader reader(input);
+    while (const auto block = reader.next()) play_records(block->records, block->payload, gl);
+  } catch (const std::runtime_error&) {
+    // What is no trace says so.
+  }
+  std::vector<std::uint64_t> words(input.size() / 8);
+  if (words.empty()) return;
+  std::memcpy(words.data(), input.data(), words.size() * 8);
+  // The first word says how many words are records; what follows them is the payload.
+  const std::size_t records = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
+  const std::span<const std::uint64_t> all(words);
+  play_records(all.subspan(1, records), all.subspan(1 + records), gl);
+}
+
+}  // namespace understudy::spu::testing

@@ -84,6 +84,15 @@ struct Decoder::Call {
   bool picture_in = false;
 };
 
+/// The answer goes to a bound buffer object, where later calls find it.
+bool Decoder::answers_into_buffer(const Call& call) {
+  const auto parameters = call.shape->parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].rule == ExtentRule::image_out && call.kinds[p] == ReferenceKind::address) return true;
+  }
+  return false;
+}
+
 ObjectNames& Decoder::names(ObjectKind kind) {
   return shared_names_ && is_shared(kind) ? *shared_names_ : own_names_;
 }
@@ -533,7 +542,7 @@ Decoded Decoder::decode(const Record& record, const DispatchTable& gl) {
   if (std::string error = read_arguments(record, call); !error.empty()) return {0, std::move(error)};
   if (origin_ == StreamOrigin::this_process) return make(call, gl);
   answer_ = {};
-  if (only_asks(call.id) || !translate(call)) return {};
+  if ((only_asks(call.id) && !answers_into_buffer(call)) || !translate(call)) return {};
   if (std::string error = check_arrays(call, gl); !error.empty()) return {0, std::move(error)};
   if (call.skip) return {};
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};

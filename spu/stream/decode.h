@@ -59,6 +59,7 @@ class Decoder {
  private:
   struct Call;
 
+  static bool answers_into_buffer(const Call& call);
   ObjectNames& names(ObjectKind kind);
   std::string read_arguments(const Record& record, Call& call);
   std::string read_bytes(const Record& record, Call& call, std::size_t parameter);

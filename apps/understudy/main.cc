@@ -7,9 +7,11 @@
 #include "apps/understudy/compare.h"
 #include "apps/understudy/doctor.h"
 #include "apps/understudy/play.h"
+#include "apps/understudy/print.h"
 #include "apps/understudy/replay.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
+#include "apps/understudy/trim.h"
 #include "apps/understudy/units.h"
 
 namespace launcher = understudy::launcher;
@@ -24,6 +26,8 @@ int main(int argc, char** argv) try {
   launcher::add_run(app, line.viewer, chosen);
   launcher::add_replay(app, chosen);
   launcher::add_play(app, chosen);
+  launcher::add_print(app, chosen);
+  launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);

@@ -190,22 +190,33 @@ void OffscreenContexts::create(const spu::RecordedContext& wanted) {
   contexts_[wanted.number] = made;
 }
 
+/// What a new drawable holds is undefined; here it is the same every time. The recorded context's state is not
+/// touched: another context does it.
+void OffscreenContexts::clear(const Context& context) {
+  const EGLContext cleaner = egl_->CreateContext(egl_->display, context.config, EGL_NO_CONTEXT, nullptr);
+  if (cleaner == EGL_NO_CONTEXT) return;
+  if (egl_->MakeCurrent(egl_->display, context.surface, context.surface, cleaner))
+    driver_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  release_current();
+  egl_->DestroyContext(egl_->display, cleaner);
+}
+
 void OffscreenContexts::make_current(std::uint64_t number, spu::Extent2D drawable) {
   Context& context = contexts_.at(number);
-  EGLSurface old = EGL_NO_SURFACE;
-  if (context.surface == EGL_NO_SURFACE || context.extent != drawable) {
+  const EGLSurface old = context.surface;
+  if (old == EGL_NO_SURFACE || context.extent != drawable) {
     const EGLint extent[] = {EGL_WIDTH, drawable.width, EGL_HEIGHT, drawable.height, EGL_NONE};
-    old = context.surface;
     context.surface = egl_->CreatePbufferSurface(egl_->display, context.config, extent);
     context.extent = drawable;
   }
+  if (context.surface != old) clear(context);
   if (context.surface == EGL_NO_SURFACE ||
       !egl_->MakeCurrent(egl_->display, context.surface, context.surface, context.context)) {
     throw std::runtime_error(
         fmt::format("no drawable of {} x {} pixels could be made current (EGL error {:#x})", drawable.width,
                     drawable.height, egl_->GetError()));
   }
-  if (old != EGL_NO_SURFACE) egl_->DestroySurface(egl_->display, old);
+  if (old != EGL_NO_SURFACE && old != context.surface) egl_->DestroySurface(egl_->display, old);
 }
 
 void OffscreenContexts::release_current() {

@@ -28,6 +28,8 @@ class OffscreenContexts final : public spu::WindowSystem {
   struct Egl;
   struct Context;
 
+  void clear(const Context& context);
+
   std::unique_ptr<Egl> egl_;
   std::map<std::uint64_t, Context> contexts_;
   spu::DispatchTable driver_{};

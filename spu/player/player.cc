@@ -34,12 +34,14 @@ struct Player::Group {
   std::shared_ptr<ShareGroup> tracked = std::make_shared<ShareGroup>();
   std::shared_ptr<ObjectNames> names = std::make_shared<ObjectNames>();
   std::vector<std::uint64_t> members;  ///< that the window system has
+  std::uint64_t number = 0;            ///< of its first context
 };
 
 struct Player::Context {
   std::shared_ptr<Group> group;
   Decoder decoder;
   Chain chain;
+  PlayedContext played;
   bool counts_frames = false;  ///< nobody in the chain does
   Clock::time_point frame_started = Clock::now();
 
@@ -59,9 +61,20 @@ Player::~Player() {
   }
 }
 
-const Decoder* Player::current_decoder() const {
+Player::PlayedContext Player::current() const {
   const auto found = contexts_.find(active_);
-  return found == contexts_.end() ? nullptr : &found->second->decoder;
+  return found == contexts_.end() ? PlayedContext{} : found->second->played;
+}
+
+std::vector<Player::PlayedContext> Player::contexts() const {
+  std::vector<PlayedContext> all;
+  for (const auto& [number, context] : contexts_) all.push_back(context->played);
+  return all;
+}
+
+std::uint64_t Player::here(ObjectKind kind, std::uint64_t there) const {
+  const auto found = contexts_.find(active_);
+  return found == contexts_.end() ? there : found->second->group->names->here(kind, there);
 }
 
 std::string Player::play(const Record& record) {
@@ -117,6 +130,8 @@ std::string Player::introduce(const Record& record) {
   groups_[context.number] = group;
   auto made = std::make_unique<Context>(group, windows_.driver(), context);
   if (const auto trouble = assemble(made->chain, options_.chain, session_)) throw std::runtime_error(*trouble);
+  if (group->number == 0) group->number = context.number;
+  made->played = {context.number, group->number, {}};
   made->counts_frames = made->chain.find<VolumeUnit>() == nullptr;
   contexts_[context.number] = std::move(made);
   return {};
@@ -165,6 +180,7 @@ Player::Context* Player::activate() {
   if (active_ != thread.context) found->second->chain.make_current();
   active_ = thread.context;
   active_drawable_ = thread.drawable;
+  found->second->played.drawable = thread.drawable;
   return found->second.get();
 }
 

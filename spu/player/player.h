@@ -44,9 +44,20 @@ class Player {
   /// The application read this picture back.
   std::function<void(const Decoder::ReadPicture&)> on_read;
 
-  /// Number of the context that is current, 0: none, and the decoder that knows its names.
-  std::uint64_t current_context() const { return active_; }
-  const Decoder* current_decoder() const;
+  /// Makes the context of the thread whose records come next the current one, as play() does. False when it has
+  /// none.
+  bool prepare() { return activate() != nullptr; }
+
+  struct PlayedContext {
+    std::uint64_t number = 0;
+    std::uint64_t group = 0;  ///< contexts of one group share objects
+    Extent2D drawable;        ///< that it was current with last
+  };
+  /// The one that is current; number 0 when none is.
+  PlayedContext current() const;
+  std::vector<PlayedContext> contexts() const;
+  /// What an object that contexts share is called here, for the current context.
+  std::uint64_t here(ObjectKind kind, std::uint64_t there) const;
   const DispatchTable& driver() const { return windows_.driver(); }
 
  private:

@@ -1,0 +1,11 @@
+// `understudy print TRACE`: what a trace holds, one line a record.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+void add_print(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

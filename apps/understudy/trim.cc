@@ -1,0 +1,168 @@
+#include "apps/understudy/trim.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/offscreen_contexts.h"
+#include "spu/player/player.h"
+#include "spu/player/shown_picture.h"
+#include "spu/stream/event.h"
+#include "spu/stream/trace_file.h"
+#include "spu/trim/prefix.h"
+#include "spu/trim/restoration.h"
+#include "spu/trim/shortened.h"
+
+namespace understudy::launcher {
+namespace {
+
+/// Calls `take(record, frame)` for every record up to the end of frame `last`; frames count from 1.
+template <class Take>
+std::uint64_t walk(const std::filesystem::path& trace, std::uint64_t last, const Take& take) {
+  spu::TraceReader reader(trace);
+  std::uint64_t frame = 1;
+  while (frame <= last) {
+    const std::optional<spu::Block> block = reader.next();
+    if (!block) break;
+    std::size_t position = 0;
+    while (position < block->records.size() && frame <= last) {
+      const auto record = spu::record_at(block->records, position, block->payload);
+      if (!record)
+        throw std::runtime_error(
+            fmt::format("{}: {}", trace.string(), in_block(*block, "a record is longer than its block")));
+      position += record->words.size();
+      take(*record, frame);
+      if (record->id == spu::event::frame) ++frame;
+    }
+  }
+  return frame - 1;
+}
+
+spu::Options bare() {
+  spu::Options options;
+  options.chain = "driver";
+  return options;
+}
+
+/// A picture as one number: FNV-1a.
+std::uint64_t fingerprint(const void* bytes, std::size_t size) {
+  const auto* byte = static_cast<const std::uint8_t*>(bytes);
+  std::uint64_t sum = 0xcbf2'9ce4'8422'2325U;
+  for (std::size_t i = 0; i < size; ++i) sum = (sum ^ byte[i]) * 0x0000'0100'0000'01b3U;
+  return sum;
+}
+
+/// The pictures of frames that are played natively: what is shown, and what is read back.
+class Pictures {
+ public:
+  Pictures() : player_(windows_, bare()) {
+    player_.on_frame = [this](const spu::ShownFrame& shown) {
+      const auto pixels = spu::shown_picture(player_.driver(), shown.extent);
+      pictures_.push_back(fingerprint(pixels.data(), pixels.size()));
+    };
+    player_.on_read = [this](const spu::Decoder::ReadPicture& read) {
+      pictures_.push_back(fingerprint(read.pixels.data(), read.pixels.size()));
+    };
+  }
+
+  spu::Player& player() { return player_; }
+  /// What was seen since the last time.
+  std::vector<std::uint64_t> take() { return std::exchange(pictures_, {}); }
+
+ private:
+  OffscreenContexts windows_;
+  spu::Player player_;
+  std::vector<std::uint64_t> pictures_;
+};
+
+}  // namespace
+
+void trim(const TrimPlan& plan) {
+  const std::uint64_t first = plan.frames.first;
+  std::vector<spu::Fate> fates;
+  spu::Records restoration;
+  std::vector<std::uint64_t> wanted;
+  std::vector<std::string> troubles;
+  {
+    Pictures whole;
+    spu::Prefix prefix(whole.player());
+    bool cut = false;
+    const auto cut_here = [&] {
+      cut = true;
+      fates = prefix.fates();
+      troubles = spu::restore_drawn(whole.player(), prefix.drawn(), restoration);
+      whole.take();
+    };
+    const std::uint64_t frames =
+        walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
+          if (frame < first) {
+            prefix.play(record);
+          } else {
+            if (!cut) cut_here();
+            whole.player().play(record);
+          }
+        });
+    if (frames < first)
+      throw std::runtime_error(fmt::format("{} has only {} frames", plan.trace.string(), frames));
+    wanted = whole.take();
+  }
+
+  spu::Shortened shortened(plan.out);
+  std::size_t number = 0;
+  bool cut = false;
+  walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
+    if (frame < first) return shortened.take(record, fates[number++]);
+    if (!cut) {
+      cut = true;
+      std::size_t position = 0;
+      while (const auto restored = spu::record_at(restoration.words(), position, restoration.payload())) {
+        position += restored->words.size();
+        copy_record(*restored, shortened.records());
+      }
+    }
+    shortened.take(record);
+  });
+  shortened.finish();
+
+  Pictures check;
+  walk(plan.out, ~std::uint64_t(0),
+       [&](const spu::Record& record, std::uint64_t) { check.player().play(record); });
+  if (check.take() == wanted) return;
+  std::filesystem::remove(plan.out);
+  std::string why;
+  for (const std::string& trouble : troubles) why += "; " + trouble;
+  throw std::runtime_error(
+      fmt::format("frames {} and later depend on pictures before them that cannot be brought back{}; trim from "
+                  "an earlier frame",
+                  first, why));
+}
+
+void add_trim(CLI::App& app, std::function<int()>& chosen) {
+  const auto plan = std::make_shared<TrimPlan>();
+  const auto frames = std::make_shared<std::string>();
+  CLI::App* subcommand =
+      app.add_subcommand("trim", "writes a shorter trace that shows the same frames, from 1");
+  subcommand->add_option("trace", plan->trace, "the file")->required()->check(CLI::ExistingFile);
+  subcommand->add_option("--frames", *frames, "the frames to keep, counted from 1")
+      ->required()
+      ->type_name("A-B");
+  subcommand->add_option("-o,--out", plan->out, "the shorter trace")->required()->type_name("OUT");
+  subcommand->callback([plan, frames, &chosen] {
+    plan->frames = parse_frame_range(*frames);
+    chosen = [plan] {
+      std::error_code none;
+      if (std::filesystem::equivalent(plan->trace, plan->out, none))
+        throw std::runtime_error("the shorter trace needs a name of its own; give another one to -o");
+      trim(*plan);
+      fmt::print(stderr, "understudy: {}: {:.1f} MB of {:.1f} MB\n", plan->out.string(),
+                 double(std::filesystem::file_size(plan->out)) / 1e6,
+                 double(std::filesystem::file_size(plan->trace)) / 1e6);
+      return 0;
+    };
+  });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,308 @@
+#include "spu/trim/prefix.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "spu/stream/answers.h"
+#include "spu/stream/event.h"
+#include "spu/stream/extent.h"
+#include "spu/track/calls.h"
+
+namespace understudy::spu {
+namespace {
+
+bool is_sub(std::string_view name) {
+  return name.find("Sub") != std::string_view::npos;
+}
+
+GLenum buffer_binding(GLenum target) {
+  switch (target) {
+    case GL_ARRAY_BUFFER:
+      return GL_ARRAY_BUFFER_BINDING;
+    case GL_ELEMENT_ARRAY_BUFFER:
+      return GL_ELEMENT_ARRAY_BUFFER_BINDING;
+    case GL_UNIFORM_BUFFER:
+      return GL_UNIFORM_BUFFER_BINDING;
+    case GL_PIXEL_UNPACK_BUFFER:
+      return GL_PIXEL_UNPACK_BUFFER_BINDING;
+    default:
+      return GL_NONE;
+  }
+}
+
+/// Faces of a cube are images of one texture.
+GLenum texture_target(GLenum image_target) {
+  const bool face =
+      image_target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && image_target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z;
+  return face ? GL_TEXTURE_CUBE_MAP : image_target;
+}
+
+std::int64_t signed_word(std::uint64_t word) {
+  return std::int32_t(word);
+}
+
+}  // namespace
+
+GLenum texture_binding(GLenum target) {
+  switch (texture_target(target)) {
+    case GL_TEXTURE_1D:
+      return GL_TEXTURE_BINDING_1D;
+    case GL_TEXTURE_2D:
+      return GL_TEXTURE_BINDING_2D;
+    case GL_TEXTURE_3D:
+      return GL_TEXTURE_BINDING_3D;
+    case GL_TEXTURE_RECTANGLE:
+      return GL_TEXTURE_BINDING_RECTANGLE;
+    case GL_TEXTURE_CUBE_MAP:
+      return GL_TEXTURE_BINDING_CUBE_MAP;
+    case GL_TEXTURE_1D_ARRAY:
+      return GL_TEXTURE_BINDING_1D_ARRAY;
+    case GL_TEXTURE_2D_ARRAY:
+      return GL_TEXTURE_BINDING_2D_ARRAY;
+    default:
+      return GL_NONE;
+  }
+}
+
+GLuint Prefix::ask(GLenum name) const {
+  GLint value = 0;
+  player_.driver().GetIntegerv(name, &value);
+  return GLuint(value);
+}
+
+GLuint Prefix::there(ObjectKind kind, GLuint here) const {
+  const auto found = names_.find({player_.current().group, kind, here});
+  return found == names_.end() ? here : found->second;
+}
+
+void Prefix::mark(ObjectKind kind, GLuint here) {
+  if (here != 0) drawn_[{player_.current().group, kind, here}] = there(kind, here);
+}
+
+void Prefix::mark_bound_texture(GLenum target) {
+  if (const GLenum binding = texture_binding(target); binding != GL_NONE)
+    mark(ObjectKind::texture, ask(binding));
+}
+
+void Prefix::mark_attachments() {
+  const DispatchTable& gl = player_.driver();
+  if (gl.GetFramebufferAttachmentParameteriv == nullptr) return;
+  const GLuint framebuffer = ask(GL_DRAW_FRAMEBUFFER_BINDING);
+  const std::tuple now(player_.current().number, framebuffer);
+  if (framebuffer == 0 || now == framebuffer_seen_) return;
+  framebuffer_seen_ = now;
+  const GLuint colours = std::min(ask(GL_MAX_COLOR_ATTACHMENTS), 16U);
+  for (GLuint i = 0; i < colours + 2; ++i) {
+    const GLenum attachment = i < colours    ? GL_COLOR_ATTACHMENT0 + i
+                              : i == colours ? GLenum(GL_DEPTH_ATTACHMENT)
+                                             : GLenum(GL_STENCIL_ATTACHMENT);
+    GLint type = GL_NONE;
+    GLint name = 0;
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
+                                           GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &type);
+    if (type != GL_TEXTURE && type != GL_RENDERBUFFER) continue;
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment,
+                                           GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &name);
+    mark(type == GL_TEXTURE ? ObjectKind::texture : ObjectKind::renderbuffer, GLuint(name));
+  }
+}
+
+Fate Prefix::fate_of_event(const Record& record, const ThreadState& thread) const {
+  switch (record.id) {
+    case event::frame:
+      return Fate::drop;
+    case event::arrays:
+    case event::arrays_end:
+      return thread.compiling ? Fate::keep : Fate::drop;
+    case event::answers:
+      return thread.last_call == Fate::drop ? Fate::drop : Fate::keep;
+    default:
+      return Fate::keep;
+  }
+}
+
+Fate Prefix::fate_of_call(CallId call, const Record& record, ThreadState& thread) {
+  if (call == CallId::NewList) thread.compiling = true;
+  if (call == CallId::EndList) thread.compiling = false;
+  if (thread.compiling || call == CallId::EndList) return Fate::keep;
+  switch (role_of(call)) {
+    case CallRole::begin:
+      thread.inside_begin = true;
+      thread.attributes.clear();
+      return Fate::drop;
+    case CallRole::end:
+      thread.inside_begin = false;
+      return Fate::drop;
+    case CallRole::attribute: {
+      if (!thread.inside_begin) return Fate::keep;
+      // Texture units and generic attributes are told apart by their first argument.
+      const std::string_view name = call_name(call);
+      const bool numbered = name.starts_with("glMulti") || name.starts_with("glVertexAttrib");
+      const std::pair key(record.id, numbered && record.words.size() > 1 ? record.words[1] : 0);
+      const auto [found, first] = thread.attributes.try_emplace(key, fates_.size());
+      if (!first) {
+        fates_[found->second] = Fate::drop;
+        found->second = fates_.size();
+      }
+      return Fate::keep;
+    }
+    case CallRole::vertex:
+    case CallRole::draw:
+    case CallRole::read:
+    case CallRole::ask:
+      return Fate::drop;
+    case CallRole::call_list:
+      return Fate::expand;
+    case CallRole::state:
+      return Fate::keep;
+  }
+  return Fate::keep;
+}
+
+/// What OpenGL is about to write to. Not between glBegin and glEnd.
+void Prefix::look_before(CallId call, const Record& record, const ThreadState& thread) {
+  const std::string_view name = call_name(call);
+  const auto word = [&](std::size_t p) { return p + 1 < record.words.size() ? record.words[p + 1] : 0; };
+  switch (role_of(call)) {
+    case CallRole::draw:
+    case CallRole::begin:
+    case CallRole::call_list:
+      mark_attachments();
+      break;
+    case CallRole::read:
+      mark(ObjectKind::buffer, ask(GL_PIXEL_PACK_BUFFER_BINDING));
+      break;
+    default:
+      break;
+  }
+  if (name.find("Framebuffer") != std::string_view::npos || name.starts_with("glDelete") ||
+      role_of(call) == CallRole::call_list) {
+    framebuffer_seen_ = {};
+  }
+  // A list that is made reads the buffers of the moment: none of their contents may go.
+  if (thread.compiling && kind_of(call) == CallKind::draw) {
+    std::erase_if(uploads_, [](const auto& entry) { return std::get<1>(entry.first) == ObjectKind::buffer; });
+  }
+  if (name.starts_with("glCopyTexImage") || name.starts_with("glCopyTexSubImage") ||
+      name.starts_with("glGenerateMipmap")) {
+    mark_bound_texture(GLenum(word(0)));
+  }
+  const std::uint8_t access = argument_named(call_shape(call), "access");
+  if (call == CallId::BindImageTexture && access != no_argument && word(access) != GL_READ_ONLY)
+    mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(1))));
+  if (name == "glGenerateTextureMipmap" || name.starts_with("glCopyTextureSubImage") ||
+      name.starts_with("glClearTex"))
+    mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(0))));
+  if (call == CallId::CopyImageSubData && word(7) != GL_RENDERBUFFER)
+    mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(6))));
+  if ((call == CallId::BindBufferBase || call == CallId::BindBufferRange) && word(0) != GL_UNIFORM_BUFFER)
+    mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(2))));
+  if (call == CallId::CopyBufferSubData) {
+    GLint buffer = 0;
+    // Every target that buffers can be copied to has its binding under one of a few names.
+    const GLenum binding = word(1) == GL_COPY_WRITE_BUFFER ? GLenum(GL_COPY_WRITE_BUFFER_BINDING)
+                                                           : buffer_binding(GLenum(word(1)));
+    if (binding != GL_NONE) player_.driver().GetIntegerv(binding, &buffer);
+    mark(ObjectKind::buffer, GLuint(buffer));
+  }
+  note_upload(call, record);
+}
+
+void Prefix::supersede(const Image& image, const Upload& upload) {
+  std::vector<Upload>& earlier = uploads_[image];
+  std::erase_if(earlier, [&](const Upload& old) {
+    bool covered = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      covered &= upload.box[k] <= old.box[k] && old.box[k + 3] <= upload.box[k + 3];
+    if (!upload.makes_room && !covered) return false;
+    fates_[old.record] = old.makes_room ? Fate::keep_without_data : Fate::drop;
+    return true;
+  });
+  earlier.push_back(upload);
+}
+
+void Prefix::note_upload(CallId call, const Record& record) {
+  const std::string_view name = call_name(call);
+  const CallShape& shape = call_shape(call);
+  const auto word = [&](std::size_t p) { return p + 1 < record.words.size() ? record.words[p + 1] : 0; };
+  const auto argument = [&](const char* of, std::int64_t otherwise) {
+    const std::uint8_t at = argument_named(shape, of);
+    return at == no_argument ? otherwise : signed_word(word(at));
+  };
+  const auto data_kind = [&](const char* of) {
+    const std::uint8_t at = argument_named(shape, of);
+    return at == no_argument ? ReferenceKind::null : Reference::from(word(at)).kind;
+  };
+  const std::uint64_t group = player_.current().group;
+  if (kind_of(call) == CallKind::bound_texture && !name.starts_with("glCopyTex") &&
+      !name.starts_with("glTexStorage")) {
+    const auto target = GLenum(word(0));
+    const GLenum binding = texture_binding(target);
+    if (binding == GL_NONE) return;
+    const GLuint texture = ask(binding);
+    const ReferenceKind kind = data_kind(name.starts_with("glCompressed") ? "data" : "pixels");
+    // The buffer's later contents would come instead.
+    if (kind == ReferenceKind::address) mark(ObjectKind::texture, texture);
+    Upload upload{.record = fates_.size(), .makes_room = !is_sub(name)};
+    const std::array<std::int64_t, 3> first = {argument("xoffset", 0), argument("yoffset", 0),
+                                               argument("zoffset", 0)};
+    const std::array<std::int64_t, 3> size = {argument("width", 1), argument("height", 1),
+                                              argument("depth", 1)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      upload.box[k] = first[k];
+      upload.box[k + 3] = first[k] + size[k];
+    }
+    supersede({group, ObjectKind::texture, texture, target, GLint(argument("level", 0))}, upload);
+    return;
+  }
+  const bool buffer_data = call == CallId::BufferData || call == CallId::BufferDataARB;
+  const bool buffer_part = call == CallId::BufferSubData || call == CallId::BufferSubDataARB;
+  if (!buffer_data && !buffer_part) return;
+  const GLenum binding = buffer_binding(GLenum(word(0)));
+  if (binding == GL_NONE) return;
+  Upload upload{.record = fates_.size(), .makes_room = buffer_data};
+  upload.box = {buffer_data ? 0 : std::int64_t(word(1)), 0, 0, 0, 1, 1};
+  upload.box[3] = buffer_data ? std::int64_t(word(1)) : std::int64_t(word(1) + word(2));
+  supersede({group, ObjectKind::buffer, ask(binding), 0, 0}, upload);
+}
+
+/// The stream has told what the thread's last call answered: names there and here.
+void Prefix::note_answers(const Record& record) {
+  const auto arguments = record.arguments();
+  const auto call = arguments.empty() ? std::nullopt : find_stable_id(std::uint32_t(arguments[0]));
+  if (!call) return;
+  std::size_t at = 2;
+  for (const ParameterShape& parameter : call_shape(*call).parameters()) {
+    if (!answers_names(parameter)) continue;
+    const auto names = at < arguments.size() ? record.bytes(arguments[at++]) : std::nullopt;
+    if (!names) return;
+    for (std::size_t i = 0; i + sizeof(GLuint) <= names->size(); i += sizeof(GLuint)) {
+      GLuint there = 0;
+      std::memcpy(&there, names->data() + i, sizeof there);
+      const auto here = GLuint(player_.here(parameter.object, there));
+      names_[{player_.current().group, parameter.object, here}] = there;
+    }
+  }
+}
+
+std::string Prefix::play(const Record& record) {
+  if (record.id == event::thread && record.words.size() > 1) thread_ = record.words[1];
+  ThreadState& thread = threads_[thread_];
+  const auto call = find_stable_id(record.id);
+  Fate fate = Fate::keep;
+  if (!call) {
+    fate = fate_of_event(record, thread);
+  } else {
+    const bool prepared = !thread.inside_begin && player_.prepare();
+    if (prepared) look_before(*call, record, thread);
+    fate = fate_of_call(*call, record, thread);
+    thread.last_call = fate;
+  }
+  fates_.push_back(fate);
+  std::string error = player_.play(record);
+  if (record.id == event::answers) note_answers(record);
+  return error;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,95 @@
+// The part of a trace before the cut: it is played, and every record gets a fate. What defines stays, what
+// draws goes, and what was drawn where later frames may look is restored (restoration.h).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "dispatch/call_shape.h"
+#include "spu/player/player.h"
+#include "spu/stream/record.h"
+#include "spu/trim/call_role.h"
+
+namespace understudy::spu {
+
+enum class Fate : std::uint8_t {
+  keep,
+  drop,
+  keep_without_data,  ///< an upload whose data a later one replaces: it still makes room
+  expand,             ///< a display list: what it changes is kept, what it draws is not
+};
+
+/// An object that contexts share and that OpenGL itself has written to, by its name here.
+struct DrawnObject {
+  std::uint64_t group = 0;  ///< of contexts
+  ObjectKind kind = ObjectKind::none;
+  GLuint here = 0;
+  auto operator<=>(const DrawnObject&) const = default;
+};
+
+class Prefix {
+ public:
+  explicit Prefix(Player& player) : player_(player) {}
+
+  /// Plays the record and decides about it. Returns what is wrong with it.
+  std::string play(const Record& record);
+
+  /// By number of the record; final when the prefix has been played.
+  const std::vector<Fate>& fates() const { return fates_; }
+  /// With the name that the stream has for each.
+  const std::map<DrawnObject, GLuint>& drawn() const { return drawn_; }
+  /// The thread of the last record.
+  std::uint64_t thread() const { return thread_; }
+
+ private:
+  using Box = std::array<std::int64_t, 6>;  ///< first x, y, z, then one behind the last
+
+  struct Upload {
+    std::size_t record = 0;
+    Box box{};
+    bool makes_room = false;
+  };
+  /// group, kind of object, its name here, target, level
+  using Image = std::tuple<std::uint64_t, ObjectKind, GLuint, GLenum, GLint>;
+
+  struct ThreadState {
+    bool inside_begin = false;
+    bool compiling = false;
+    Fate last_call = Fate::keep;
+    /// The last record of each current attribute since glBegin.
+    std::map<std::pair<std::uint32_t, std::uint64_t>, std::size_t> attributes;
+  };
+
+  Fate fate_of_event(const Record& record, const ThreadState& thread) const;
+  Fate fate_of_call(CallId call, const Record& record, ThreadState& thread);
+  void look_before(CallId call, const Record& record, const ThreadState& thread);
+  void note_upload(CallId call, const Record& record);
+  void note_answers(const Record& record);
+  void supersede(const Image& image, const Upload& upload);
+  GLuint ask(GLenum name) const;
+  void mark(ObjectKind kind, GLuint here);
+  void mark_attachments();
+  void mark_bound_texture(GLenum target);
+  GLuint there(ObjectKind kind, GLuint here) const;
+
+  Player& player_;
+  std::vector<Fate> fates_;
+  std::map<std::uint64_t, ThreadState> threads_;
+  std::uint64_t thread_ = 0;
+  std::map<Image, std::vector<Upload>> uploads_;
+  std::map<DrawnObject, GLuint> drawn_;
+  std::map<DrawnObject, GLuint> names_;  ///< of the stream, by those here
+  /// Attachments need to be looked at again only when they may be others.
+  std::tuple<std::uint64_t, GLuint> framebuffer_seen_{};
+};
+
+/// Which binding glGetIntegerv names for a texture target; 0 where there is none.
+GLenum texture_binding(GLenum target);
+
+}  // namespace understudy::spu

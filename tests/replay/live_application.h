@@ -1,0 +1,61 @@
+// A small OpenGL program inside the test that is recorded while it draws, and its recording played again.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/offscreen_contexts.h"
+#include "spu/chain.h"
+#include "spu/player/window_system.h"
+
+namespace understudy::replay_test {
+
+/// RGBA with 8 bits, rows bottom up.
+using Pixels = std::vector<std::uint8_t>;
+
+constexpr spu::Extent2D extent{96, 80};  ///< of every drawable
+
+/// A file of this test alone, which is not there yet.
+std::filesystem::path trace_of_this_test();
+
+spu::RecordedContext compatibility_context(std::uint64_t number, std::uint64_t shares_with = 0);
+spu::RecordedContext core_context(std::uint64_t number);
+
+class LiveApplication {
+ public:
+  explicit LiveApplication(std::filesystem::path trace);
+  ~LiveApplication();
+
+  /// Makes the context and makes it current.
+  void add(const spu::RecordedContext& context);
+  void make_current(std::uint64_t context);
+  /// What the application calls.
+  const spu::DispatchTable& gl() const;
+  /// As a swap of buffers: what is shown is kept.
+  void show();
+  /// All contexts go; the trace is whole.
+  void end();
+
+  const std::vector<Pixels>& shown() const { return shown_; }
+
+ private:
+  const std::filesystem::path trace_;
+  launcher::OffscreenContexts windows_;
+  std::map<std::uint64_t, std::unique_ptr<spu::Chain>> chains_;
+  std::vector<Pixels> shown_;
+};
+
+struct Played {
+  std::vector<Pixels> frames;
+  std::vector<Pixels> reads;
+  std::vector<std::string> errors;
+};
+
+/// Plays all of the trace on contexts of its own.
+Played play_back(const std::filesystem::path& trace, const std::string& chain = "driver");
+
+}  // namespace understudy::replay_test

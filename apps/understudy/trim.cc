@@ -78,6 +78,26 @@ class Pictures {
   std::vector<std::uint64_t> pictures_;
 };
 
+std::vector<std::uint64_t> pictures_of(const std::filesystem::path& trace) {
+  Pictures pictures;
+  walk(trace, ~std::uint64_t(0),
+       [&](const spu::Record& record, std::uint64_t) { pictures.player().play(record); });
+  return pictures.take();
+}
+
+void write(const TrimPlan& plan, const std::vector<spu::Fate>& fates, const spu::Records& restoration) {
+  spu::Shortened shortened(plan.out);
+  std::size_t number = 0;
+  bool cut = false;
+  walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
+    if (frame < plan.frames.first) return shortened.take(record, fates[number++]);
+    if (!cut) shortened.take_all(restoration);
+    cut = true;
+    shortened.take(record);
+  });
+  shortened.finish();
+}
+
 }  // namespace
 
 void trim(const TrimPlan& plan) {
@@ -110,34 +130,18 @@ void trim(const TrimPlan& plan) {
     wanted = whole.take();
   }
 
-  spu::Shortened shortened(plan.out);
-  std::size_t number = 0;
-  bool cut = false;
-  walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
-    if (frame < first) return shortened.take(record, fates[number++]);
-    if (!cut) {
-      cut = true;
-      std::size_t position = 0;
-      while (const auto restored = spu::record_at(restoration.words(), position, restoration.payload())) {
-        position += restored->words.size();
-        copy_record(*restored, shortened.records());
-      }
-    }
-    shortened.take(record);
-  });
-  shortened.finish();
-
-  Pictures check;
-  walk(plan.out, ~std::uint64_t(0),
-       [&](const spu::Record& record, std::uint64_t) { check.player().play(record); });
-  if (check.take() == wanted) return;
+  // What was drawn before the cut is brought back only where a frame looks at it.
+  for (const spu::Records& brought_back : {spu::Records{}, restoration}) {
+    write(plan, fates, brought_back);
+    if (pictures_of(plan.out) == wanted) return;
+  }
   std::filesystem::remove(plan.out);
   std::string why;
   for (const std::string& trouble : troubles) why += "; " + trouble;
-  throw std::runtime_error(
-      fmt::format("frames {} and later depend on pictures before them that cannot be brought back{}; trim from "
-                  "an earlier frame",
-                  first, why));
+  throw std::runtime_error(fmt::format(
+      "frames {} and later depend on pictures before them that cannot be brought back{}; trim from an earlier "
+      "frame",
+      first, why));
 }
 
 void add_trim(CLI::App& app, std::function<int()>& chosen) {

@@ -85,8 +85,8 @@ void copy_without_data(const Record& record, Records& to) {
     to.append(parameters[p].pointer != 0 ? Reference{}.word() : record.words[p + 1]);
 }
 
-}  // namespace
-
+/// The record as it is, its payload included. Those of calls that are not known here lose their payload, which
+/// nobody could find.
 void copy_record(const Record& record, Records& to) {
   to.begin(record.id);
   for (const std::uint64_t word : record.arguments()) to.append(word);
@@ -95,6 +95,8 @@ void copy_record(const Record& record, Records& to) {
     if (const auto bytes = record.bytes(record.words[word])) to.set(word, to.attach(*bytes).word());
   }
 }
+
+}  // namespace
 
 std::uint64_t Shortened::group_of(std::uint64_t context) const {
   for (std::size_t step = 0; step <= shares_with_.size(); ++step) {
@@ -192,6 +194,15 @@ void Shortened::take(const Record& record) {
   records_.set(1, ++frames_);
   ++frames_in_block_;
   finish();
+}
+
+void Shortened::take_all(const Records& records) {
+  std::size_t position = 0;
+  while (const auto record = record_at(records.words(), position, records.payload())) {
+    position += record->words.size();
+    copy_record(*record, records_);
+    write_when_large();
+  }
 }
 
 void Shortened::write_when_large() {

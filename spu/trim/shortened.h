@@ -14,10 +14,6 @@
 
 namespace understudy::spu {
 
-/// Appends the record as it is, its payload included. Records of calls that are not known here are copied
-/// without payload, which nobody could find.
-void copy_record(const Record& record, Records& to);
-
 class Shortened {
  public:
   /// Throws std::system_error.
@@ -25,13 +21,12 @@ class Shortened {
 
   /// A record before the cut.
   void take(const Record& record, Fate fate);
+  /// At the cut: records that were made for it.
+  void take_all(const Records& records);
   /// A record of the frames that stay; they are numbered from 1.
   void take(const Record& record);
   /// Writes what is left.
   void finish();
-
-  Records& records() { return records_; }
-  std::uint64_t frames() const { return frames_; }
 
  private:
   /// A display list of a share group.

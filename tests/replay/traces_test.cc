@@ -1,1 +1,285 @@
+// Traces that are kept: every version of this program plays them, and sees the same volume in them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/understudy/compare.h"
+#include "apps/understudy/picture.h"
+#include "apps/understudy/play.h"
+#include "apps/understudy/trim.h"
+#include "live_application.h"
+
+namespace understudy::replay_test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsEmpty;
+
+/// The traces were recorded, and the expected pictures made, with this driver.
+constexpr const char* expected_driver = "llvmpipe (LLVM 15.0.6, 256 bits)";
+constexpr int frames = 3;
+
+const std::array<std::string, 4> names = {"rgba", "table", "core", "version_1"};
+
+fs::path trace_file(const std::string& name) {
+  return fs::path(TRACES) / (name + ".ust");
+}
+
+launcher::Picture expected(const std::string& name, int frame) {
+  return launcher::read_picture(fs::path(EXPECTED) / (name + "_" + std::to_string(frame) + ".png"));
+}
+
+bool is_expected_driver() {
+  launcher::OffscreenContexts windows;
+  windows.create(compatibility_context(1));
+  windows.make_current(1, {16, 16});
+  const auto* name = reinterpret_cast<const char*>(windows.driver().GetString(GL_RENDERER));
+  return name != nullptr && std::string(name) == expected_driver;
+}
+
+class Folder {
+ public:
+  Folder() : path_(trace_of_this_test().replace_extension("")) { fs::create_directories(path_); }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Runs the command and answers its exit status.
+int understudy(const std::string& arguments) {
+  const int status = std::system((std::string(PROGRAMS) + "/understudy " + arguments + " 2>/dev/null").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+launcher::Picture saved(const fs::path& folder, int frame) {
+  return launcher::read_picture(folder / ("frame_000" + std::to_string(frame) + ".png"));
+}
+
+class Kept : public testing::TestWithParam<std::string> {};
+
+TEST_P(Kept, TracesShowTheSamePicturesNatively) {
+  const Folder folder;
+  spu::Options options;
+  options.chain = "driver";
+  const launcher::Played played =
+      launcher::play({.trace = trace_file(GetParam()), .save_frames = folder.path()}, options);
+  EXPECT_EQ(played.frames, std::uint64_t(frames));
+  EXPECT_EQ(played.errors, 0U);
+  const bool exact = is_expected_driver();
+  for (int frame = 1; frame <= frames; ++frame) {
+    const auto difference = launcher::difference(saved(folder.path(), frame), expected(GetParam(), frame));
+    if (exact) EXPECT_EQ(difference.max, 0) << "frame " << frame;
+    EXPECT_GE(difference.psnr(), 50) << "frame " << frame;
+  }
+}
+
+/// With `nodes` ranks; 0: in the player.
+void expect_substituted(const std::string& name, int nodes) {
+  const Folder folder;
+  const fs::path report = folder.path() / "report.json";
+  const std::string ranks = nodes > 0 ? "-n " + std::to_string(nodes) : "";
+  ASSERT_EQ(understudy("replay " + ranks + " --report " + report.string() + " --save-frames " +
+                       folder.path().string() + " " + trace_file(name).string()),
+            0);
+  const auto figures = nlohmann::json::parse(std::ifstream(report));
+  EXPECT_EQ(figures.at("frames_substituted"), frames) << figures.dump(1);
+  EXPECT_EQ(figures.at("frames_left"), 0);
+  for (int frame = 1; frame <= frames; ++frame)
+    EXPECT_GE(launcher::difference(saved(folder.path(), frame), expected(name, frame)).psnr(), 35)
+        << "frame " << frame;
+}
+
+TEST_P(Kept, TracesAreSubstitutedInThePlayer) {
+  expect_substituted(GetParam(), 0);
+}
+
+TEST_P(Kept, TracesAreSubstitutedOnRanks) {
+  if (!fs::exists(fs::path(PROGRAMS) / "understudy-node"))
+    GTEST_SKIP() << "understudy-node is not built: no MPI";
+  for (const int nodes : {2, 4}) expect_substituted(GetParam(), nodes);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Kept, testing::ValuesIn(names), [](const auto& info) { return info.param; });
+
+std::vector<std::byte> contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  return {first, first + text.size()};
+}
+
+void write(const fs::path& path, std::span<const std::byte> bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+}
+
+TEST(CutOff, TracesPlayToTheirLastWholeBlock) {
+  const Folder folder;
+  const fs::path whole = trace_file("rgba");
+  const auto bytes = contents(whole);
+  std::vector<std::uint64_t> starts;
+  {
+    spu::TraceReader reader(whole);
+    while (const auto block = reader.next()) starts.push_back(block->file_offset);
+  }
+  ASSERT_GE(starts.size(), std::size_t(frames));
+  starts.push_back(bytes.size());
+  spu::Options options;
+  options.chain = "driver";
+  for (std::size_t block = 0; block + 1 < starts.size(); ++block) {
+    // Within the block's header, within its data, and one byte before its end.
+    for (const std::uint64_t end :
+         {starts[block] + 5, (starts[block] + starts[block + 1]) / 2, starts[block + 1] - 1}) {
+      const fs::path cut = folder.path() / "cut.ust";
+      write(cut, std::span(bytes).first(end));
+      testing::internal::CaptureStderr();
+      const launcher::Played played = launcher::play({.trace = cut}, options);
+      EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("was cut off"));
+      EXPECT_EQ(played.frames, std::min<std::uint64_t>(block, frames)) << "cut at byte " << end;
+      EXPECT_EQ(understudy("replay --native " + cut.string()), 0);
+    }
+  }
+}
+
+TEST(Damaged, TracesEndPlayingWithBlockAndOffset) {
+  const Folder folder;
+  auto bytes = contents(trace_file("rgba"));
+  bytes[bytes.size() / 2] ^= std::byte(0xff);
+  const fs::path damaged = folder.path() / "damaged.ust";
+  write(damaged, bytes);
+  EXPECT_EQ(understudy("replay --native " + damaged.string()), 1);
+  spu::Options options;
+  options.chain = "driver";
+  try {
+    launcher::play({.trace = damaged}, options);
+    FAIL() << "damage was not noticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::ContainsRegex("block [0-9]+ at byte [0-9]+"));
+  }
+}
+
+TEST(Ranges, OfFramesArePlayedToTheirEndAndSavedFromTheirBegin) {
+  const Folder folder;
+  ASSERT_EQ(understudy("replay --native --frames 2-2 --save-frames " + folder.path().string() + " --report " +
+                       (folder.path() / "report.json").string() + " " + trace_file("core").string()),
+            0);
+  EXPECT_FALSE(fs::exists(folder.path() / "frame_0001.png"));
+  EXPECT_FALSE(fs::exists(folder.path() / "frame_0003.png"));
+  EXPECT_EQ(launcher::difference(saved(folder.path(), 2), expected("core", 2)).psnr() >= 50, true);
+  const auto figures = nlohmann::json::parse(std::ifstream(folder.path() / "report.json"));
+  EXPECT_EQ(figures.at("frames"), 1) << figures.dump(1);
+  EXPECT_THROW(launcher::parse_frame_range("3-2"), std::runtime_error);
+  EXPECT_THROW(launcher::parse_frame_range("0-2"), std::runtime_error);
+  EXPECT_THROW(launcher::parse_frame_range("a"), std::runtime_error);
+  EXPECT_EQ(launcher::parse_frame_range("4").last, 4U);
+  EXPECT_TRUE(launcher::parse_frame_range("4-").contains(1'000'000));
+}
+
+/// Frames that need what was drawn, uploaded and compiled before them.
+TEST(Trimmed, TracesShowTheSameFramesBitForBit) {
+  const fs::path trace = trace_of_this_test();
+  LiveApplication application(trace);
+  application.add(compatibility_context(1));
+  const auto& gl = application.gl();
+  std::array<GLuint, 3> textures{};
+  GLuint framebuffer = 0;
+  GLuint buffer = 0;
+  gl.GenTextures(3, textures.data());
+  gl.GenFramebuffers(1, &framebuffer);
+  gl.GenBuffers(1, &buffer);
+  const GLuint list = gl.GenLists(2);
+  std::vector<std::uint8_t> texels(16 * 16 * 4);
+  for (int frame = 0; frame < 4; ++frame) {
+    gl.ClearColor(0.1F, 0, 0.1F, 1);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = std::uint8_t(i * std::size_t(frame + 3));
+    // Replaced as a whole in every frame.
+    gl.BindTexture(GL_TEXTURE_2D, textures[0]);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    // Made once, changed in one place by every frame.
+    gl.BindTexture(GL_TEXTURE_2D, textures[1]);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    if (frame == 0)
+      gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    gl.TexSubImage2D(GL_TEXTURE_2D, 0, 4 * frame, 0, 4, 8, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    // Drawn into by every frame, never cleared but in the first.
+    gl.BindTexture(GL_TEXTURE_2D, textures[2]);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    if (frame == 0) gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, textures[2], 0);
+    gl.Viewport(0, 0, 16, 16);
+    if (frame == 0) gl.Clear(GL_COLOR_BUFFER_BIT);
+    gl.Disable(GL_TEXTURE_2D);
+    gl.Color3f(0.2F + 0.2F * float(frame), 1, 0.3F);
+    gl.Rectf(-1 + 0.5F * float(frame), -1, -0.6F + 0.5F * float(frame), 1);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl.Viewport(0, 0, extent.width, extent.height);
+    // A list that draws and leaves a colour behind.
+    if (frame == 0) {
+      gl.NewList(list, GL_COMPILE);
+      gl.Begin(GL_TRIANGLES);
+      gl.Vertex2f(0.6F, -1);
+      gl.Color3f(1, 0.8F, 0.1F);
+      gl.Vertex2f(1, -1);
+      gl.Vertex2f(1, -0.5F);
+      gl.End();
+      gl.EndList();
+      gl.NewList(list + 1, GL_COMPILE);
+      gl.CallList(list);
+      gl.Translatef(0, 0.1F, 0);
+      gl.EndList();
+    }
+    gl.CallList(list + 1);
+    gl.Rectf(0.6F, 0.6F, 0.9F, 0.9F);
+    gl.Enable(GL_TEXTURE_2D);
+    gl.Color3f(1, 1, 1);
+    for (int i = 0; i < 3; ++i) {
+      gl.BindTexture(GL_TEXTURE_2D, textures[std::size_t(i)]);
+      gl.Begin(GL_QUADS);
+      for (const auto& [s, t] : {std::pair(0.0F, 0.0F), {1.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 1.0F}}) {
+        gl.TexCoord2f(s, t);
+        gl.Vertex2f(-0.9F + 0.5F * float(i) + 0.4F * s, -0.8F + 0.8F * t);
+      }
+      gl.End();
+    }
+    application.show();
+  }
+  application.end();
+  const fs::path shorter = fs::path(trace).replace_extension(".short.ust");
+  launcher::trim({.trace = trace, .frames = {2, 3}, .out = shorter});
+  const Played played = play_back(shorter);
+  EXPECT_THAT(played.errors, IsEmpty());
+  ASSERT_EQ(played.frames.size(), 2U);
+  EXPECT_TRUE(played.frames[0] == application.shown()[1]);
+  EXPECT_TRUE(played.frames[1] == application.shown()[2]);
+  fs::remove(shorter);
+}
+
+TEST(Trimmed, TracesOfTheViewerAreShorterAndShowTheSame) {
+  const Folder folder;
+  for (const std::string& name : names) {
+    const fs::path shorter = folder.path() / "short.ust";
+    launcher::trim({.trace = trace_file(name), .frames = {3, 3}, .out = shorter});
+    EXPECT_LE(fs::file_size(shorter), fs::file_size(trace_file(name))) << name;
+    const Played whole = play_back(trace_file(name));
+    const Played part = play_back(shorter);
+    ASSERT_EQ(part.frames.size(), 1U);
+    EXPECT_TRUE(part.frames[0] == whole.frames[2]) << name;
+  }
+}
+
+}  // namespace
+}  // namespace understudy::replay_test

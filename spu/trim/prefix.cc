@@ -71,13 +71,12 @@ GLuint Prefix::ask(GLenum name) const {
   return GLuint(value);
 }
 
-GLuint Prefix::there(ObjectKind kind, GLuint here) const {
-  const auto found = names_.find({player_.current().group, kind, here});
-  return found == names_.end() ? here : found->second;
+StreamObject& Prefix::stream_object(ObjectKind kind, GLuint here) {
+  return objects_.try_emplace({player_.current().group, kind, here}, StreamObject{here}).first->second;
 }
 
 void Prefix::mark(ObjectKind kind, GLuint here) {
-  if (here != 0) drawn_[{player_.current().group, kind, here}] = there(kind, here);
+  if (here != 0) drawn_[{player_.current().group, kind, here}] = stream_object(kind, here);
 }
 
 void Prefix::mark_bound_texture(GLenum target) {
@@ -188,6 +187,11 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
       name.starts_with("glGenerateMipmap")) {
     mark_bound_texture(GLenum(word(0)));
   }
+  // OpenGL tells a texture's target in core profiles only.
+  if (call == CallId::BindTexture || call == CallId::BindTextureEXT)
+    stream_object(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(1)))).target =
+        GLenum(word(0));
+  if (call == CallId::CreateTextures) last_created_ = GLenum(word(0));
   const std::uint8_t access = argument_named(call_shape(call), "access");
   if (call == CallId::BindImageTexture && access != no_argument && word(access) != GL_READ_ONLY)
     mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(1))));
@@ -281,7 +285,8 @@ void Prefix::note_answers(const Record& record) {
       GLuint there = 0;
       std::memcpy(&there, names->data() + i, sizeof there);
       const auto here = GLuint(player_.here(parameter.object, there));
-      names_[{player_.current().group, parameter.object, here}] = there;
+      stream_object(parameter.object, here).name = there;
+      if (*call == CallId::CreateTextures) stream_object(parameter.object, here).target = last_created_;
     }
   }
 }

@@ -33,6 +33,12 @@ struct DrawnObject {
   auto operator<=>(const DrawnObject&) const = default;
 };
 
+/// What the stream says of such an object.
+struct StreamObject {
+  GLuint name = 0;
+  GLenum target = GL_NONE;  ///< of textures
+};
+
 class Prefix {
  public:
   explicit Prefix(Player& player) : player_(player) {}
@@ -42,8 +48,7 @@ class Prefix {
 
   /// By number of the record; final when the prefix has been played.
   const std::vector<Fate>& fates() const { return fates_; }
-  /// With the name that the stream has for each.
-  const std::map<DrawnObject, GLuint>& drawn() const { return drawn_; }
+  const std::map<DrawnObject, StreamObject>& drawn() const { return drawn_; }
   /// The thread of the last record.
   std::uint64_t thread() const { return thread_; }
 
@@ -76,15 +81,16 @@ class Prefix {
   void mark(ObjectKind kind, GLuint here);
   void mark_attachments();
   void mark_bound_texture(GLenum target);
-  GLuint there(ObjectKind kind, GLuint here) const;
+  StreamObject& stream_object(ObjectKind kind, GLuint here);
 
   Player& player_;
   std::vector<Fate> fates_;
   std::map<std::uint64_t, ThreadState> threads_;
   std::uint64_t thread_ = 0;
   std::map<Image, std::vector<Upload>> uploads_;
-  std::map<DrawnObject, GLuint> drawn_;
-  std::map<DrawnObject, GLuint> names_;  ///< of the stream, by those here
+  std::map<DrawnObject, StreamObject> drawn_;
+  std::map<DrawnObject, StreamObject> objects_;
+  GLenum last_created_ = GL_NONE;  ///< target of textures whose names are still to be told
   /// Attachments need to be looked at again only when they may be others.
   std::tuple<std::uint64_t, GLuint> framebuffer_seen_{};
 };

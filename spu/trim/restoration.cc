@@ -79,10 +79,11 @@ std::optional<Transfer> transfer_for(const DispatchTable& gl, GLuint texture) {
   }
 }
 
-std::string restore_texture(const DispatchTable& gl, GLuint here, GLuint there, Records& to) {
+std::string restore_texture(const DispatchTable& gl, GLuint here, const StreamObject& texture, Records& to) {
   if (!gl.IsTexture(here)) return {};
-  GLint target = 0;
-  gl.GetTextureParameteriv(here, GL_TEXTURE_TARGET, &target);
+  const GLuint there = texture.name;
+  const GLenum target = texture.target;
+  if (target == GL_NONE) return fmt::format("texture {} was never bound", there);
   if (target == GL_TEXTURE_2D_MULTISAMPLE || target == GL_TEXTURE_2D_MULTISAMPLE_ARRAY)
     return fmt::format("texture {} has several samples a pixel", there);
   const auto transfer = transfer_for(gl, here);
@@ -170,7 +171,7 @@ void make_current(Player& player, const Player::PlayedContext& context, Records&
 
 }  // namespace
 
-std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObject, GLuint>& drawn,
+std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObject, StreamObject>& drawn,
                                        Records& to) {
   std::vector<std::string> troubles;
   if (drawn.empty() || !player.prepare()) return troubles;
@@ -196,11 +197,11 @@ std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObjec
     const TightReading tight(gl);
     GLuint unpack_name = GLuint(unpack_buffer);
     for (; object != drawn.end() && object->first.group == group; ++object) {
-      const auto& [what, there] = *object;
+      const auto& [what, stream] = *object;
       std::string trouble;
-      if (what.kind == ObjectKind::texture) trouble = restore_texture(gl, what.here, there, to);
-      if (what.kind == ObjectKind::buffer) trouble = restore_buffer(gl, what.here, there, to);
-      if (what.kind == ObjectKind::buffer && what.here == GLuint(unpack_buffer)) unpack_name = there;
+      if (what.kind == ObjectKind::texture) trouble = restore_texture(gl, what.here, stream, to);
+      if (what.kind == ObjectKind::buffer) trouble = restore_buffer(gl, what.here, stream.name, to);
+      if (what.kind == ObjectKind::buffer && what.here == GLuint(unpack_buffer)) unpack_name = stream.name;
       if (!trouble.empty()) troubles.push_back(std::move(trouble));
     }
     if (unpack_buffer != 0) append_plain_call(CallId::BindBuffer, {GL_PIXEL_UNPACK_BUFFER, unpack_name}, to);

@@ -14,6 +14,7 @@ namespace understudy::spu {
 
 /// Appends the uploads to `to`; they leave every binding as it is. Returns what could not be restored, in plain
 /// words.
-std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObject, GLuint>& drawn, Records& to);
+std::vector<std::string> restore_drawn(Player& player, const std::map<DrawnObject, StreamObject>& drawn,
+                                       Records& to);
 
 }  // namespace understudy::spu

@@ -12,23 +12,32 @@ std::uint64_t ShareGroup::texture_version(GLuint texture) const {
 
 void ShareGroup::texture_changed(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  textures_[texture].version = ++changes_;
+  known(texture).version = ++changes_;
 }
 
 void ShareGroup::some_texture_changed() {
+  if (!has_volumes()) return;
   // Two threads may store in the wrong order; both changes are then newer than whatever was read before them.
   some_changed_.store(++changes_, std::memory_order_relaxed);
 }
 
 void ShareGroup::texture_deleted(GLuint texture) {
-  ++deletions_;
+  // Whoever noted something about it did so before, in the order in which the application uses the name.
+  if (texture == 0 || !textures_are_known_.load(std::memory_order_relaxed)) return;
   const std::scoped_lock lock(mutex_);
-  textures_.erase(texture);
+  if (textures_.erase(texture) == 0) return;
+  deletions_.fetch_add(1, std::memory_order_relaxed);
+  textures_are_known_.store(!textures_.empty(), std::memory_order_relaxed);
+}
+
+ShareGroup::TextureRecord& ShareGroup::known(GLuint texture) {
+  textures_are_known_.store(true, std::memory_order_relaxed);
+  return textures_[texture];
 }
 
 void ShareGroup::remember(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  textures_.try_emplace(texture);
+  known(texture);
 }
 
 bool ShareGroup::remembers(GLuint texture) const {
@@ -38,7 +47,7 @@ bool ShareGroup::remembers(GLuint texture) const {
 
 void ShareGroup::texture_rendered_to(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  textures_[texture].rendered_to = true;
+  known(texture).rendered_to = true;
 }
 
 bool ShareGroup::is_rendered_to(GLuint texture) const {

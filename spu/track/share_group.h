@@ -29,11 +29,13 @@ class ShareGroup {
   /// Grows with every change of the texture's contents or definition.
   std::uint64_t texture_version(GLuint texture) const;
   void texture_changed(GLuint texture);
-  /// A change of a texture whose name is not known: before there are volumes nobody asks for it.
+  /// A change of a texture whose name is not known. Before there are volumes nobody asks for it, and it is not
+  /// noted.
   void some_texture_changed();
   /// The name may come again, for another texture.
   void texture_deleted(GLuint texture);
-  /// Grows when a texture is deleted: what is noted elsewhere by name is void then.
+  /// Grows when a texture is deleted of which something is known here: what is noted elsewhere by name is void
+  /// then.
   std::uint64_t deletions() const { return deletions_.load(std::memory_order_relaxed); }
 
   /// From now on until the texture is deleted, remembers() is true for it.
@@ -64,6 +66,9 @@ class ShareGroup {
     bool rendered_to = false;
   };
 
+  /// With the mutex held.
+  TextureRecord& known(GLuint texture);
+
   ProgramSources programs_;
   mutable std::mutex mutex_;
   std::map<GLuint, TextureRecord> textures_;
@@ -71,6 +76,7 @@ class ShareGroup {
   std::atomic<std::uint64_t> changes_{0};       ///< source of all versions: none is ever given twice
   std::atomic<std::uint64_t> some_changed_{0};  ///< version of the last change whose texture is not known
   std::atomic<std::uint64_t> deletions_{0};
+  std::atomic<bool> textures_are_known_{false};  ///< textures_ is not empty
   std::atomic<bool> has_volumes_{false};
   std::atomic<bool> lists_change_textures_{false};
 };

@@ -82,7 +82,8 @@ void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenu
 
 void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
   Track& track = here();
-  track.chain().settle();
+  // The slices of an open run use the texture as it is.
+  if (track.chain().phase() == Phase::deferring) track.chain().settle();
   if (count > 0 && textures != nullptr) {
     for (const GLuint texture : std::span(textures, std::size_t(count)))
       track.chain().group().texture_deleted(texture);
@@ -164,7 +165,7 @@ void APIENTRY call_list(GLuint list) {
   Track& track = here();
   track.below().CallList(list);
   ShareGroup& group = track.chain().group();
-  if (!group.lists_change_textures()) return;
+  if (!group.has_volumes() || !group.lists_change_textures()) return;
   const auto record = group.list(list);
   if (record && record->changes_textures) group.some_texture_changed();
 }

@@ -13,6 +13,7 @@ using testing::ElementsAre;
 
 TEST(ShareGroup, AVersionNeverComesBack) {
   ShareGroup group;
+  group.volume_defined();
   group.texture_changed(7);
   const auto first = group.texture_version(7);
   group.texture_changed(7);
@@ -40,6 +41,17 @@ TEST(ShareGroup, ADeletedTextureIsForgotten) {
   EXPECT_FALSE(group.remembers(3));
   EXPECT_FALSE(group.is_rendered_to(3));
   EXPECT_GT(group.deletions(), deletions);
+}
+
+TEST(ShareGroup, DeletingWhatNobodyKnowsChangesNothing) {
+  ShareGroup group;
+  const auto deletions = group.deletions();
+  group.texture_deleted(3);
+  group.texture_rendered_to(4);
+  group.texture_deleted(3);
+  group.texture_deleted(0);
+  EXPECT_EQ(group.deletions(), deletions);
+  EXPECT_TRUE(group.is_rendered_to(4));
 }
 
 TEST(ShareGroup, TellsOnceListsMayChangeTextures) {

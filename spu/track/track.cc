@@ -6,6 +6,7 @@
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
 #include "spu/track/program_slots.h"
+#include "spu/track/state.h"
 
 namespace understudy::spu {
 namespace {
@@ -269,6 +270,10 @@ void Track::texture_rendered_to(GLuint texture) {
 
 void Track::frame_ended(FrameEnd) {
   if (chain_.phase() == Phase::plain && chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
+}
+
+State Track::state() const {
+  return read_state(below());
 }
 
 void Track::fill(Phase phase, DispatchTable& table) {

@@ -11,6 +11,8 @@
 
 namespace understudy::spu {
 
+class State;
+
 class Track final : public Unit {
  public:
   static constexpr char tag = 't';
@@ -32,6 +34,10 @@ class Track final : public Unit {
   /// A 3-D texture is being defined: from now on draws are watched.
   void volume_defined();
   void texture_rendered_to(GLuint texture);
+
+  /// What state the context is in; the driver is asked when this is. The context is current, and not between
+  /// glBegin and glEnd.
+  State state() const;
 
   Chain& chain() { return chain_; }
   const DispatchTable& below() const { return chain_.below(*this); }

@@ -1,0 +1,60 @@
+// The state of a context as a value, and the calls that make one state into another (Buck, Humphreys and
+// Hanrahan 2000, "Tracking graphics state for networked rendering").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dispatch/table.h"
+#include "spu/stream/record.h"
+#include "spu/track/state_rows.h"
+
+namespace understudy::spu {
+
+/// The values of all rows that the context has. Not in it: matrices and attributes that are pushed, pixel maps,
+/// the polygon stipple, evaluators, the raster position, array pointers, transform feedback, assembly programs.
+class State {
+ public:
+  struct Item {
+    const StateRow* row;
+    GLuint number;            ///< 0 where there is one item
+    std::size_t first_value;  ///< of row->count()
+  };
+
+  /// In the order of state_rows(), then of numbers.
+  std::span<const Item> items() const { return items_; }
+  std::span<const double> values(const Item& item) const {
+    return std::span(values_).subspan(item.first_value, std::size_t(item.row->count()));
+  }
+  std::span<double> values(const Item& item) {
+    return std::span(values_).subspan(item.first_value, std::size_t(item.row->count()));
+  }
+  /// By the call that sets it, its first query's name and, unless 0, the call's target; null when the context
+  /// has no such item.
+  const Item* find(CallId set, GLenum name, GLuint number = 0, GLenum target = 0) const;
+  /// A core profile has no fixed function.
+  bool core() const { return core_; }
+
+  /// Adds an item whose values are to be filled in.
+  std::span<double> add(const StateRow& row, GLuint number);
+  void set_core(bool core) { core_ = core; }
+
+  /// By bits: a NaN equals itself.
+  bool operator==(const State& other) const;
+
+ private:
+  std::vector<Item> items_;
+  std::vector<double> values_;
+  bool core_ = false;
+};
+
+/// Asks the current context, which must not be between glBegin and glEnd. Leaves no error.
+State read_state(const DispatchTable& gl);
+
+/// The calls that turn a context in state `from` into one in state `to`. Names mean the same objects in both;
+/// items that one of the contexts lacks are left alone. A Decoder makes the calls.
+Records difference(const State& from, const State& to);
+
+}  // namespace understudy::spu

@@ -41,6 +41,45 @@ def stable_id(name):
     return value
 
 
+def is_plain(command):
+    """No result, and every argument is a value or an array of a length that the registry fixes. This is about the
+    signature alone: glDrawArrays is plain, though what it reads may lie in the caller's arrays."""
+    return command.result == "void" and all(
+        (p.pointer == 0 and VALUE_TYPES[p.base] != "address")
+        or (p.pointer == 1 and p.input and p.extent.rule == "counted" and not p.extent.argument)
+        for p in command.parameters
+    )
+
+
+def plain_words(command):
+    """Words of a plain call's record: header, a word an argument, and for every array its {bytes, data}."""
+    if not is_plain(command):
+        return 0
+    words = 1 + len(command.parameters)
+    for p in command.parameters:
+        if p.pointer:
+            words += 1 + -(-SIZES[VALUE_TYPES[p.base]] * p.extent.factor // 8)
+    if words > 255:
+        raise SystemExit(f"{command.name}: its record has {words} words: widen plain_words in shapes.py")
+    return words
+
+
+ID_SLOTS = 1 << 13  # more than twice as many as there are commands, so that chains of slots stay short
+
+
+def id_slots(commands):
+    """An open-addressing table from stable ids to commands."""
+    if 2 * len(commands) > ID_SLOTS:
+        raise SystemExit(f"{len(commands)} commands are too many for {ID_SLOTS} slots: double ID_SLOTS in shapes.py")
+    slots = ["no_call"] * ID_SLOTS
+    for number, command in enumerate(commands):
+        position = stable_id(command.name) % ID_SLOTS
+        while slots[position] != "no_call":
+            position = (position + 1) % ID_SLOTS
+        slots[position] = str(number)
+    return slots
+
+
 def shape_header():
     kinds = "\n".join(f"  {kind}," for kind in OBJECT_KINDS)
     types = list(dict.fromkeys(VALUE_TYPES.values()))
@@ -62,8 +101,13 @@ enum class ValueType : std::uint8_t {{
 {chr(10).join(f"  {t}," for t in types)}
 }};
 
+inline constexpr std::uint8_t value_sizes[] = {{
+    0,
+{rows([str(SIZES[t]) for t in types], 12)}
+}};
+
 /// Bytes of one value; 1 for untyped, 0 for none.
-std::size_t value_size(ValueType type) noexcept;
+constexpr std::size_t value_size(ValueType type) noexcept {{ return value_sizes[static_cast<std::size_t>(type)]; }}
 
 /// The name space that an object name belongs to.
 enum class ObjectKind : std::uint8_t {{
@@ -107,17 +151,40 @@ struct CallShape {{
   ValueType result;
   std::uint8_t result_pointer;  ///< 0: a value, 1: T*
   ObjectKind result_object;
-  bool plain;  ///< no result, and every argument is a value or an array of fixed length: nothing else is read or written
+  /// Words of the call's record in a stream when the call is plain, 0 when it is not. Plain: no result, and every
+  /// argument is a value or an array of fixed length; nothing else is read or written.
+  std::uint8_t plain_words;
   ImageArguments image;
 
+  bool plain() const noexcept {{ return plain_words != 0; }}
   std::span<const ParameterShape> parameters() const noexcept;
 }};
 
-const CallShape& call_shape(CallId call) noexcept;
+// Read for every call of a frame, hence from here and not by functions elsewhere.
+extern const ParameterShape parameter_shapes[];
+extern const CallShape call_shapes[call_count];
+extern const std::uint32_t stable_ids[call_count];
+
+inline std::span<const ParameterShape> CallShape::parameters() const noexcept {{
+  return {{parameter_shapes + first_parameter, parameter_count}};
+}}
+
+inline const CallShape& call_shape(CallId call) noexcept {{ return call_shapes[static_cast<std::size_t>(call)]; }}
 
 /// The number that stands for a command in streams: made from its name alone, so it never changes.
-std::uint32_t stable_id(CallId call) noexcept;
-std::optional<CallId> find_stable_id(std::uint32_t id) noexcept;
+inline std::uint32_t stable_id(CallId call) noexcept {{ return stable_ids[static_cast<std::size_t>(call)]; }}
+
+/// A call stands in the slot of its stable id, or in the next one that was free.
+constexpr std::uint16_t no_call = 0xffff;
+extern const std::uint16_t id_slots[{ID_SLOTS}];
+
+inline std::optional<CallId> find_stable_id(std::uint32_t id) noexcept {{
+  for (std::size_t position = id;; ++position) {{
+    const std::uint16_t call = id_slots[position % {ID_SLOTS}];
+    if (call == no_call) return std::nullopt;
+    if (stable_ids[call] == id) return static_cast<CallId>(call);
+  }}
+}}
 
 /// "GL_TEXTURE_2D", preferably a name of the group; null when no enumerant has the value.
 const char* enum_name(std::uint32_t value, std::uint16_t group) noexcept;
@@ -149,17 +216,12 @@ def shape_source(commands, enumerants):
         if any(p.extent.rule in ("image", "image_out", "one_texel") for p in c.parameters):
             for position, names in enumerate(IMAGE_ARGUMENTS.values()):
                 image[position] = next((i for i in (index(c, n) for n in names) if i != 255), 255)
-        plain = c.result == "void" and all(
-            (p.pointer == 0 and VALUE_TYPES[p.base] != "address")
-            or (p.pointer == 1 and p.input and p.extent.rule == "counted" and not p.extent.argument)
-            for p in c.parameters
-        )
         if len(c.parameters) > 24:
             raise SystemExit(f"{c.name} has {len(c.parameters)} arguments: raise max_parameters in shapes.py")
         result = "none" if c.result == "void" else VALUE_TYPES[c.result.replace("const ", "").replace(" *", "")]
         shapes.append(
             f"{{{len(parameters)}, {len(c.parameters)}, ValueType::{result}, {c.result.count('*')}, ObjectKind::{c.object}, "
-            f"{str(plain).lower()}, {{{', '.join(map(str, image))}}}}}"
+            f"{plain_words(c)}, {{{', '.join(map(str, image))}}}}}"
         )
         for p in c.parameters:
             e = p.extent
@@ -172,8 +234,7 @@ def shape_source(commands, enumerants):
                 f"{{{texts.at(p.name)}, ValueType::{VALUE_TYPES[p.base]}, {p.pointer}, {str(p.input).lower()}, "
                 f"ObjectKind::{p.object}, {groups.get(p.group, 0)}, ExtentRule::{e.rule}, {counted_by}, {e.factor}, {e.divisor}}}"
             )
-    ids = sorted((stable_id(c.name), number) for number, c in enumerate(commands))
-    if len({i for i, _ in ids}) != len(ids):
+    if len({stable_id(c.name) for c in commands}) != len(commands):
         raise SystemExit("two commands share a stable id: another hash is needed")
     memberships, enum_rows = [], []
     for e in enumerants:
@@ -183,33 +244,13 @@ def shape_source(commands, enumerants):
 #include "dispatch/call_shape.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace understudy::spu {{
 namespace {{
 
 constexpr char texts[] =
 {texts.literal()};
-
-constexpr ParameterShape parameter_shapes[] = {{
-{rows(parameters, 1)}
-}};
-
-constexpr CallShape shapes[call_count] = {{
-{rows(shapes, 1)}
-}};
-
-constexpr std::uint32_t stable_ids[call_count] = {{
-{rows([f"{stable_id(c.name):#x}u" for c in commands], 8)}
-}};
-
-struct StableId {{
-  std::uint32_t id;
-  std::uint16_t call;
-}};
-
-constexpr StableId by_stable_id[call_count] = {{
-{rows([f"{{{i:#x}u, {number}}}" for i, number in ids], 5)}
-}};
 
 struct Enumerant {{
   std::uint32_t value;
@@ -226,31 +267,25 @@ constexpr std::uint16_t memberships[] = {{
 {rows(memberships, 20)}
 }};
 
-constexpr std::size_t value_sizes[] = {{
-    0,
-{rows([str(SIZES[t]) for t in dict.fromkeys(VALUE_TYPES.values())], 12)}
-}};
-
 }}  // namespace
 
 const char* ParameterShape::name() const noexcept {{ return texts + name_offset; }}
 
-std::span<const ParameterShape> CallShape::parameters() const noexcept {{
-  return {{parameter_shapes + first_parameter, parameter_count}};
-}}
+constinit const ParameterShape parameter_shapes[] = {{
+{rows(parameters, 1)}
+}};
 
-const CallShape& call_shape(CallId call) noexcept {{ return shapes[static_cast<std::size_t>(call)]; }}
+constinit const CallShape call_shapes[call_count] = {{
+{rows(shapes, 1)}
+}};
 
-std::size_t value_size(ValueType type) noexcept {{ return value_sizes[static_cast<std::size_t>(type)]; }}
+constinit const std::uint32_t stable_ids[call_count] = {{
+{rows([f"{stable_id(c.name):#x}u" for c in commands], 8)}
+}};
 
-std::uint32_t stable_id(CallId call) noexcept {{ return stable_ids[static_cast<std::size_t>(call)]; }}
-
-std::optional<CallId> find_stable_id(std::uint32_t id) noexcept {{
-  const auto* found = std::lower_bound(std::begin(by_stable_id), std::end(by_stable_id), id,
-                                       [](const StableId& entry, std::uint32_t wanted) {{ return entry.id < wanted; }});
-  if (found == std::end(by_stable_id) || found->id != id) return std::nullopt;
-  return static_cast<CallId>(found->call);
-}}
+constinit const std::uint16_t id_slots[] = {{
+{rows(id_slots(commands), 16)}
+}};
 
 const char* enum_name(std::uint32_t value, std::uint16_t group) noexcept {{
   const auto* first = std::lower_bound(std::begin(enumerants), std::end(enumerants), value,
@@ -283,6 +318,7 @@ def words_header(commands):
         end = f"    {handed_on};\n" if c.result == "void" else f"    return argument<{c.result}>({handed_on});\n"
         functions.append(f"  static {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n{array}{end}  }}")
     fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
+    plain_fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands if is_plain(c))
     return f"""\
 #pragma once
 
@@ -325,9 +361,15 @@ T argument(std::uint64_t word) noexcept {{
   }}
 }}
 
+/// By command: makes a call of its signature with argument words.
+using Invoker = std::uint64_t (*)(AnyFunction function, const std::uint64_t* words);
+extern const Invoker invokers[call_count];
+
 /// Makes the call on `table` with argument words, as many as the command's shape has; answers the result's word, 0 for
 /// void. The slot must not be null.
-std::uint64_t invoke(const DispatchTable& table, CallId call, const std::uint64_t* words);
+inline std::uint64_t invoke(const DispatchTable& table, CallId call, const std::uint64_t* words) {{
+  return invokers[static_cast<std::size_t>(call)](slot(table, call), words);
+}}
 
 /// Functions with the commands' signatures that hand every call on as words:
 /// `static std::uint64_t Handler::call(CallId, const std::uint64_t* words)`, which answers the result's word.
@@ -338,6 +380,11 @@ struct AsWords {{
   /// Sets every slot.
   static void fill(DispatchTable& table) {{
 {fills}
+  }}
+
+  /// Sets the slots of the plain commands, leaves the others alone.
+  static void fill_plain(DispatchTable& table) {{
+{plain_fills}
   }}
 
   /// Sets the slots that are not null in `table`: a command that the next unit lacks stays lacking.
@@ -379,15 +426,11 @@ std::uint64_t invoke_as(AnyFunction function, [[maybe_unused]] const std::uint64
   }}(std::index_sequence_for<Arguments...>{{}});
 }}
 
-constexpr std::uint64_t (*invokers[call_count])(AnyFunction, const std::uint64_t*) = {{
-{invokers}
-}};
-
 }}  // namespace
 
-std::uint64_t invoke(const DispatchTable& table, CallId call, const std::uint64_t* words) {{
-  return invokers[static_cast<std::size_t>(call)](slot(table, call), words);
-}}
+constinit const Invoker invokers[call_count] = {{
+{invokers}
+}};
 
 }}  // namespace understudy::spu
 """

@@ -10,6 +10,7 @@
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
+#include "spu/stream/plain_calls.h"
 
 namespace understudy::spu {
 
@@ -106,16 +107,6 @@ void Encoder::follow_begin_and_end(CallId call, const std::uint64_t* words, Reco
     default:
       break;
   }
-}
-
-bool Encoder::encode_plain(CallId call, const std::uint64_t* words, Records& to) {
-  const CallShape& shape = call_shape(call);
-  if (!shape.plain) return false;
-  for (const ParameterShape& parameter : shape.parameters()) {
-    if (parameter.pointer != 0) return false;
-  }
-  to.append_plain(stable_id(call), {words, shape.parameter_count});
-  return true;
 }
 
 Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std::uint64_t* words) {
@@ -292,8 +283,10 @@ void Encoder::encode(CallId call, const std::uint64_t* words, Records& to) {
   follow_begin_and_end(call, words, to);
   bool between_events = false;
   if (draws && !inside_begin_) between_events = begin_arrays(call, words, to);
-  if (!encode_plain(call, words, to)) {
-    const CallShape& shape = call_shape(call);
+  const CallShape& shape = call_shape(call);
+  if (shape.plain()) {
+    append_plain_call(to, call, words);
+  } else {
     arguments_.clear();
     for (std::size_t p = 0; p < shape.parameter_count; ++p)
       arguments_.push_back(shape.parameters()[p].pointer == 0 ? Argument{} : prepare(call, p, words));

@@ -49,7 +49,6 @@ class Encoder {
   GLint ask(GLenum name);
   const DispatchTable& ask();
   void follow_begin_and_end(CallId call, const std::uint64_t* words, Records& to);
-  bool encode_plain(CallId call, const std::uint64_t* words, Records& to);
   Argument prepare(CallId call, std::size_t parameter, const std::uint64_t* words);
   void write(CallId call, const std::uint64_t* words, std::vector<Argument>& arguments, Records& to);
   bool begin_arrays(CallId call, const std::uint64_t* words, Records& to);
@@ -60,7 +59,8 @@ class Encoder {
   std::function<void()> before_question_;
   std::vector<Argument> arguments_;  ///< kept for its memory
   bool inside_begin_ = false;
-  // Display lists may begin what others end. What each leaves behind, once executed: inside, outside, or as it was.
+  // Display lists may begin what others end. What each leaves behind, once executed: inside, outside, or as it
+  // was.
   std::map<GLuint, std::optional<bool>> list_effects_;
   GLuint list_ = 0;  ///< being defined
   std::optional<bool> list_leaves_;

@@ -9,13 +9,15 @@
 // (Humphreys et al. 2002, section 4) with names instead of op-codes and lengths instead of trust.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 namespace understudy::spu {
 
@@ -56,6 +58,58 @@ constexpr std::size_t words_for(std::size_t bytes) {
 /// Data of at least so many bytes goes to the payload.
 constexpr std::size_t payload_threshold = 1024;
 
+/// Words that grow at the end as a vector's do, but are not set to zero before they are written.
+class Words {
+ public:
+  Words() = default;
+  Words(Words&& other) noexcept { *this = std::move(other); }
+  Words& operator=(Words&& other) noexcept {
+    memory_ = std::move(other.memory_);
+    room_ = std::exchange(other.room_, 0);
+    size_ = std::exchange(other.size_, 0);
+    return *this;
+  }
+  /// Adds `count` words, whatever they hold; valid until more are added.
+  std::uint64_t* extend(std::size_t count) {
+    if (room_ - size_ < count) grow(std::max(2 * room_, size_ + count));
+    std::uint64_t* const added = memory_.get() + size_;
+    size_ += count;
+    return added;
+  }
+  /// Adds {bytes, data}, zeros up to a full word.
+  void append_data(std::span<const std::byte> bytes) {
+    *extend(1) = bytes.size();
+    append_bytes(bytes, words_for(bytes.size()));
+  }
+  void append_bytes(std::span<const std::byte> bytes, std::size_t words) {
+    if (words == 0) return;
+    std::uint64_t* const added = extend(words);
+    added[words - 1] = 0;
+    if (!bytes.empty()) std::memcpy(added, bytes.data(), bytes.size());
+  }
+  void insert(std::size_t position, const Words& other) {
+    extend(other.size_);
+    std::copy_backward(data() + position, data() + size_ - other.size_, data() + size_);
+    std::copy_n(other.memory_.get(), other.size_, data() + position);
+  }
+  std::uint64_t* data() { return memory_.get(); }
+  std::size_t size() const { return size_; }
+  std::span<const std::uint64_t> words() const { return {memory_.get(), size_}; }
+  void clear() { size_ = 0; }
+
+ private:
+  void grow(std::size_t room) {
+    auto memory = std::make_unique_for_overwrite<std::uint64_t[]>(room);
+    std::copy_n(memory_.get(), size_, memory.get());
+    memory_ = std::move(memory);
+    room_ = room;
+  }
+
+  std::unique_ptr<std::uint64_t[]> memory_;
+  std::size_t room_ = 0;
+  std::size_t size_ = 0;
+};
+
 /// Records in the order of their calls, and their payload. Growing again after `clear` allocates nothing.
 class Records {
  public:
@@ -68,38 +122,42 @@ class Records {
   }
 
   /// Starts a record; the words that follow belong to it until the next one starts.
-  void begin(std::uint32_t id) {
-    start_ = words_.size();
-    words_.push_back(id);
-    close();
-  }
+  void begin(std::uint32_t id) { append_record(id, 1); }
   void append(std::uint64_t word) {
-    words_.push_back(word);
+    *words_.extend(1) = word;
     close();
   }
   /// A record whose arguments are all values.
   void append_plain(std::uint32_t id, std::span<const std::uint64_t> arguments) {
+    std::uint64_t* const record = append_record(id, arguments.size() + 1);
+    // A loop: the arguments have just been written one by one, which a wide copy would have to wait for.
+    for (std::size_t i = 0; i < arguments.size(); ++i) record[i + 1] = arguments[i];
+  }
+  /// A record of so many words, all of which but the header are to be set before the next one starts.
+  std::uint64_t* append_record(std::uint32_t id, std::size_t words) {
     start_ = words_.size();
-    words_.push_back(id | std::uint64_t(arguments.size() + 1) << 32);
-    words_.insert(words_.end(), arguments.begin(), arguments.end());
+    std::uint64_t* const record = words_.extend(words);
+    record[0] = id | std::uint64_t(words) << 32;
+    return record;
   }
   /// Leaves room for `count` words, to be set later by their number within the record.
   void reserve(std::size_t count) {
-    words_.resize(words_.size() + count);
+    std::fill_n(words_.extend(count), count, 0);
     close();
   }
-  void set(std::size_t word_of_record, std::uint64_t value) { words_[start_ + word_of_record] = value; }
+  void set(std::size_t word_of_record, std::uint64_t value) { words_.data()[start_ + word_of_record] = value; }
 
   /// Copies `bytes` into the record or, when there are many, into the payload.
   Reference attach(std::span<const std::byte> bytes) {
-    const bool apart = bytes.size() >= threshold_;
-    std::vector<std::uint64_t>& to = apart ? payload_ : words_;
-    const std::size_t at = to.size();
-    to.resize(at + 1 + words_for(bytes.size()));
-    to[at] = bytes.size();
-    if (!bytes.empty()) std::memcpy(&to[at + 1], bytes.data(), bytes.size());
-    if (!apart) close();
-    return apart ? Reference{ReferenceKind::payload, at} : Reference{ReferenceKind::inside, at - start_};
+    if (bytes.size() >= threshold_) {
+      const Reference reference{ReferenceKind::payload, payload_.size()};
+      payload_.append_data(bytes);
+      return reference;
+    }
+    const Reference reference{ReferenceKind::inside, words_.size() - start_};
+    words_.append_data(bytes);
+    close();
+    return reference;
   }
   /// Data of kind strings or lists: the caller appends its words.
   Reference begin_inside(ReferenceKind kind) {
@@ -111,21 +169,19 @@ class Records {
     set(reference.value, (words_.size() - start_ - reference.value - 1) * 8);
   }
   void append_bytes(std::span<const std::byte> bytes, bool terminated) {
-    const std::size_t at = words_.size();
-    words_.resize(at + words_for(bytes.size() + (terminated ? 1 : 0)));
-    if (!bytes.empty()) std::memcpy(words_.data() + at, bytes.data(), bytes.size());
+    words_.append_bytes(bytes, words_for(bytes.size() + (terminated ? 1 : 0)));
     close();
   }
 
   /// Puts records without payload before the record at word `position`.
   void insert(std::size_t position, const Records& other) {
-    words_.insert(words_.begin() + std::ptrdiff_t(position), other.words_.begin(), other.words_.end());
+    words_.insert(position, other.words_);
     start_ += other.words_.size();
   }
 
-  std::span<const std::uint64_t> words() const { return words_; }
-  std::span<const std::uint64_t> payload() const { return payload_; }
-  bool empty() const { return words_.empty(); }
+  std::span<const std::uint64_t> words() const { return words_.words(); }
+  std::span<const std::uint64_t> payload() const { return payload_.words(); }
+  bool empty() const { return words_.size() == 0; }
   void clear() {
     words_.clear();
     payload_.clear();
@@ -137,11 +193,12 @@ class Records {
 
  private:
   void close() {
-    words_[start_] = (words_[start_] & 0xffff'ffffU) | std::uint64_t(words_.size() - start_) << 32;
+    std::uint64_t& header = words_.data()[start_];
+    header = (header & 0xffff'ffffU) | std::uint64_t(words_.size() - start_) << 32;
   }
 
-  std::vector<std::uint64_t> words_;
-  std::vector<std::uint64_t> payload_;
+  Words words_;
+  Words payload_;
   std::size_t start_ = 0;
   std::uint64_t generation_ = 0;
   std::size_t threshold_ = payload_threshold;

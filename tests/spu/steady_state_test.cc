@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "spu/assemble.h"
+#include "spu/stream/plain_calls.h"
 #include "spu/track/share_group.h"
 #include "tests/spu/mock_driver.h"
 
@@ -113,6 +114,29 @@ TEST_P(SteadyState, AllocatesNothing) {
 INSTANTIATE_TEST_SUITE_P(Chain, SteadyState,
                          ::testing::Values("driver", "track driver", "pass pass pass track driver",
                                            "perf track driver", "track perf driver"));
+
+// The volume unit keeps every frame's slices as records.
+TEST(Records, AllocateNothingOnceTheyHaveRoom) {
+  testing::MockDriver mock;
+  mock.only_count();
+  Records records;
+  const auto frame = [&] {
+    records.clear();
+    constexpr std::array<GLfloat, 3> coordinate{0.5F, 0.25F, 0.125F};
+    for (int i = 0; i < 3000; ++i) {
+      append_call(records, &DispatchTable::TexCoord3fv, coordinate.data());
+      append_call(records, &DispatchTable::Vertex3f, float(i), 0.0F, 0.0F);
+    }
+    make_plain_calls(records.words(), mock.table());
+  };
+  frame();
+  const std::uint64_t before = mock.counted();
+  EXPECT_EQ(allocations_of([&] {
+              for (int i = 0; i < 10; ++i) frame();
+            }),
+            0U);
+  EXPECT_EQ(mock.counted() - before, 60000U) << "the calls arrive";
+}
 
 // The counting counts: what allocates is seen.
 TEST(Allocations, AreSeen) {

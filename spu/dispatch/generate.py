@@ -10,7 +10,6 @@ Files written (README.md in this folder says who uses which):
     call_shape.h, .cc   CallShape: types, names and extents of a command's arguments; stable ids; names of enumerants
     call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
-    packed_call.h, .cc  pack_X and replay for the commands whose arguments are plain values
     gl_entry_N.cc     the exported gl* functions of the door, in a few files so that they compile in parallel
     glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the door does not write by hand
 
@@ -213,100 +212,6 @@ struct PassThrough {{
 """
 
 
-def packed_call_header(commands):
-    packable = [c for c in commands if c.packable]
-    bits = [0] * ((len(commands) + 63) // 64)
-    for number, c in enumerate(commands):
-        if c.packable:
-            bits[number // 64] |= 1 << (number % 64)
-    words = "\n".join("    " + ", ".join(f"0x{b:016x}u" for b in bits[i : i + 5]) + "," for i in range(0, len(bits), 5))
-
-    def stored(p):
-        return f"{p.field}{{{p.name}}}" if p.pointee else p.name
-
-    packers = "\n".join(
-        f"inline void pack_{c.member}(PackedCalls& calls{''.join(f', {p.type} {p.name}' for p in c.parameters)}) {{\n"
-        f"  calls.append(CallId::{c.member}{''.join(f', {stored(p)}' for p in c.parameters)});\n"
-        f"}}"
-        for c in packable
-    )
-    slots = "\n".join(
-        f"  static void APIENTRY {c.name}({c.parameter_list}) {{\n"
-        f"    pack_{c.member}({', '.join(['Sink::sink()', *(p.name for p in c.parameters)])});\n"
-        f"  }}"
-        for c in packable
-    )
-    fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in packable)
-    return f"""\
-#pragma once
-
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
-#include "dispatch/call_id.h"
-#include "dispatch/table.h"
-#include "spu/dispatch/packed_calls.h"
-
-namespace understudy::spu {{
-
-inline constexpr std::uint64_t packable_bits[] = {{
-{words}
-}};
-
-/// True when a command returns nothing and each argument is a value or an array of a length that the registry fixes.
-/// This is about the signature alone: glDrawArrays is packable, though what it reads may lie in the caller's arrays.
-constexpr bool is_packable(CallId call) {{
-  const auto number = static_cast<std::size_t>(call);
-  return number < call_count && (packable_bits[number / 64] >> (number % 64) & 1) != 0;
-}}
-
-/// Makes the calls again, in order, on `table`; stops at the first record that is not right.
-ReplayEnd replay(std::span<const std::uint64_t> words, const DispatchTable& table);
-inline ReplayEnd replay(const PackedCalls& calls, const DispatchTable& table) {{ return replay(calls.words(), table); }}
-
-{packers}
-
-/// Functions with the commands' signatures that pack the call into `Sink::sink()`, a PackedCalls&, and do no more.
-template <class Sink>
-struct PackInto {{
-{slots}
-
-  /// Sets the slots of the packable commands, leaves the others alone.
-  static void fill(DispatchTable& table) {{
-{fills}
-  }}
-}};
-
-}}  // namespace understudy::spu
-"""
-
-
-def packed_call_source(commands):
-    rows = "\n".join(
-        f"    record_shape<{', '.join(p.field for p in c.parameters)}>," if c.packable else "    {},"
-        for c in commands
-    )
-    return f"""\
-#include "dispatch/packed_call.h"
-
-namespace understudy::spu {{
-namespace {{
-
-constexpr RecordShape shapes[call_count] = {{
-{rows}
-}};
-
-}}  // namespace
-
-ReplayEnd replay(std::span<const std::uint64_t> words, const DispatchTable& table) {{
-  return replay_records(words, table, shapes);
-}}
-
-}}  // namespace understudy::spu
-"""
-
-
 def gl_entries(commands):
     functions = "\n".join(
         f"UNDERSTUDY_ENTRY {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
@@ -376,8 +281,6 @@ def main():
     write(out / "call_words.h", shapes.words_header(gl))
     write(out / "call_words.cc", shapes.words_source(gl))
     write(out / "pass_through.h", pass_through(gl))
-    write(out / "packed_call.h", packed_call_header(gl))
-    write(out / "packed_call.cc", packed_call_source(gl))
     share = -(-len(gl) // GL_ENTRY_FILES)
     for number in range(GL_ENTRY_FILES):
         write(out / f"gl_entry_{number}.cc", gl_entries(gl[number * share : (number + 1) * share]))

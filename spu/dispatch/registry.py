@@ -52,21 +52,6 @@ class Parameter:
     extent: Extent = Extent("value")
 
     @property
-    def pointee(self):
-        """T for `const T *`, else None."""
-        match = re.fullmatch(r"const (\w+) \*", self.type)
-        return match[1] if match else None
-
-    @property
-    def field(self):
-        """How the value lies in a packed record, or None when it cannot."""
-        if "*" not in self.type:
-            return None if VALUE_TYPES[self.type] == "address" else self.type
-        if self.pointee and self.pointee != "void" and self.length.isdigit():
-            return f"FixedArray<{self.pointee}, {self.length}>"
-        return None
-
-    @property
     def base(self):
         return re.sub(r"\bconst\b|\*", "", self.type).strip()
 
@@ -90,14 +75,6 @@ class Command:
     def member(self):
         """glClear -> Clear"""
         return self.name.removeprefix("gl")
-
-    @property
-    def packable(self):
-        return (
-            self.result == "void"
-            and self.name not in WRONG_LENGTHS
-            and all(p.field for p in self.parameters)
-        )
 
     @property
     def parameter_list(self):

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "spu/stream/plain_calls.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -155,15 +157,15 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   return std::nullopt;
 }
 
-void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
-                   const std::vector<std::uint32_t>& indices) {
+void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
+                     const std::vector<std::uint32_t>& indices) {
   using Role = ClientArray::Role;
   // Generic attributes alone draw too, but only attribute 0 or the position makes an immediate vertex.
   const bool positioned =
       std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const ClientArray& array) {
         return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);
       });
-  pack_Begin(calls, mode);
+  append_call(calls, &DispatchTable::Begin, mode);
   for (const std::uint32_t element : indices) {
     for (const ClientArray& array : sources.arrays) {
       if (array.first == nullptr) continue;
@@ -175,25 +177,26 @@ void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
       }
       switch (array.role) {
         case Role::texture_coordinate:
-          pack_MultiTexCoord4f(calls, GLenum(GL_TEXTURE0 + array.index), v[0], v[1], v[2], v[3]);
+          append_call(calls, &DispatchTable::MultiTexCoord4f, GLenum(GL_TEXTURE0 + array.index), v[0], v[1],
+                      v[2], v[3]);
           break;
         case Role::normal:
-          pack_Normal3f(calls, v[0], v[1], v[2]);
+          append_call(calls, &DispatchTable::Normal3f, v[0], v[1], v[2]);
           break;
         case Role::colour:
-          pack_Color4f(calls, v[0], v[1], v[2], v[3]);
+          append_call(calls, &DispatchTable::Color4f, v[0], v[1], v[2], v[3]);
           break;
         case Role::generic:
-          pack_VertexAttrib4f(calls, GLuint(array.index), v[0], v[1], v[2], v[3]);
+          append_call(calls, &DispatchTable::VertexAttrib4f, GLuint(array.index), v[0], v[1], v[2], v[3]);
           break;
         case Role::vertex:
-          pack_Vertex4f(calls, v[0], v[1], v[2], v[3]);
+          append_call(calls, &DispatchTable::Vertex4f, v[0], v[1], v[2], v[3]);
           break;
       }
     }
-    if (!positioned) pack_Vertex4f(calls, 0, 0, 0, 1);
+    if (!positioned) append_call(calls, &DispatchTable::Vertex4f, 0, 0, 0, 1);
   }
-  pack_End(calls);
+  append_call(calls, &DispatchTable::End);
 }
 
 }  // namespace understudy::spu

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/packed_call.h"
+#include "spu/stream/record.h"
 #include "spu/volume/context.h"
 
 namespace understudy::spu {
@@ -34,8 +34,8 @@ struct ArraySources {
 /// Where the next array draw would read its vertices. A reason where the mixture is not one we capture.
 std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources);
 
-/// Packs the elements `indices` of the arrays as one glBegin/glEnd.
-void pack_elements(PackedCalls& calls, const ArraySources& sources, GLenum mode,
-                   const std::vector<std::uint32_t>& indices);
+/// Appends the elements `indices` of the arrays as one glBegin/glEnd.
+void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
+                     const std::vector<std::uint32_t>& indices);
 
 }  // namespace understudy::spu

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dispatch/pass_through.h"
+#include "spu/stream/plain_calls.h"
 #include "spu/track/calls.h"
 #include "spu/volume/array_calls.h"
 #include "spu/volume/client_arrays.h"
@@ -30,7 +31,10 @@ struct CloseRun {
 };
 
 struct IntoRun {
-  static PackedCalls& sink() { return here().run().calls(); }
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    append_plain_call(here().run().calls(), call, words);
+    return 0;
+  }
 };
 
 /// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
@@ -44,14 +48,14 @@ void APIENTRY begin(GLenum mode) {
     unit.inside_begin = true;
     return unit.next().Begin(mode);
   }
-  pack_Begin(unit.run().calls(), mode);
+  append_call(unit.run().calls(), &DispatchTable::Begin, mode);
   unit.run().inside_begin = true;
   ++unit.run().draws;
 }
 
 void APIENTRY end_in_run() {
   Run& run = here().run();
-  pack_End(run.calls());
+  append_call(run.calls(), &DispatchTable::End);
   run.inside_begin = false;
 }
 
@@ -69,7 +73,7 @@ void APIENTRY call_list(GLuint list) {
     unit.close_run();
     return unit.next().CallList(list);
   }
-  pack_CallList(unit.run().calls(), list);
+  append_call(unit.run().calls(), &DispatchTable::CallList, list);
   ++unit.run().draws;
 }
 
@@ -82,10 +86,10 @@ bool defer_arrays(VolumeUnit& unit, GLenum mode, GLint first, GLsizei count) {
   if (sources.client_memory) {
     std::vector<std::uint32_t> indices(static_cast<std::size_t>(count));
     std::iota(indices.begin(), indices.end(), std::uint32_t(first));
-    pack_elements(run.calls(), sources, mode, indices);
+    append_elements(run.calls(), sources, mode, indices);
     run.expanded_arrays = true;
   } else {
-    pack_DrawArrays(run.calls(), mode, first, count);
+    append_call(run.calls(), &DispatchTable::DrawArrays, mode, first, count);
     run.reads_arrays = true;
   }
   ++run.draws;
@@ -136,7 +140,7 @@ bool defer_elements(VolumeUnit& unit, GLenum mode, GLsizei count, GLenum type, c
       std::memcpy(&value, at, size);  // little-endian, as every platform with OpenGL drivers of this kind is
       elements.push_back(value);
     }
-    pack_elements(run.calls(), sources, mode, elements);
+    append_elements(run.calls(), sources, mode, elements);
     run.expanded_arrays = true;
   } else {
     return false;
@@ -182,11 +186,11 @@ void fill_watching_slots(DispatchTable& table) {
 
 void fill_deferring_slots(DispatchTable& table) {
   PassThrough<CloseRun>::fill(table);
-  DispatchTable packing{};
-  PackInto<IntoRun>::fill(packing);
+  DispatchTable appending{};
+  AsWords<IntoRun>::fill_plain(appending);
   for (std::size_t i = 0; i < call_count; ++i) {
     if (kind_of(CallId(i)) != CallKind::vertex) continue;
-    if (const AnyFunction pack = slot(packing, CallId(i))) set_slot(table, CallId(i), pack);
+    if (const AnyFunction append = slot(appending, CallId(i))) set_slot(table, CallId(i), append);
   }
   table.End = end_in_run;
   fill_draws(table);

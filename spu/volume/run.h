@@ -4,19 +4,20 @@
 #include <cstddef>
 #include <vector>
 
-#include "dispatch/packed_call.h"
+#include "spu/stream/record.h"
 #include "spu/volume/pipeline.h"
 
 namespace understudy::spu {
 
 class Run {
  public:
-  explicit Run(Pipeline pipeline) : pipeline_(std::move(pipeline)) {}
+  /// `calls` are cleared, and last longer than the run: their memory serves the next one.
+  Run(Pipeline pipeline, Records& calls) : pipeline_(std::move(pipeline)), calls_(calls) { calls_.clear(); }
 
   const Pipeline& pipeline() const { return pipeline_; }
 
-  /// Where deferred calls go.
-  PackedCalls& calls() { return calls_; }
+  /// Where deferred calls go; all of them are plain.
+  Records& calls() { return calls_; }
   /// glDrawElements whose indices lie in the bound element buffer; `offset` as the application gave it.
   void draw_elements(GLenum mode, GLsizei count, GLenum type, const void* offset) {
     elements_.push_back({calls_.words().size(), mode, count, type, offset});
@@ -34,7 +35,7 @@ class Run {
 
  private:
   struct ElementDraw {
-    std::size_t position;  ///< words of packed calls before it
+    std::size_t position;  ///< words of deferred calls before it
     GLenum mode;
     GLsizei count;
     GLenum type;
@@ -42,7 +43,7 @@ class Run {
   };
 
   Pipeline pipeline_;
-  PackedCalls calls_;
+  Records& calls_;
   std::vector<ElementDraw> elements_;
 };
 

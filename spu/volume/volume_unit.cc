@@ -268,7 +268,7 @@ bool VolumeUnit::opens_run() {
     known(texture).left_in_frame = frames_;
     return false;
   }
-  run_ = std::make_unique<Run>(std::get<Pipeline>(finding));
+  run_ = std::make_unique<Run>(std::get<Pipeline>(finding), calls_);
   chain_.set_phase(Phase::deferring);
   return true;
 }

@@ -93,6 +93,7 @@ class VolumeUnit final : public Unit {
   std::shared_ptr<RenderSession> session_;
   std::optional<GlContext> context_;
   std::unique_ptr<Presenter> presenter_;
+  Records calls_;  ///< of the open run; kept between runs for its memory
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
   ProgramSamplers samplers_;

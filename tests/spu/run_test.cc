@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dispatch/pass_through.h"
+#include "spu/stream/plain_calls.h"
 #include "spu/volume/client_arrays.h"
 
 namespace understudy::spu {
@@ -38,10 +39,11 @@ DispatchTable listening_driver() {
 
 TEST(Run, ReplaysInOrderWithElementDrawsBetween) {
   heard.clear();
-  spu::Run run(Pipeline{});
-  pack_CallList(run.calls(), 4);
+  Records calls;
+  spu::Run run(Pipeline{}, calls);
+  append_call(run.calls(), &DispatchTable::CallList, 4);
   run.draw_elements(GL_TRIANGLES, 6, GL_UNSIGNED_INT, nullptr);
-  pack_CallList(run.calls(), 5);
+  append_call(run.calls(), &DispatchTable::CallList, 5);
   run.replay(listening_driver());
   EXPECT_EQ(heard, (std::vector<std::string>{"CallList 4", "DrawElements 6", "CallList 5"}));
 }
@@ -68,8 +70,9 @@ TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
        .stride = 4,
        .first = bytes(colours)},
       {.role = Role::vertex, .components = 3, .type = GL_FLOAT, .stride = 12, .first = bytes(positions)}};
-  spu::Run run(Pipeline{});
-  pack_elements(run.calls(), sources, GL_TRIANGLES, {2, 0});
+  Records calls;
+  spu::Run run(Pipeline{}, calls);
+  append_elements(run.calls(), sources, GL_TRIANGLES, {2, 0});
   positions.assign(9, 9.0F);  // the application reuses its buffer
   heard.clear();
   run.replay(listening_driver());

@@ -16,7 +16,7 @@ namespace understudy::spu {
 namespace {
 
 /// Answers of calls whose extent nobody knows are smaller than this.
-constexpr std::size_t unknown_output_bytes = 64 * 1024;
+constexpr std::size_t unknown_output_bytes = std::size_t(64) * 1024;
 /// Answers of a stream from elsewhere are given no more memory than this: a length there is only a claim.
 constexpr std::size_t most_output_bytes = std::size_t(64) << 20;
 

@@ -131,8 +131,9 @@ void trim(const TrimPlan& plan) {
   }
 
   // What was drawn before the cut is brought back only where a frame looks at it.
-  for (const spu::Records& brought_back : {spu::Records{}, restoration}) {
-    write(plan, fates, brought_back);
+  const spu::Records nothing;
+  for (const spu::Records* brought_back : std::initializer_list<const spu::Records*>{&nothing, &restoration}) {
+    write(plan, fates, *brought_back);
     if (pictures_of(plan.out) == wanted) return;
   }
   std::filesystem::remove(plan.out);

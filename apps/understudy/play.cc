@@ -68,8 +68,10 @@ class Playing {
     if (reader_.cut_off())
       fmt::print(stderr, "understudy: {} was cut off; it was played to its last whole block\n",
                  plan_.trace.string());
-    if (frame_ <= plan_.frames.first && plan_.frames.first > 1)
+    if (frame_ <= plan_.frames.first && plan_.frames.first > 1) {
+      spu::forget_counted_frames();
       fmt::print(stderr, "understudy: {} has only {} frames\n", plan_.trace.string(), frame_ - 1);
+    }
     if (played_.errors > 0) fmt::print(stderr, "understudy: {} records could not be played\n", played_.errors);
     return played_;
   }

@@ -30,7 +30,10 @@ struct DrawnObject {
   std::uint64_t group = 0;  ///< of contexts
   ObjectKind kind = ObjectKind::none;
   GLuint here = 0;
-  auto operator<=>(const DrawnObject&) const = default;
+
+  bool operator<(const DrawnObject& other) const {
+    return std::tie(group, kind, here) < std::tie(other.group, other.kind, other.here);
+  }
 };
 
 /// What the stream says of such an object.

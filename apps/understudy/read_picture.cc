@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstring>
 
 namespace understudy::launcher {
@@ -43,12 +44,12 @@ float component(const std::byte* pixel, GLenum type, int count, int at) {
       return float(std::to_integer<int>(pixel[count - 1 - at])) / 255.0F;
     case GL_UNSIGNED_SHORT: {
       std::uint16_t value = 0;
-      std::memcpy(&value, pixel + 2 * at, sizeof value);
+      std::memcpy(&value, pixel + std::ptrdiff_t(2) * at, sizeof value);
       return float(value) / 65535.0F;
     }
     default: {
       float value = 0;
-      std::memcpy(&value, pixel + 4 * at, sizeof value);
+      std::memcpy(&value, pixel + std::ptrdiff_t(4) * at, sizeof value);
       return value;
     }
   }

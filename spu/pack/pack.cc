@@ -17,17 +17,18 @@ struct Packed {
   }
 };
 
-/// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end without
-/// another word: by then the driver is no longer able to draw what it had never heard of.
+/// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end
+/// without another word: by then the driver is no longer able to draw what it had never heard of.
 bool makes_pixels(CallId call) {
   static const std::vector<bool> all = [] {
     constexpr std::array<std::string_view, 14> beginnings = {
-        "glDraw",      "glMultiDraw", "glEnd",   "glCallList", "glRect",     "glClear",     "glBitmap",
+        "glDraw",      "glMultiDraw", "glEnd",   "glCallList", "glRect",     "glClear",    "glBitmap",
         "glCopyPixel", "glBlit",      "glEvalM", "glAccum",    "glDispatch", "glGenerate", "glArrayElement"};
     std::vector<bool> table(call_count);
     for (std::size_t i = 0; i < call_count; ++i) {
       const std::string_view name = call_name(CallId(i));
-      table[i] = std::any_of(beginnings.begin(), beginnings.end(), [&](auto start) { return name.starts_with(start); });
+      table[i] = std::any_of(beginnings.begin(), beginnings.end(),
+                             [&](auto start) { return name.starts_with(start); });
     }
     return table;
   }();

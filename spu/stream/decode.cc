@@ -284,7 +284,8 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const ParameterShape& parameter = parameters[p];
     if (parameter.pointer == 0 || parameter.input || call.words[p] == 0) continue;
-    if (call.kinds[p] == ReferenceKind::address && parameter.rule == ExtentRule::image_out) continue;  // an offset
+    if (call.kinds[p] == ReferenceKind::address && parameter.rule == ExtentRule::image_out)
+      continue;  // an offset
     if (call.kinds[p] != ReferenceKind::output)
       return in_call(call.id, fmt::format("{} is no place for an answer", parameter.name()));
     std::size_t bytes = pointee_bytes(call.id, p, call.words.data()).value_or(unknown_output_bytes);

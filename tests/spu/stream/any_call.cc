@@ -6,7 +6,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-constexpr std::size_t memory_bytes = 4096;
+constexpr std::size_t memory_bytes = std::size_t(16) * 1024;
 constexpr std::uint64_t count = 3;
 
 std::uint64_t value_of(const ParameterShape& parameter, std::string_view call, std::mt19937& random) {
@@ -24,7 +24,7 @@ std::uint64_t value_of(const ParameterShape& parameter, std::string_view call, s
       return count;
     case ValueType::uint32:
     case ValueType::bitfield:
-      return random() % 1000;
+      return random() % 200;
     case ValueType::int64:
     case ValueType::uint64:
       return count;

@@ -58,7 +58,7 @@ void vertex(benchmark::State& state) {
   float x = 0;
   glBegin(GL_POINTS);
   int since_begin = 0;
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     glVertex3f(x, 0, 0);
     x += 0.001F;
     if (++since_begin == 100'000) {
@@ -78,14 +78,14 @@ void uniform(benchmark::State& state) {
   const GLuint program = use_program_with_uniform();
   const GLint location = glGetUniformLocation(program, "level");
   float level = 0;
-  for (auto _ : state) glUniform1f(location, level += 0.001F);
+  for (auto _ : state) glUniform1f(location, level += 0.001F);  // NOLINT(clang-analyzer-deadcode.DeadStores)
   glUseProgram(0);
   glDeleteProgram(program);
 }
 
 void point_size(benchmark::State& state) {
   float size = 1;
-  for (auto _ : state) glPointSize(size = 3 - size);
+  for (auto _ : state) glPointSize(size = 3 - size);  // NOLINT(clang-analyzer-deadcode.DeadStores)
 }
 
 // Calls that the track unit notes, with next to no work for the driver.
@@ -94,7 +94,9 @@ void empty_upload(benchmark::State& state) {
   glBindTexture(GL_TEXTURE_2D, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   const GLuint texel = 0;
-  for (auto _ : state) glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, &texel);
+  for (auto _ : state)
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                    &texel);  // NOLINT(clang-analyzer-deadcode.DeadStores)
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
@@ -102,27 +104,27 @@ void empty_list(benchmark::State& state) {
   const GLuint list = glGenLists(1);
   glNewList(list, GL_COMPILE);
   glEndList();
-  for (auto _ : state) glCallList(list);
+  for (auto _ : state) glCallList(list);  // NOLINT(clang-analyzer-deadcode.DeadStores)
   glDeleteLists(list, 1);
 }
 
 void no_textures(benchmark::State& state) {
   const GLuint texture = 0;
-  for (auto _ : state) glDeleteTextures(1, &texture);
+  for (auto _ : state) glDeleteTextures(1, &texture);  // NOLINT(clang-analyzer-deadcode.DeadStores)
 }
 
 void draw_arrays(benchmark::State& state) {
   static const GLfloat triangle[] = {0, 0, 0, 0.1F, 0, 0, 0, 0.1F, 0};
   glEnableClientState(GL_VERTEX_ARRAY);
   glVertexPointer(3, GL_FLOAT, 0, triangle);
-  for (auto _ : state) glDrawArrays(GL_TRIANGLES, 0, 3);
+  for (auto _ : state) glDrawArrays(GL_TRIANGLES, 0, 3);  // NOLINT(clang-analyzer-deadcode.DeadStores)
   glFinish();
   glDisableClientState(GL_VERTEX_ARRAY);
 }
 
 /// 5,000 calls, as programs draw molecules that know no arrays.
 void immediate_frame(benchmark::State& state) {
-  for (auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     glClear(GL_COLOR_BUFFER_BIT);
     glBegin(GL_TRIANGLES);
     for (int i = 0; i < 1665; ++i) {

@@ -33,6 +33,7 @@ struct DoorThread {
 
 // Compiled with -ftls-model=initial-exec: one load relative to the thread pointer, no call, on every GL call.
 // Its few dozen bytes fit into the room that glibc keeps for libraries that are opened late.
+// NOLINTNEXTLINE(bugprone-dynamic-static-initializers): constinit, which clang-tidy 14 does not see here.
 extern constinit thread_local DoorThread door_thread __attribute__((visibility("hidden")));
 
 /// In scope while the thread is within the real driver.

@@ -113,6 +113,14 @@ void no_textures(benchmark::State& state) {
   for (auto _ : state) glDeleteTextures(1, &texture);  // NOLINT(clang-analyzer-deadcode.DeadStores)
 }
 
+void get_viewport(benchmark::State& state) {
+  GLint viewport[4];
+  for (const auto _ : state) {
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    benchmark::DoNotOptimize(viewport);
+  }
+}
+
 void draw_arrays(benchmark::State& state) {
   static const GLfloat triangle[] = {0, 0, 0, 0.1F, 0, 0, 0, 0.1F, 0};
   glEnableClientState(GL_VERTEX_ARRAY);
@@ -146,6 +154,7 @@ BENCHMARK(point_size)->Name("glPointSize");
 BENCHMARK(empty_upload)->Name("glTexSubImage2D");
 BENCHMARK(empty_list)->Name("glCallList");
 BENCHMARK(no_textures)->Name("glDeleteTextures");
+BENCHMARK(get_viewport)->Name("glGetIntegerv");
 BENCHMARK(draw_arrays)->Name("glDrawArrays");
 BENCHMARK(immediate_frame)->Name("immediate frame");
 

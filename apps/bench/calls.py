@@ -1,4 +1,5 @@
-"""What a call costs more under Understudy: bare, through the door alone, with track, and with units that pass.
+"""What a call costs more under Understudy: bare, through the door alone, with track, with units that
+pass, and with track answering queries itself.
 
 The program understudy-bench-calls measures single calls and a frame of 5,000 calls with Google Benchmark; glxgears
 counts its frames. All ways are run one after the other in every round, and a value is the median over the rounds.
@@ -20,6 +21,7 @@ WAYS = {
     "track": "track driver",
     "3 pass, track": "pass pass pass track driver",
     "default": "track volume driver",
+    "answers": "track(answer=on) driver",
 }
 ROUNDS = 5
 SECONDS = 0.2  # for each call in each round

@@ -10,11 +10,11 @@ namespace {
 using std::string_view_literals::operator""sv;
 
 constexpr std::array vertex_prefixes = {
-    "glVertex2"sv,        "glVertex3"sv,         "glVertex4"sv,       "glTexCoord1"sv,     "glTexCoord2"sv,
-    "glTexCoord3"sv,      "glTexCoord4"sv,       "glMultiTexCoord"sv, "glColor3"sv,        "glColor4"sv,
-    "glNormal3"sv,        "glSecondaryColor3"sv, "glFogCoordd"sv,     "glFogCoordf"sv,     "glEdgeFlag"sv,
-    "glVertexAttrib1"sv,  "glVertexAttrib2"sv,   "glVertexAttrib3"sv, "glVertexAttrib4"sv, "glVertexAttribI1"sv,
-    "glVertexAttribI2"sv, "glVertexAttribI3"sv,  "glVertexAttribI4"sv};
+    "glVertex2"sv,        "glVertex3"sv,         "glVertex4"sv,        "glTexCoord1"sv,     "glTexCoord2"sv,
+    "glTexCoord3"sv,      "glTexCoord4"sv,       "glMultiTexCoord"sv,  "glColor3"sv,        "glColor4"sv,
+    "glNormal3"sv,        "glSecondaryColor3"sv, "glFogCoordd"sv,      "glFogCoordf"sv,     "glFogCoordh"sv,
+    "glEdgeFlag"sv,       "glVertexAttrib1"sv,   "glVertexAttrib2"sv,  "glVertexAttrib3"sv, "glVertexAttrib4"sv,
+    "glVertexAttribI1"sv, "glVertexAttribI2"sv,  "glVertexAttribI3"sv, "glVertexAttribI4"sv};
 constexpr std::array draw_prefixes = {"glDrawArrays"sv, "glDrawElements"sv, "glDrawRangeElements"sv,
                                       "glMultiDraw"sv,  "glArrayElement"sv, "glRect"sv,
                                       "glEvalMesh"sv,   "glEvalPoint"sv,    "glEvalCoord"sv};

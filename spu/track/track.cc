@@ -268,6 +268,13 @@ void Track::texture_rendered_to(GLuint texture) {
   told = texture;
 }
 
+void Track::made_current() {
+  // The first time, the viewport becomes the window's; and another drawable has other buffers.
+  if (!answers_) return;
+  answers_->changed(topic::everything);
+  answers_->perhaps_inside_begin();
+}
+
 void Track::frame_ended(FrameEnd) {
   if (chain_.phase() == Phase::plain && chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
 }
@@ -277,6 +284,13 @@ State Track::state() const {
 }
 
 void Track::fill(Phase phase, DispatchTable& table) {
+  if (!answers_) return fill_own(phase, table);
+  const DispatchTable next = table;
+  fill_own(phase, table);
+  answers_->fill(phase, table, next);
+}
+
+void Track::fill_own(Phase phase, DispatchTable& table) {
   if (phase == Phase::compiling) fill_compiling(table);
   if (phase == Phase::plain) fill_texture_changes(table);
   fill_program_slots(table);

@@ -1,12 +1,14 @@
 // The track unit: keeps what the driver cannot be asked for later (see share_group.h) and starts the watch for
 // volumes when the first 3-D texture appears. It asks the driver nothing: under it alone, an application's
-// calls reach the driver as they are.
+// calls reach the driver as they are. Where the driver is far away it can answer queries itself (answers.h).
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "spu/chain.h"
+#include "spu/track/answers.h"
 #include "spu/track/share_group.h"
 
 namespace understudy::spu {
@@ -17,10 +19,13 @@ class Track final : public Unit {
  public:
   static constexpr char tag = 't';
 
-  explicit Track(Chain& chain) : chain_(chain) {}
+  /// With `answer`, queries are answered without the driver where the answer is known.
+  explicit Track(Chain& chain, bool answer = false)
+      : chain_(chain), answers_(answer ? std::make_unique<Answers>() : nullptr) {}
 
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;
+  void made_current() override;
   void frame_ended(FrameEnd kind) override;
 
   /// What the list being compiled holds so far.
@@ -39,11 +44,17 @@ class Track final : public Unit {
   /// glBegin and glEnd.
   State state() const;
 
+  /// Null where the driver answers every query.
+  Answers* answers() { return answers_.get(); }
+
   Chain& chain() { return chain_; }
   const DispatchTable& below() const { return chain_.below(*this); }
 
  private:
+  void fill_own(Phase phase, DispatchTable& table);
+
   Chain& chain_;
+  std::unique_ptr<Answers> answers_;
   GLuint list_ = 0;
   bool list_is_executed_ = false;  ///< the commands of the open list are executed while they are compiled
   Phase phase_before_list_ = Phase::plain;

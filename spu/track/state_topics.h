@@ -1,0 +1,44 @@
+// What parts of a context's state a command may change, and on what parts the answer to a query depends.
+#pragma once
+
+#include <cstdint>
+
+#include "dispatch/call_id.h"
+#include "spu/track/state_rows.h"
+
+namespace understudy::spu {
+
+/// A set of parts of the state, by bits.
+using StateTopics = std::uint32_t;
+
+namespace topic {
+inline constexpr StateTopics nothing = 0;
+inline constexpr StateTopics current = 1U << 0;  ///< current vertex attributes
+inline constexpr StateTopics matrix = 1U << 1;   ///< top matrices and the matrix mode
+inline constexpr StateTopics unit = 1U << 2;     ///< which texture unit is selected, of server and client
+inline constexpr StateTopics capability = 1U << 3;
+inline constexpr StateTopics arrays = 1U << 4;  ///< the vertex array object: which one, and what it holds
+inline constexpr StateTopics buffer = 1U << 5;
+inline constexpr StateTopics texture = 1U << 6;
+inline constexpr StateTopics framebuffer = 1U << 7;
+inline constexpr StateTopics program = 1U << 8;
+inline constexpr StateTopics blending = 1U << 9;
+inline constexpr StateTopics depth = 1U << 10;
+inline constexpr StateTopics stencil = 1U << 11;
+inline constexpr StateTopics raster = 1U << 12;  ///< points, lines, polygons, samples
+inline constexpr StateTopics viewport = 1U << 13;
+inline constexpr StateTopics pixels = 1U << 14;  ///< pixel store and transfer
+inline constexpr StateTopics light = 1U << 15;   ///< with fog
+inline constexpr StateTopics clearing = 1U << 16;
+inline constexpr StateTopics hints = 1U << 17;
+inline constexpr StateTopics lists = 1U << 18;
+inline constexpr StateTopics everything = ~StateTopics(0);
+}  // namespace topic
+
+/// Everything for commands that nobody has thought about. Display lists may hold any command.
+StateTopics topics_changed_by(CallId call);
+
+/// What the value of the row depends on; `nothing` is a constant.
+StateTopics topics_of(const StateRow& row);
+
+}  // namespace understudy::spu

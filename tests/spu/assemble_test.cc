@@ -165,7 +165,7 @@ TEST_F(Assemble, OptionsThatCannotBeAreRefused) {
   EXPECT_THAT(
       error_of("sample(levle=3) driver"),
       StartsWith("chain, character 8: sample has no option levle; did you mean level? It has: loud, level"));
-  EXPECT_EQ(error_of("track(level=3) driver"), "chain, character 7: track has no option level. It has none");
+  EXPECT_EQ(error_of("pass(level=3) driver"), "chain, character 6: pass has no option level. It has none");
   EXPECT_EQ(error_of("sample(level=3, level=4) driver"),
             "chain, character 17: the option level is given twice; keep one");
 }

@@ -102,42 +102,6 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   return std::nullopt;
 }
 
-/// Bits of alpha in the framebuffer bound for drawing.
-GLint alpha_bits(const DispatchTable& gl) {
-  GLint buffer = 0;
-  gl.GetIntegerv(GL_DRAW_BUFFER0, &buffer);
-  if (buffer == GL_NONE) return 0;
-  GLenum attachment = GLenum(buffer);
-  // The window system's buffers are asked for one by one, not by the names that mean several.
-  if (buffer == GL_BACK || buffer == GL_FRONT_AND_BACK) attachment = GL_BACK_LEFT;
-  if (buffer == GL_FRONT || buffer == GL_LEFT) attachment = GL_FRONT_LEFT;
-  GLint type = GL_NONE;
-  GLint bits = 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
-                                         &type);
-  if (type == GL_NONE) return 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE,
-                                         &bits);
-  return bits;
-}
-
-std::optional<std::string> read_alpha_result(const DispatchTable& gl, Pipeline& pipeline) {
-  const GLint source = integer(gl, GL_BLEND_SRC_ALPHA);
-  const GLint destination = integer(gl, GL_BLEND_DST_ALPHA);
-  std::array<GLboolean, 4> mask{};
-  gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
-  if (!mask[3] || (source == GL_ZERO && destination == GL_ONE) || alpha_bits(gl) == 0) {
-    pipeline.alpha = AlphaResult::untouched;
-  } else if (destination == GL_ONE_MINUS_SRC_ALPHA && source == GL_ONE) {
-    pipeline.alpha = AlphaResult::coverage;
-  } else if (destination == GL_ONE_MINUS_SRC_ALPHA && source == GL_SRC_ALPHA) {
-    pipeline.alpha = AlphaResult::squared_sum;
-  } else {
-    return "the blend function of alpha is not over";
-  }
-  return std::nullopt;
-}
-
 /// Queries in progress whose answer our own drawing would change.
 std::optional<std::string> read_queries(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
@@ -167,21 +131,15 @@ std::optional<std::string> read_queries(const GlContext& context) {
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
-  if (integer(gl, GL_BLEND_EQUATION_RGB) != GL_FUNC_ADD ||
-      integer(gl, GL_BLEND_EQUATION_ALPHA) != GL_FUNC_ADD) {
-    return "the blend equation is not addition";
-  }
-  const GLint source = integer(gl, GL_BLEND_SRC_RGB);
-  const GLint destination = integer(gl, GL_BLEND_DST_RGB);
-  if (destination != GL_ONE_MINUS_SRC_ALPHA || (source != GL_SRC_ALPHA && source != GL_ONE)) {
-    return "the blend function is not over";
-  }
-  pipeline.premultiplied = source == GL_ONE;
-  if (auto reason = read_alpha_result(gl, pipeline)) return reason;
+  pipeline.target = read_target(gl);
+  if (!pipeline.target.normalised && !pipeline.target.floating)
+    return "the framebuffer's colours are neither normalised nor float";
+  if (auto reason = read_blending(gl, pipeline.target, pipeline.blending)) return reason;
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
-  if (integer(gl, GL_SAMPLE_BUFFERS) > 0) return "the framebuffer is multisampled";
-  if (context.version >= 300 && gl.IsEnabled(GL_FRAMEBUFFER_SRGB)) return "sRGB conversion is enabled";
+  // With GL_MULTISAMPLE disabled all samples of a pixel get the same, but depth is still kept by sample.
+  if (integer(gl, GL_SAMPLE_BUFFERS) > 0 && (gl.IsEnabled(GL_MULTISAMPLE) || gl.IsEnabled(GL_DEPTH_TEST)))
+    return "the framebuffer is multisampled";
   if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
   std::array<GLint, 2> mode{};
   gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
@@ -198,6 +156,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
       return "the depth function is neither LESS nor LEQUAL";
     }
     pipeline.depth_or_equal = compare == GL_LEQUAL;
+    if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
+      return "slices drawn front to back write depth, and so hide each other";
   }
   if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
     return "the application is in feedback or select mode";

@@ -127,18 +127,13 @@ void tint(volume::Image& picture) {
   }
 }
 
-/// The classification whose picture holds, in its first channel, the sum of alpha^2 T: what blending alpha with
-/// SRC_ALPHA leaves in the framebuffer's alpha.
-volume::Classification squared_alpha(const volume::Classification& classification) {
-  if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {
-    volume::TransferFunction squared = *function;
-    for (volume::Rgba& entry : squared.entries) entry = {entry[3] * entry[3], 0, 0, entry[3]};
-    return squared;
-  }
-  volume::LinearMap map = std::get<volume::LinearMap>(classification);
-  for (std::size_t column = 0; column < 4; ++column) map.matrix[column] = map.matrix[12 + column];
-  map.multiply_by_alpha = true;
-  return map;
+/// The order in which slices must be drawn for the nodes' operator to do the same.
+SliceOrder order_of(const Pipeline& pipeline) {
+  if (pipeline.blending.front_to_back != FrontToBack::no) return SliceOrder::front_to_back;
+  // Slices that write depth hide whatever comes later and lies behind them.
+  const bool matters =
+      pipeline.blending.op == volume::Operator::over || pipeline.blending.alpha.op == volume::Operator::over;
+  return matters || (pipeline.depth_test && pipeline.depth_write) ? SliceOrder::back_to_front : SliceOrder::any;
 }
 
 /// Texels of `size` that samples of `region` read, linear filter included.
@@ -368,7 +363,7 @@ void VolumeUnit::find_geometry(Substitution& s) {
   if (s.polygons.clipped) {
     s.request.clip_planes = clip_planes_in_texture_space(*context().gl, s.fit->texture_to_clip);
   }
-  SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes);
+  SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes, order_of(s.pipeline));
   if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
   s.slices = std::get<SliceSet>(finding);
 }
@@ -423,8 +418,13 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
 void VolumeUnit::classify(Substitution& s) {
   const DispatchTable& gl = *context().gl;
   KnownVolume& known = s.volume;
-  std::vector<float> key{known.range[0], known.range[1], s.pipeline.premultiplied ? 1.0F : 0.0F,
-                         float(known.texture.base), float(known.texture.type)};
+  std::vector<float> key{known.range[0],
+                         known.range[1],
+                         s.pipeline.blending.premultiplied ? 1.0F : 0.0F,
+                         float(known.texture.base),
+                         float(known.texture.type),
+                         float(s.pipeline.blending.op),
+                         s.pipeline.target.floating ? 1.0F : 0.0F};
   for (const GLint swizzle : known.texture.swizzle) key.push_back(float(swizzle));
   if (!context().core) append_alpha_test(gl, key);
   if (s.fragment.record != nullptr) {
@@ -473,6 +473,7 @@ void VolumeUnit::compose_request(Substitution& s) {
   request.texture_to_clip = s.fit->texture_to_clip;
   request.planes = s.slices.planes;
   request.region = s.slices.region;
+  request.op = s.pipeline.blending.op;
   request.filter = s.volume.texture.filter;
   if (s.pipeline.depth_test) {
     request.depth =
@@ -537,9 +538,10 @@ void VolumeUnit::substitute(const Run& run) {
   verify(s, rendered.image);
 
   // The service's picture is gone with its next answer.
+  const Blending& blending = s.pipeline.blending;
   volume::Image picture;
   volume::ImageView shown = rendered.image;
-  if (options.debug_tint || s.pipeline.alpha == AlphaResult::squared_sum) {
+  if (options.debug_tint || blending.alpha_stands_apart()) {
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
@@ -551,13 +553,14 @@ void VolumeUnit::substitute(const Run& run) {
   }
   if (options.debug_tint) tint(picture);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
-  if (s.pipeline.alpha == AlphaResult::squared_sum) {
-    s.request.classification = squared_alpha(s.request.classification);
-    const compositor::Rendered squares = service.render(s.request);
-    counts += squares.counts;
-    presenter_->present(shown, s.pipeline.alpha, &squares.image);
+  if (blending.alpha_stands_apart()) {
+    s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
+    s.request.op = blending.alpha.op;
+    const compositor::Rendered alpha = service.render(s.request);
+    counts += alpha.counts;
+    presenter_->present(shown, blending, &alpha.image);
   } else {
-    presenter_->present(shown, s.pipeline.alpha, nullptr);
+    presenter_->present(shown, blending, nullptr);
   }
   settle_depth(s);
   if (s.volume.frames == 0 || options.explain) explain(s);

@@ -20,8 +20,10 @@ std::vector<Refusal> refusals() {
        [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},
       {"lines", "polygons are not filled",
        [](GlApplication& a) { a.gl().PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
-      {"maximum blending", "the blend equation is not addition",
-       [](GlApplication& a) { a.gl().BlendEquation(GL_MAX); }},
+      {"a subtraction", "the blend equation is a subtraction",
+       [](GlApplication& a) { a.gl().BlendEquation(GL_FUNC_REVERSE_SUBTRACT); }},
+      {"a subtraction of alpha", "the blend equation of alpha is a subtraction",
+       [](GlApplication& a) { a.gl().BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_REVERSE_SUBTRACT); }},
       {"a depth function that keeps what is farther", "the depth function is neither LESS nor LEQUAL",
        [](GlApplication& a) {
          a.gl().Enable(GL_DEPTH_TEST);

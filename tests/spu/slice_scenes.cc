@@ -127,7 +127,15 @@ void SliceScene::draw_to_the_last_slice(GlApplication& app, double angle) const 
   slices(app, angle);
 }
 
+SliceBlending usual_blending() {
+  return {[](const DispatchTable& gl) { gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA); }};
+}
+
 SliceScene immediate_rgba() {
+  return immediate_rgba(usual_blending());
+}
+
+SliceScene immediate_rgba(const SliceBlending& blending) {
   SliceScene scene{"glBegin/glEnd quads, fixed function, RGBA8 voxels"};
   scene.set_up = [](GlApplication& app) {
     const Blob blob;
@@ -142,17 +150,19 @@ SliceScene immediate_rgba() {
     app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, blob.x, blob.y, blob.z, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                         colours.data());
   };
-  scene.slices = [](GlApplication& app, double angle) {
+  scene.slices = [blending](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
-    blend_over(app.gl());
+    app.gl().Enable(GL_BLEND);
+    blending.set(app.gl());
     app.gl().Enable(GL_TEXTURE_3D);
     app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
     app.gl().Color4f(1, 0.8F, 0.9F, 1);
     for (int i = 0; i < slices; ++i) {
+      const double z = slice_z(blending.front_to_back ? slices - 1 - i : i);
       app.gl().Begin(GL_QUADS);
       for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
-        app.gl().TexCoord3d(x, y, slice_z(i));
-        app.gl().Vertex3d(x, y, slice_z(i));
+        app.gl().TexCoord3d(x, y, z);
+        app.gl().Vertex3d(x, y, z);
       }
       app.gl().End();
     }
@@ -240,6 +250,10 @@ SliceScene display_list_texgen() {
 }
 
 SliceScene client_arrays_table() {
+  return client_arrays_table(usual_blending());
+}
+
+SliceScene client_arrays_table(const SliceBlending& blending) {
   SliceScene scene{"one client array refilled for every slice, GLSL 1.20 fragments with a 1-D table"};
   auto name = std::make_shared<GLuint>(0);
   scene.set_up = [name](GlApplication& app) {
@@ -256,9 +270,10 @@ SliceScene client_arrays_table() {
     app.gl().UseProgram(0);
   };
   auto array = std::make_shared<std::array<GLfloat, 12>>();
-  scene.slices = [name, array](GlApplication& app, double angle) {
+  scene.slices = [name, array, blending](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
-    blend_over(app.gl());
+    app.gl().Enable(GL_BLEND);
+    blending.set(app.gl());
     app.gl().UseProgram(*name);
     std::array<GLfloat, 12>& corners = *array;
     app.gl().EnableClientState(GL_VERTEX_ARRAY);
@@ -266,7 +281,7 @@ SliceScene client_arrays_table() {
     app.gl().VertexPointer(3, GL_FLOAT, 0, corners.data());
     app.gl().TexCoordPointer(3, GL_FLOAT, 0, corners.data());
     for (int i = 0; i < slices; ++i) {
-      quad_corners(slice_z(i), corners);
+      quad_corners(slice_z(blending.front_to_back ? slices - 1 - i : i), corners);
       app.gl().DrawArrays(GL_TRIANGLE_FAN, 0, 4);
     }
   };

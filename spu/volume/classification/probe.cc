@@ -67,10 +67,9 @@ class Bench {
                    texels.data());
   }
 
-  /// One fragment a pixel; a pixel whose fragment was discarded stays zero.
-  Picture draw(const InputValues& values, bool with_alpha_test) {
-    constexpr std::array<float, 4> nothing{};
-    gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`.
+  Picture draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {}) {
+    gl_.ClearBufferfv(GL_COLOR, 0, background.data());
     if (with_alpha_test && alpha_test_) gl_.Enable(GL_ALPHA_TEST);
     gl_.UseProgram(program_);
     const GLint location = gl_.GetUniformLocation(program_, "understudy_value");
@@ -146,6 +145,20 @@ bool finite(const Picture& picture) {
   });
 }
 
+/// Whether texels in [0,1] may give colours outside of it.
+bool leaves_unit_interval(const std::array<float, 16>& matrix) {
+  for (std::size_t row = 0; row < 4; ++row) {
+    float low = 0;
+    float high = 0;
+    for (std::size_t column = 0; column < 4; ++column) {
+      low += std::min(matrix[4 * row + column], 0.0F);
+      high += std::max(matrix[4 * row + column], 0.0F);
+    }
+    if (low < -same_colour || high > 1 + same_colour) return true;
+  }
+  return false;
+}
+
 ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                          const TextureDescription& texture, const FragmentInputs& fragment,
                          const std::array<float, 2>& range) {
@@ -163,6 +176,11 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   const Picture table = bench.draw(first, true);
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
+  // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
+  if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
+    if (bench.draw(first, true, {1, 1, 1, 1}) != table) return "fragments are discarded under a minimum";
+  }
+
   // The same samples with other coordinates and other inputs: a single texel, spread over the whole picture.
   for (const int entry :
        {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
@@ -179,9 +197,14 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   function.high = range[1];
   function.entries.assign(table.begin(), table.begin() + probed_entries);
   for (volume::Rgba& entry : function.entries) {
-    // The application's framebuffer clamps fragments before it blends them.
-    for (float& component : entry) component = std::clamp(component, 0.0F, 1.0F);
-    if (pipeline.premultiplied) continue;
+    // The application's framebuffer clamps fragments before it blends them, unless it is float.
+    if (pipeline.target.floating) {
+      const bool composable = *std::min_element(entry.begin(), entry.end()) >= 0 && entry[3] <= 1;
+      if (!composable) return "the colours leave [0,1] in a float framebuffer";
+    } else {
+      for (float& component : entry) component = std::clamp(component, 0.0F, 1.0F);
+    }
+    if (pipeline.blending.premultiplied) continue;
     for (std::size_t c = 0; c < 3; ++c) entry[c] *= entry[3];
   }
   return volume::Classification{std::move(function)};
@@ -190,7 +213,7 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
 ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                        const TextureDescription& texture, const FragmentInputs& fragment) {
   volume::LinearMap map;
-  map.multiply_by_alpha = !pipeline.premultiplied;
+  map.multiply_by_alpha = !pipeline.blending.premultiplied;
   if (bench.alpha_test_enabled()) {
     const DispatchTable& gl = *context.gl;
     GLint compare = 0;
@@ -225,6 +248,8 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
     if (!(largest_difference(mapped[i], expected) <= same_colour))
       return "the map of a colour volume is not linear";
   }
+  if (pipeline.target.floating && leaves_unit_interval(map.matrix))
+    return "the colours leave [0,1] in a float framebuffer";
   bench.show(GL_RGBA32F, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, 0.5F}, texture.swizzle, context.version >= 330);
   const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
   for (std::size_t row = 0; row < 4; ++row) {

@@ -77,8 +77,61 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   return std::nullopt;
 }
 
+/// Whether the text of the bound fragment assembly program can name a 3-D texture at all: a target is spelled
+/// one way only.
+bool may_sample_3d(const DispatchTable& gl) {
+  GLint length = 0;
+  gl.GetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_LENGTH_ARB, &length);
+  if (length <= 0) return false;
+  std::string text(std::size_t(length), ' ');
+  gl.GetProgramStringARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_STRING_ARB, text.data());
+  return text.find("3D") != std::string::npos;
+}
+
+/// Assembly programs do not tell what they sample: any texture that is bound may be it.
+std::optional<std::string> read_assembly_textures(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  if (!may_sample_3d(gl)) return std::nullopt;
+  pipeline.assembly = true;
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  const GLint units = integer(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
+  int volumes = 0;
+  for (int unit = 0; unit < units; ++unit) {
+    gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+    for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_RECTANGLE, GL_TEXTURE_3D}) {
+      const auto texture = GLuint(integer(gl, binding_of(target)));
+      if (texture == 0) continue;
+      if (target == GL_TEXTURE_3D) {
+        ++volumes;
+        pipeline.volume = {target, unit, texture, -1};
+      } else {
+        pipeline.others.push_back({target, unit, texture, -1});
+      }
+    }
+  }
+  gl.ActiveTexture(GLenum(active));
+  if (volumes > 1) return "an assembly program runs while more than one 3-D texture is bound";
+  return std::nullopt;
+}
+
+/// User clip planes cut a vertex assembly program's result only where it asks for that, which it does not tell.
+std::optional<std::string> read_vertex_assembly(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  if (!context.vertex_assembly || !gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return std::nullopt;
+  const GLint planes = integer(gl, GL_MAX_CLIP_PLANES);
+  for (GLint i = 0; i < planes; ++i) {
+    if (gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) return "clip planes cut what a vertex assembly program draws";
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> read_fixed_function_textures(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
+  if (context.fragment_assembly && gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB)) {
+    auto reason = read_assembly_textures(context, pipeline);
+    if (!reason && pipeline.volume.texture != 0) reason = read_vertex_assembly(context);
+    return reason;
+  }
   const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
   int enabled_units = 0;
   for (int unit = 0; unit < context.fixed_function_units; ++unit) {
@@ -95,9 +148,7 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   if (pipeline.volume.texture == 0) return std::nullopt;
   if (enabled_units > 1) return "more than one texture unit takes part in fixed function";
   if (pipeline.volume.unit != 0) return "the volume is not on texture unit 0 in fixed function";
-  if (gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB) || gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) {
-    return "an ARB assembly program is enabled";
-  }
+  if (auto reason = read_vertex_assembly(context)) return reason;
   if (gl.IsEnabled(GL_FOG)) return "fog is enabled";
   return std::nullopt;
 }
@@ -144,6 +195,12 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   std::array<GLint, 2> mode{};
   gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
   if (mode[0] != GL_FILL) return "polygons are not filled";
+  if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
+  if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
+  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
+                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
+    return "clip control turns or moves the view volume";
+  }
   pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
   if (pipeline.depth_test) {
     const GLint compare = integer(gl, GL_DEPTH_FUNC);

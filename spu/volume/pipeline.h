@@ -28,6 +28,7 @@ struct SampledTexture {
 /// The pipeline of a run of slices.
 struct Pipeline {
   GLuint program = 0;          ///< 0: fixed function
+  bool assembly = false;       ///< fragments are an ARB assembly program's; `program` is 0
   bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
   SampledTexture volume;
   std::vector<SampledTexture> others;  ///< look-up tables of the program

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "spu/track/track.h"
+#include "spu/volume/conditional_render.h"
 #include "spu/volume/depth.h"
 #include "spu/volume/depth_debt.h"
 #include "spu/volume/draw_slots.h"
@@ -117,6 +118,18 @@ void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
   key.push_back(value);
 }
 
+/// The other value of inputs that nobody tells: a colour that depends on one of them is not the sample's alone.
+constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
+
+/// What an assembly program may read besides the coordinate and the primary colour, and feedback does not tell.
+void append_untold_inputs(std::vector<StageInput>& inputs) {
+  constexpr int coordinate_sets = 8;
+  for (int set = 1; set < coordinate_sets; ++set)
+    inputs.push_back({fmt::format("gl_TexCoord[{}]", set), GL_FLOAT_VEC4, 4, false});
+  inputs.push_back({"gl_FrontSecondaryColor", GL_FLOAT_VEC4, 4, false});
+  inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
+}
+
 /// Magenta wherever the volume is: a picture that proves where it came from.
 void tint(volume::Image& picture) {
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -212,6 +225,7 @@ const GlContext& VolumeUnit::context() {
 }
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
+  if (phase == Phase::plain) fill_conditional_render_slots(table);
   if (phase == Phase::watching) fill_watching_slots(table);
   if (phase == Phase::owing) fill_owing_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
@@ -254,6 +268,7 @@ bool VolumeUnit::opens_run() {
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
     reason = known(texture).given_back;
+    if (conditional_render) reason = "the slices are rendered conditionally";
     if (reason.empty() && chain_.group().is_rendered_to(texture))
       reason = "the volume texture is rendered into, or another texture shares its texels";
   }
@@ -332,6 +347,7 @@ void VolumeUnit::observe(Substitution& s) {
   } else {
     s.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false},
                          {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
+    if (s.pipeline.assembly) append_untold_inputs(s.fragment.inputs);
   }
   if (gl.IsEnabled(GL_COLOR_SUM)) throw Doubt{"a secondary colour is added after texturing"};
   GLint colour_control = 0;
@@ -349,11 +365,14 @@ void VolumeUnit::observe(Substitution& s) {
       s.fragment.first.push_back({});
     } else if (input.name == "gl_FrontColor") {
       s.fragment.first.push_back(s.polygons.primary_colour);
+    } else if (s.pipeline.assembly) {
+      s.fragment.first.push_back({0.25F, 0.25F, 0.25F, 1});
     } else {
       throw Doubt{"the fragment shader reads " + input.name + ", which feedback does not tell"};
     }
   }
   s.fragment.last = s.fragment.first;
+  if (s.pipeline.assembly) std::fill(s.fragment.last.begin() + 2, s.fragment.last.end(), untold_value);
 }
 
 void VolumeUnit::find_geometry(Substitution& s) {
@@ -432,6 +451,8 @@ void VolumeUnit::classify(Substitution& s) {
     const auto values =
         fragment_uniform_values(context(), s.pipeline.program, stages(s.pipeline.program, *s.fragment.record));
     key.insert(key.end(), values.begin(), values.end());
+  } else if (s.pipeline.assembly) {
+    key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
   } else {
     append_fixed_function_state(gl, key);
   }
@@ -515,6 +536,7 @@ void VolumeUnit::explain(const Substitution& s) {
                   std::holds_alternative<volume::LinearMap>(s.request.classification)
                       ? "colours in the texels"
                       : (s.pipeline.program != 0 ? "table probed from the program"
+                         : s.pipeline.assembly   ? "table probed from the assembly program"
                                                  : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));

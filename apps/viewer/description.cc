@@ -51,7 +51,7 @@ Json describe_slices(const Box& box, const SliceStack& stack) {
       polygon.push_back(stack.vertices[i].texture);
     polygons.push_back(std::move(polygon));
   }
-  return {{"order", "back to front"},
+  return {{"order", stack.front_to_back ? "front to back" : "back to front"},
           {"count", stack.slices.size()},
           {"spacing_object", stack.spacing},
           {"normal_object", stack.normal},
@@ -61,12 +61,18 @@ Json describe_slices(const Box& box, const SliceStack& stack) {
 }
 
 Json describe_classification(ModeKind mode, const Scene& scene) {
-  return {{"preset", scene.preset().name},
-          {"applied", mode == ModeKind::rgba ? "to each voxel, before interpolation"
-                                             : "to each sample, after interpolation"},
-          {"lookup", "entry i is texel value i/255, linear between entries, clamped"},
-          {"alpha", "not premultiplied, per slice, opacity correction included"},
-          {"entries_rgba8", scene.table()}};
+  return {
+      {"preset", scene.preset().name},
+      {"applied", mode == ModeKind::rgba || mode == ModeKind::stacks ? "to each voxel, before interpolation"
+                                                                     : "to each sample, after interpolation"},
+      {"lookup", "entry i is texel value i/255, linear between entries, clamped"},
+      {"alpha", "not premultiplied, per slice, opacity correction included"},
+      {"entries_rgba8", scene.table()}};
+}
+
+Json describe_blend(Operator op) {
+  const BlendNames names = blend_names(op);
+  return {{"source", names.source}, {"destination", names.destination}, {"equation", names.equation}};
 }
 
 }  // namespace
@@ -97,8 +103,7 @@ void write_description(const std::string& path, const Options& options, const Sc
        {{"formula", "1 - (1 - alpha)^exponent"},
         {"reference_distance_object", box.finest_voxel_edge},
         {"exponent", scene.opacity_exponent()}}},
-      {"blend",
-       {{"source", "GL_SRC_ALPHA"}, {"destination", "GL_ONE_MINUS_SRC_ALPHA"}, {"equation", "GL_FUNC_ADD"}}},
+      {"blend", describe_blend(scene.op())},
       {"background", {options.background[0], options.background[1], options.background[2], 0.0}},
       {"frame_and_axes_drawn", options.frame_and_axes},
       {"opengl", {{"renderer", gl_text(GL_RENDERER)}, {"version", gl_text(GL_VERSION)}}},

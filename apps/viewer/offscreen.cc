@@ -50,9 +50,9 @@ std::vector<EGLDisplay> candidate_displays() {
   return displays;
 }
 
-// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha:
+// eglChooseConfig puts deeper colours first: 10 bits would come before the 8 that a window has. No alpha where
 // nobody reads it, as in a window.
-EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
+EGLConfig choose_config(EGLDisplay display, EGLint surface_type, EGLint alpha_bits) {
   const EGLint wanted[] = {EGL_SURFACE_TYPE,
                            surface_type,
                            EGL_RENDERABLE_TYPE,
@@ -65,6 +65,8 @@ EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
                            8,
                            EGL_DEPTH_SIZE,
                            24,
+                           EGL_ALPHA_SIZE,
+                           alpha_bits,
                            EGL_NONE};
   std::array<EGLConfig, max_configs> configs{};
   EGLint count = 0;
@@ -75,7 +77,7 @@ EGLConfig choose_config(EGLDisplay display, EGLint surface_type) {
     eglGetConfigAttrib(display, config, EGL_RED_SIZE, &red);
     eglGetConfigAttrib(display, config, EGL_ALPHA_SIZE, &alpha);
     eglGetConfigAttrib(display, config, EGL_SAMPLES, &samples);
-    if (red == 8 && alpha == 0 && samples == 0) return config;
+    if (red == 8 && alpha == alpha_bits && samples == 0) return config;
   }
   return nullptr;
 }
@@ -94,15 +96,15 @@ EGLContext create_context(EGLDisplay display, EGLConfig config, ModeKind mode) {
 
 }  // namespace
 
-Offscreen::Offscreen(ModeKind mode, OffscreenSurface surface, int width, int height) {
+Offscreen::Offscreen(const Options& options, int width, int height) {
   eglBindAPI(EGL_OPENGL_API);
   const std::vector<EGLDisplay> displays = candidate_displays();
   // A pbuffer anywhere is preferred to a framebuffer object anywhere: it has an end of frame that others can
   // see.
   for (const OffscreenSurface kind : {OffscreenSurface::pbuffer, OffscreenSurface::framebuffer}) {
-    if (surface != OffscreenSurface::any && surface != kind) continue;
+    if (options.surface != OffscreenSurface::any && options.surface != kind) continue;
     for (EGLDisplay display : displays) {
-      if (!open(display, mode, kind, width, height)) continue;
+      if (!open(display, options, kind, width, height)) continue;
       load_opengl_functions();
       if (kind == OffscreenSurface::framebuffer) make_framebuffer(width, height);
       return;
@@ -111,19 +113,21 @@ Offscreen::Offscreen(ModeKind mode, OffscreenSurface surface, int width, int hei
   throw Error(ExitCode::no_opengl,
               fmt::format("no OpenGL{} context without a window: none of {} EGL displays offers one; install "
                           "libegl-mesa0 and see `eglinfo`, or draw in a window (without --offscreen)",
-                          mode == ModeKind::core ? " 3.3 core" : "", displays.size()));
+                          options.mode == ModeKind::core ? " 3.3 core" : "", displays.size()));
 }
 
 Offscreen::~Offscreen() {
   close();
 }
 
-bool Offscreen::open(EGLDisplay display, ModeKind mode, OffscreenSurface surface, int width, int height) {
+bool Offscreen::open(EGLDisplay display, const Options& options, OffscreenSurface surface, int width,
+                     int height) {
   if (!eglInitialize(display, nullptr, nullptr)) return false;
   display_ = display;
   const bool pbuffer = surface == OffscreenSurface::pbuffer;
-  EGLConfig config = choose_config(display, pbuffer ? EGL_PBUFFER_BIT : EGL_DONT_CARE);
-  if (config) context_ = create_context(display, config, mode);
+  const EGLint alpha_bits = options.op == Operator::under ? 8 : 0;
+  EGLConfig config = choose_config(display, pbuffer ? EGL_PBUFFER_BIT : EGL_DONT_CARE, alpha_bits);
+  if (config) context_ = create_context(display, config, options.mode);
   if (context_ != EGL_NO_CONTEXT && pbuffer) {
     const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
     surface_ = eglCreatePbufferSurface(display, config, size);
@@ -179,7 +183,7 @@ void Offscreen::present() {
 
 void run_offscreen(const Options& options, Volume volume) {
   const auto [width, height] = options.window_size;
-  Offscreen offscreen(options.mode, options.surface, width, height);
+  Offscreen offscreen(options, width, height);
   Scene scene(options, std::move(volume));
   Frames frames(options, scene);
   while (!frames.finished()) frames.draw_next(options.camera, width, height, [&] { offscreen.present(); });

@@ -12,9 +12,9 @@ namespace viewer {
 
 class Offscreen {
  public:
-  /// Makes the context current (compatibility, or 3.3 core for ModeKind::core) and loads OpenGL's functions.
-  /// Throws Error (no_opengl) with what was tried.
-  Offscreen(ModeKind mode, OffscreenSurface surface, int width, int height);
+  /// Makes the context current (compatibility, or 3.3 core for ModeKind::core; with alpha for Operator::under)
+  /// and loads OpenGL's functions. Throws Error (no_opengl) with what was tried.
+  Offscreen(const Options& options, int width, int height);
   Offscreen(const Offscreen&) = delete;
   Offscreen& operator=(const Offscreen&) = delete;
   ~Offscreen();
@@ -23,7 +23,7 @@ class Offscreen {
   void present();
 
  private:
-  bool open(EGLDisplay display, ModeKind mode, OffscreenSurface surface, int width, int height);
+  bool open(EGLDisplay display, const Options& options, OffscreenSurface surface, int width, int height);
   void close();
   void make_framebuffer(int width, int height);
 

@@ -16,6 +16,9 @@ constexpr double head_length = 0.05;
 constexpr double head_radius = 0.014;
 constexpr int arrow_sides = 16;
 
+constexpr double ball_radius = 0.17;
+constexpr int ball_rings = 24;
+
 void add_frame(const Box& box, OpaqueGeometry& geometry) {
   const Vec3 half = 0.5 * box.edges + Vec3{frame_gap, frame_gap, frame_gap};
   for (int along = 0; along < 3; ++along)
@@ -67,6 +70,31 @@ OpaqueGeometry frame_and_axes(const Box& box) {
   OpaqueGeometry geometry;
   add_frame(box, geometry);
   for (int axis = 0; axis < 3; ++axis) add_arrow(-0.5 * box.edges, axis, geometry);
+  return geometry;
+}
+
+void add_ball(const Box& box, OpaqueGeometry& geometry) {
+  const Vec3 centre = scale({0.2, -0.3, 0.2}, box.edges);
+  const auto at = [&](int ring, int side) {
+    const double polar = std::numbers::pi * ring / ball_rings;
+    const double around = std::numbers::pi * side / ball_rings;
+    return centre + ball_radius * Vec3{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                                       std::cos(polar)};
+  };
+  const Vec3 colour = {0.9, 0.6, 0.1};
+  for (int ring = 0; ring < ball_rings; ++ring)
+    for (int side = 0; side < 2 * ball_rings; ++side) {
+      // At the poles one of the two triangles is none.
+      if (ring + 1 < ball_rings)
+        add_triangle(at(ring, side), at(ring + 1, side), at(ring + 1, side + 1), colour, geometry);
+      if (ring > 0) add_triangle(at(ring, side), at(ring + 1, side + 1), at(ring, side + 1), colour, geometry);
+    }
+}
+
+OpaqueGeometry whole_picture(const Vec3f& colour) {
+  OpaqueGeometry geometry;
+  for (const Vec3f& corner : {Vec3f{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {-1, 1, 0}})
+    geometry.triangles.push_back({corner, colour});
   return geometry;
 }
 

@@ -46,9 +46,9 @@ CLI::Validator number_between(double low, double high) {
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
-  CLI::App app{"Shows a volume as view-aligned slices through a 3-D texture, in a window or off screen."};
+  CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
   app.name("understudy-viewer");
-  std::string mode = "table", preset = "engine", type, surface = "any";
+  std::string mode = "table", op = "over", preset = "engine", type, surface = "any";
   VolumeSize size{};
   Vec3 spacing{};
 
@@ -63,10 +63,16 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   auto* spacing_option = app.add_option("--spacing", spacing, "Distances between voxels, instead of the file's")
                              ->type_name("X Y Z");
 
-  app.add_option(
-         "--mode", mode,
-         "rgba (colours per voxel, fixed function), table (1-D table in GLSL 1.20) or core (OpenGL 3.3 core)")
-      ->check(CLI::IsMember({"rgba", "table", "core"}))
+  app.add_option("--mode", mode,
+                 "rgba (colours per voxel, fixed function), table (1-D table in GLSL 1.20), core (OpenGL 3.3 "
+                 "core), time (a "
+                 "new time step every frame), bricks (many small textures), lit (directional light), preint "
+                 "(pre-integrated "
+                 "slabs) or stacks (2-D textures)")
+      ->check(CLI::IsMember({"rgba", "table", "core", "time", "bricks", "lit", "preint", "stacks"}))
+      ->capture_default_str();
+  app.add_option("--operator", op, "How slices are blended: over, under (front to back), max, min or add")
+      ->check(CLI::IsMember({"over", "under", "max", "min", "add"}))
       ->capture_default_str();
   app.add_option("--slices", options.slices,
                  "Slices across the box's diagonal (default: one per finest voxel edge)")
@@ -74,6 +80,9 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--preset", preset, "Transfer function by name or number:" + preset_list())
       ->check(is_preset)
       ->capture_default_str();
+  app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
+  app.add_flag("--second", options.second_volume,
+               "The volume twice, half as large, the second in the next preset's colours");
   app.add_flag("!--no-frame", options.frame_and_axes, "Without the box's frame and the axes");
   app.add_option("--background", options.background, "Background colour, each 0 to 1")
       ->check(number_between(0.0, 1.0))
@@ -126,6 +135,7 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   if (type_option->count() > 0) options.hints.type = scalar_type_named(type);
   if (spacing_option->count() > 0) options.hints.spacing = spacing;
   options.mode = *mode_named(mode);
+  options.op = *operator_named(op);
   options.preset = find_preset(preset);
   options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},
                                                             {"pbuffer", OffscreenSurface::pbuffer},

@@ -7,6 +7,7 @@
 
 #include "apps/viewer/camera.h"
 #include "apps/viewer/modes/mode.h"
+#include "apps/viewer/operator.h"
 #include "apps/viewer/volume_file.h"
 
 namespace viewer {
@@ -18,9 +19,12 @@ struct Options {
   VolumeHints hints;
 
   ModeKind mode = ModeKind::table;
+  Operator op = Operator::over;
   int slices = 0;  ///< across the box's diagonal; 0: one per finest voxel edge
   const Preset* preset = nullptr;
   bool frame_and_axes = true;
+  bool opaque_ball = false;
+  bool second_volume = false;
   std::array<double, 3> background{0, 0, 0};
 
   Camera camera;

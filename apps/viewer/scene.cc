@@ -3,6 +3,7 @@
 #include <GL/glew.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -27,9 +28,10 @@ void report(const VolumeFacts& volume, const Texels& texels) {
 Scene::Scene(const Options& options, Volume volume)
     : box_(box_of(volume.size, volume.spacing)),
       slices_across_diagonal_(viewer::slices_across_diagonal(box_, options.slices)),
-      frame_and_axes_(options.frame_and_axes),
-      background_(options.background),
-      opaque_(frame_and_axes(box_)) {
+      op_(options.op),
+      background_(options.background) {
+  if (options.frame_and_axes) opaque_ = frame_and_axes(box_);
+  if (options.opaque_ball) add_ball(box_, opaque_);
   volume_.file = volume.file;
   volume_.size = volume.size;
   volume_.spacing = volume.spacing;
@@ -40,6 +42,7 @@ Scene::Scene(const Options& options, Volume volume)
   volume_.value_at_1 = texels.value_at_1;
   volume_.not_finite = texels.not_finite;
   report(volume_, texels);
+  if (options.second_volume) second_ = make_mode(options.mode, texels, volume_.file);
   mode_ = make_mode(options.mode, std::move(texels), volume_.file);
   set_preset(*options.preset);
 }
@@ -51,26 +54,83 @@ double Scene::opacity_exponent() const {
 void Scene::set_preset(const Preset& preset) {
   preset_ = &preset;
   table_ = make_table(preset, opacity_exponent(), volume_.not_finite > 0);
-  mode_->set_table(table_);
+  mode_->set_table(colours_for(op_, table_));
+  if (!second_) return;
+  const std::size_t next = static_cast<std::size_t>(&preset - presets().data() + 1) % presets().size();
+  second_->set_table(colours_for(op_, make_table(presets()[next], opacity_exponent(), volume_.not_finite > 0)));
+}
+
+void Scene::draw_volumes(const SliceStack& stack, const Matrices& matrices) {
+  if (!second_) {
+    mode_->draw_slices(stack, matrices);
+    return;
+  }
+  // Each half as large, they meet in the box's centre, corner to corner.
+  const auto placed = [&](double side) {
+    Mat4 half = translation(0.25 * side * box_.edges);
+    for (const std::size_t diagonal : {0, 5, 10}) half[diagonal] = 0.5;
+    return Matrices{matrices.modelview * half, matrices.projection};
+  };
+  const bool second_is_farther = dot(stack.normal, box_.edges) > 0;
+  if (second_is_farther != stack.front_to_back) {
+    second_->draw_slices(stack, placed(1));
+    mode_->draw_slices(stack, placed(-1));
+  } else {
+    mode_->draw_slices(stack, placed(-1));
+    second_->draw_slices(stack, placed(1));
+  }
+}
+
+void Scene::draw_back_to_front(const DrawnFrame& frame) {
+  glClearColor(static_cast<float>(background_[0]), static_cast<float>(background_[1]),
+               static_cast<float>(background_[2]), 0.0F);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
+
+  // Slices are hidden by what is solid, but never by each other.
+  glDepthMask(GL_FALSE);
+  blend_with(op_);
+  draw_volumes(frame.stack, frame.matrices);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+}
+
+void Scene::draw_front_to_back(const DrawnFrame& frame) {
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_DEPTH_TEST);
+  // What is solid hides slices by its depth, and is seen through those before it: its colour comes after them.
+  glDepthFunc(GL_LEQUAL);
+  if (!opaque_.triangles.empty()) {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    mode_->draw_opaque(opaque_, frame.matrices);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+  glDepthMask(GL_FALSE);
+  blend_with(op_);
+  draw_volumes(frame.stack, frame.matrices);
+  if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
+  glDisable(GL_DEPTH_TEST);
+  const Mat4 unit = translation({0, 0, 0});
+  mode_->draw_opaque(whole_picture(to_float(background_)), {unit, unit});
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
 }
 
 DrawnFrame Scene::draw(const Camera& camera, int width, int height) {
   DrawnFrame frame{camera, matrices_of(camera, width, height), width, height,
                    cut_slices(box_, view_direction(camera), slices_across_diagonal_)};
   glViewport(0, 0, width, height);
-  glClearColor(static_cast<float>(background_[0]), static_cast<float>(background_[1]),
-               static_cast<float>(background_[2]), 0.0F);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  glEnable(GL_DEPTH_TEST);
-  if (frame_and_axes_) mode_->draw_opaque(opaque_, frame.matrices);
-
-  // Slices are hidden by what is solid, but never by each other.
-  glDepthMask(GL_FALSE);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  mode_->draw_slices(frame.stack, frame.matrices);
-  glDisable(GL_BLEND);
-  glDepthMask(GL_TRUE);
+  mode_->next_frame();
+  if (second_) second_->next_frame();
+  if (op_ == Operator::under) {
+    frame.stack.front_to_back = true;
+    std::reverse(frame.stack.slices.begin(), frame.stack.slices.end());
+    draw_front_to_back(frame);
+  } else {
+    draw_back_to_front(frame);
+  }
 
   if (const GLenum error = glGetError(); error != GL_NO_ERROR)
     throw Error(ExitCode::no_opengl,

@@ -47,17 +47,23 @@ class Scene {
   const Table& table() const { return table_; }
   /// Slice spacing over reference distance: the exponent of the opacity correction.
   double opacity_exponent() const;
+  Operator op() const { return op_; }
   int slices_across_diagonal() const { return slices_across_diagonal_; }
   std::string_view texture_format() const { return mode_->texture_format(); }
 
  private:
+  void draw_volumes(const SliceStack& stack, const Matrices& matrices);
+  void draw_back_to_front(const DrawnFrame& frame);
+  void draw_front_to_back(const DrawnFrame& frame);
+
   VolumeFacts volume_;
   Box box_;
   int slices_across_diagonal_;
-  bool frame_and_axes_;
+  Operator op_;
   std::array<double, 3> background_;
   OpaqueGeometry opaque_;
   std::unique_ptr<Mode> mode_;
+  std::unique_ptr<Mode> second_;  ///< null: there is one volume
   const Preset* preset_ = nullptr;
   Table table_{};
 };

@@ -35,9 +35,10 @@ struct Slice {
 };
 
 struct SliceStack {
-  Vec3 normal{};              ///< direction of view, object space
-  double spacing = 0;         ///< between neighbouring planes, object space
-  std::vector<Slice> slices;  ///< farthest first
+  Vec3 normal{};       ///< direction of view, object space
+  double spacing = 0;  ///< between neighbouring planes, object space
+  bool front_to_back = false;
+  std::vector<Slice> slices;  ///< farthest first, unless front to back
   std::vector<SliceVertex> vertices;
 };
 

@@ -92,7 +92,8 @@ void Window::open() {
     glutInitContextVersion(3, 3);
     glutInitContextProfile(GLUT_CORE_PROFILE);
   }
-  glutInitDisplayMode(GLUT_RGBA | GLUT_DOUBLE | GLUT_DEPTH);
+  const unsigned alpha = options_.op == Operator::under ? GLUT_ALPHA : 0;
+  glutInitDisplayMode(GLUT_RGBA | GLUT_DOUBLE | GLUT_DEPTH | alpha);
   glutInitWindowSize(options_.window_size[0], options_.window_size[1]);
   glutSetOption(GLUT_ACTION_ON_WINDOW_CLOSE, GLUT_ACTION_GLUTMAINLOOP_RETURNS);
   glutCreateWindow(fmt::format("{} - understudy-viewer", options_.volume_path).c_str());

@@ -38,7 +38,11 @@ GlContext describe_context(const DispatchTable& gl) {
   context.pipeline_statistics =
       context.version >= 460 ||
       (context.version >= 300 && has_extension(gl, "GL_ARB_pipeline_statistics_query"));
-  if (!context.core) gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
+  if (!context.core) {
+    gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
+    context.fragment_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_fragment_program");
+    context.vertex_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_vertex_program");
+  }
   return context;
 }
 

@@ -10,6 +10,8 @@ struct GlContext {
   int version = 0;                    ///< 100 * major + 10 * minor, e.g. 450
   bool core = false;                  ///< no fixed function, no GL_FEEDBACK
   bool pipeline_statistics = false;   ///< there are queries of GL_ARB_pipeline_statistics_query
+  bool fragment_assembly = false;     ///< GL_ARB_fragment_program
+  bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   int fixed_function_units = 0;       ///< texture units of the fixed-function pipeline; 0 in core profiles
 
   /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.

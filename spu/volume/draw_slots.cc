@@ -8,6 +8,7 @@
 #include "spu/track/calls.h"
 #include "spu/volume/array_calls.h"
 #include "spu/volume/client_arrays.h"
+#include "spu/volume/conditional_render.h"
 #include "spu/volume/texture_changes.h"
 #include "spu/volume/volume_unit.h"
 
@@ -181,6 +182,7 @@ void fill_draws(DispatchTable& table) {
 void fill_watching_slots(DispatchTable& table) {
   fill_draws(table);
   fill_texture_change_slots(table);
+  fill_conditional_render_slots(table);
   table.End = end_while_watching;
 }
 

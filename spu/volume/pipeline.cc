@@ -77,8 +77,61 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   return std::nullopt;
 }
 
+/// Whether the text of the bound fragment assembly program can name a 3-D texture at all: a target is spelled
+/// one way only.
+bool may_sample_3d(const DispatchTable& gl) {
+  GLint length = 0;
+  gl.GetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_LENGTH_ARB, &length);
+  if (length <= 0) return false;
+  std::string text(std::size_t(length), ' ');
+  gl.GetProgramStringARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_STRING_ARB, text.data());
+  return text.find("3D") != std::string::npos;
+}
+
+/// Assembly programs do not tell what they sample: any texture that is bound may be it.
+std::optional<std::string> read_assembly_textures(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  if (!may_sample_3d(gl)) return std::nullopt;
+  pipeline.assembly = true;
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  const GLint units = integer(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
+  int volumes = 0;
+  for (int unit = 0; unit < units; ++unit) {
+    gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+    for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_RECTANGLE, GL_TEXTURE_3D}) {
+      const auto texture = GLuint(integer(gl, binding_of(target)));
+      if (texture == 0) continue;
+      if (target == GL_TEXTURE_3D) {
+        ++volumes;
+        pipeline.volume = {target, unit, texture, -1};
+      } else {
+        pipeline.others.push_back({target, unit, texture, -1});
+      }
+    }
+  }
+  gl.ActiveTexture(GLenum(active));
+  if (volumes > 1) return "an assembly program runs while more than one 3-D texture is bound";
+  return std::nullopt;
+}
+
+/// User clip planes cut a vertex assembly program's result only where it asks for that, which it does not tell.
+std::optional<std::string> read_vertex_assembly(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  if (!context.vertex_assembly || !gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return std::nullopt;
+  const GLint planes = integer(gl, GL_MAX_CLIP_PLANES);
+  for (GLint i = 0; i < planes; ++i) {
+    if (gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) return "clip planes cut what a vertex assembly program draws";
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> read_fixed_function_textures(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
+  if (context.fragment_assembly && gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB)) {
+    auto reason = read_assembly_textures(context, pipeline);
+    if (!reason && pipeline.volume.texture != 0) reason = read_vertex_assembly(context);
+    return reason;
+  }
   const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
   int enabled_units = 0;
   for (int unit = 0; unit < context.fixed_function_units; ++unit) {
@@ -95,46 +148,8 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   if (pipeline.volume.texture == 0) return std::nullopt;
   if (enabled_units > 1) return "more than one texture unit takes part in fixed function";
   if (pipeline.volume.unit != 0) return "the volume is not on texture unit 0 in fixed function";
-  if (gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB) || gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) {
-    return "an ARB assembly program is enabled";
-  }
+  if (auto reason = read_vertex_assembly(context)) return reason;
   if (gl.IsEnabled(GL_FOG)) return "fog is enabled";
-  return std::nullopt;
-}
-
-/// Bits of alpha in the framebuffer bound for drawing.
-GLint alpha_bits(const DispatchTable& gl) {
-  GLint buffer = 0;
-  gl.GetIntegerv(GL_DRAW_BUFFER0, &buffer);
-  if (buffer == GL_NONE) return 0;
-  GLenum attachment = GLenum(buffer);
-  // The window system's buffers are asked for one by one, not by the names that mean several.
-  if (buffer == GL_BACK || buffer == GL_FRONT_AND_BACK) attachment = GL_BACK_LEFT;
-  if (buffer == GL_FRONT || buffer == GL_LEFT) attachment = GL_FRONT_LEFT;
-  GLint type = GL_NONE;
-  GLint bits = 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
-                                         &type);
-  if (type == GL_NONE) return 0;
-  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE,
-                                         &bits);
-  return bits;
-}
-
-std::optional<std::string> read_alpha_result(const DispatchTable& gl, Pipeline& pipeline) {
-  const GLint source = integer(gl, GL_BLEND_SRC_ALPHA);
-  const GLint destination = integer(gl, GL_BLEND_DST_ALPHA);
-  std::array<GLboolean, 4> mask{};
-  gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
-  if (!mask[3] || (source == GL_ZERO && destination == GL_ONE) || alpha_bits(gl) == 0) {
-    pipeline.alpha = AlphaResult::untouched;
-  } else if (destination == GL_ONE_MINUS_SRC_ALPHA && source == GL_ONE) {
-    pipeline.alpha = AlphaResult::coverage;
-  } else if (destination == GL_ONE_MINUS_SRC_ALPHA && source == GL_SRC_ALPHA) {
-    pipeline.alpha = AlphaResult::squared_sum;
-  } else {
-    return "the blend function of alpha is not over";
-  }
   return std::nullopt;
 }
 
@@ -167,25 +182,25 @@ std::optional<std::string> read_queries(const GlContext& context) {
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
-  if (integer(gl, GL_BLEND_EQUATION_RGB) != GL_FUNC_ADD ||
-      integer(gl, GL_BLEND_EQUATION_ALPHA) != GL_FUNC_ADD) {
-    return "the blend equation is not addition";
-  }
-  const GLint source = integer(gl, GL_BLEND_SRC_RGB);
-  const GLint destination = integer(gl, GL_BLEND_DST_RGB);
-  if (destination != GL_ONE_MINUS_SRC_ALPHA || (source != GL_SRC_ALPHA && source != GL_ONE)) {
-    return "the blend function is not over";
-  }
-  pipeline.premultiplied = source == GL_ONE;
-  if (auto reason = read_alpha_result(gl, pipeline)) return reason;
+  pipeline.target = read_target(gl);
+  if (!pipeline.target.normalised && !pipeline.target.floating)
+    return "the framebuffer's colours are neither normalised nor float";
+  if (auto reason = read_blending(gl, pipeline.target, pipeline.blending)) return reason;
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
-  if (integer(gl, GL_SAMPLE_BUFFERS) > 0) return "the framebuffer is multisampled";
-  if (context.version >= 300 && gl.IsEnabled(GL_FRAMEBUFFER_SRGB)) return "sRGB conversion is enabled";
+  // With GL_MULTISAMPLE disabled all samples of a pixel get the same, but depth is still kept by sample.
+  if (integer(gl, GL_SAMPLE_BUFFERS) > 0 && (gl.IsEnabled(GL_MULTISAMPLE) || gl.IsEnabled(GL_DEPTH_TEST)))
+    return "the framebuffer is multisampled";
   if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
   std::array<GLint, 2> mode{};
   gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
   if (mode[0] != GL_FILL) return "polygons are not filled";
+  if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
+  if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
+  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
+                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
+    return "clip control turns or moves the view volume";
+  }
   pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
   if (pipeline.depth_test) {
     const GLint compare = integer(gl, GL_DEPTH_FUNC);
@@ -198,6 +213,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
       return "the depth function is neither LESS nor LEQUAL";
     }
     pipeline.depth_or_equal = compare == GL_LEQUAL;
+    if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
+      return "slices drawn front to back write depth, and so hide each other";
   }
   if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
     return "the application is in feedback or select mode";

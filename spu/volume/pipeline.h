@@ -8,8 +8,10 @@
 #include <variant>
 
 #include "spu/track/share_group.h"
+#include "spu/volume/blending.h"
 #include "spu/volume/context.h"
 #include "spu/volume/program_samplers.h"
+#include "spu/volume/target.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
@@ -23,21 +25,15 @@ struct SampledTexture {
   bool operator==(const SampledTexture&) const = default;
 };
 
-/// What the slices leave in the framebuffer's alpha.
-enum class AlphaResult {
-  untouched,    ///< no alpha in the framebuffer, or masked, or factors ZERO, ONE
-  coverage,     ///< factors ONE, 1 - SRC_ALPHA: 1 - T
-  squared_sum,  ///< factors SRC_ALPHA, 1 - SRC_ALPHA: the sum over slices of alpha^2 T
-};
-
 /// The pipeline of a run of slices.
 struct Pipeline {
   GLuint program = 0;          ///< 0: fixed function
+  bool assembly = false;       ///< fragments are an ARB assembly program's; `program` is 0
   bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
   SampledTexture volume;
   std::vector<SampledTexture> others;  ///< look-up tables of the program
-  bool premultiplied = false;          ///< source factor ONE instead of SRC_ALPHA
-  AlphaResult alpha = AlphaResult::coverage;
+  Blending blending;
+  Target target;
   bool depth_test = false;
   bool depth_or_equal = false;
   bool depth_write = false;

@@ -1,5 +1,7 @@
 #include "spu/volume/present.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "spu/volume/saved_state.h"
@@ -17,8 +19,10 @@ constexpr const char* fragment_source =
     "uniform ivec2 origin;\n"
     "out vec4 colour;\n"
     "uniform bool first_as_alpha;\n"
+    "uniform float shown;\n"
     "void main() {\n"
     "  colour = texelFetch(picture, ivec2(gl_FragCoord.xy) - origin, 0);\n"
+    "  if (shown >= 0.0) colour.rgb = clamp(colour.rgb - shown, 0.0, 1.0);\n"
     "  if (first_as_alpha) colour.a = colour.r;\n"
     "}\n";
 
@@ -29,6 +33,12 @@ GLuint compile(const DispatchTable& gl, GLenum stage, bool core, const char* sou
   gl.ShaderSource(shader, 1, &pointer, nullptr);
   gl.CompileShader(shader);
   return shader;
+}
+
+/// Blending that puts a picture made with `op` where its samples would have gone one by one.
+void set_blending(const DispatchTable& gl, volume::Operator op) {
+  gl.BlendEquation(op == volume::Operator::max ? GL_MAX : op == volume::Operator::min ? GL_MIN : GL_FUNC_ADD);
+  gl.BlendFunc(GL_ONE, op == volume::Operator::over ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE);
 }
 
 }  // namespace
@@ -53,20 +63,55 @@ bool Presenter::prepare() {
   }
   origin_ = gl.GetUniformLocation(program_, "origin");
   first_as_alpha_ = gl.GetUniformLocation(program_, "first_as_alpha");
+  shown_ = gl.GetUniformLocation(program_, "shown");
   gl.GenTextures(1, &texture_);
   gl.GenVertexArrays(1, &vertex_array_);
   return true;
 }
 
-void Presenter::draw(const volume::ImageView& image) const {
+void Presenter::show(const volume::ImageView& image) const {
   const DispatchTable& gl = *context_.gl;
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.rect.width, image.rect.height, 0, GL_RGBA, GL_FLOAT,
                 image.rgba.data());
+  gl.Uniform2i(origin_, image.rect.x, image.rect.y);
+  // The viewport is the rectangle: exactly its pixels are shaded. Outside of it the picture is neutral.
+  gl.Viewport(image.rect.x, image.rect.y, image.rect.width, image.rect.height);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Presenter::present(const volume::ImageView& image, AlphaResult result, const volume::ImageView* alpha) {
+void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView& image,
+                                      const std::array<GLboolean, 4>& mask) const {
+  const DispatchTable& gl = *context_.gl;
+  gl.BlendEquation(GL_FUNC_ADD);
+  if (kind == FrontToBack::room) {
+    gl.BlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+  } else {
+    gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+  }
+  // A framebuffer that is not float clamps colours before it weights them by the room left. Colours that shine
+  // above 1 go in portions, and alpha with the last of them.
+  float brightest = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    brightest = std::max({brightest, image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]});
+  constexpr float most_portions = 255;  // of the least room that 8 bits tell from none
+  const int portions = int(std::clamp(std::ceil(brightest), 1.0F, most_portions));
+  for (int portion = portions; portion-- > 0;) {
+    gl.ColorMask(mask[0], mask[1], mask[2], portion == 0 && mask[3]);
+    gl.Uniform1f(shown_, float(portion));
+    show(image);
+  }
+}
+
+void Presenter::present_alpha(const AlphaBlending& alpha, const volume::ImageView& image) const {
+  const DispatchTable& gl = *context_.gl;
   if (image.rect.empty()) return;
+  set_blending(gl, alpha.op == volume::Operator::over && alpha.squared ? volume::Operator::add : alpha.op);
+  gl.Uniform1i(first_as_alpha_, alpha.squared ? 1 : 0);
+  show(image);
+}
+
+void Presenter::present(const volume::ImageView& image, const Blending& blending,
+                        const volume::ImageView* alpha) {
   const DispatchTable& gl = *context_.gl;
   // The application's scissor and colour mask hold for its slices, so they hold for the picture.
   const GLboolean scissor = gl.IsEnabled(GL_SCISSOR_TEST);
@@ -80,26 +125,29 @@ void Presenter::present(const volume::ImageView& image, AlphaResult result, cons
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   gl.UseProgram(program_);
-  gl.Uniform2i(origin_, image.rect.x, image.rect.y);
   gl.Uniform1i(first_as_alpha_, 0);
+  gl.Uniform1f(shown_, -1);
   gl.BindVertexArray(vertex_array_);
-  // The viewport is the rectangle: exactly its pixels are shaded.
-  gl.Viewport(image.rect.x, image.rect.y, image.rect.width, image.rect.height);
   if (scissor) gl.Enable(GL_SCISSOR_TEST);
-  const bool over_alpha = mask[3] && result == AlphaResult::coverage;
-  gl.ColorMask(mask[0], mask[1], mask[2], over_alpha);
   gl.Enable(GL_BLEND);
-  gl.BlendEquation(GL_FUNC_ADD);
-  gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  draw(image);
-  if (!mask[3] || result != AlphaResult::squared_sum || alpha == nullptr) return;
-  // Alpha becomes sum + T * alpha; the blend unit has one source alpha, so: first the product, then the sum.
+  const bool apart = alpha != nullptr && blending.alpha_stands_apart();
+  if (!image.rect.empty()) {
+    gl.ColorMask(mask[0], mask[1], mask[2], mask[3] && !blending.alpha.untouched && !apart);
+    if (blending.front_to_back == FrontToBack::no) {
+      set_blending(gl, blending.op);
+      show(image);
+    } else {
+      present_front_to_back(blending.front_to_back, image, mask);
+    }
+  }
+  if (!apart || !mask[3]) return;
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-  gl.BlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl.Uniform1i(first_as_alpha_, 1);
-  gl.BlendFunc(GL_ONE, GL_ONE);
-  draw(*alpha);
+  if (blending.alpha.op == volume::Operator::over && blending.alpha.squared && !image.rect.empty()) {
+    // Alpha becomes sum + T * alpha; the blend unit has one source alpha, so: first the product, then the sum.
+    gl.BlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  present_alpha(blending.alpha, *alpha);
 }
 
 }  // namespace understudy::spu

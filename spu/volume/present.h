@@ -2,25 +2,30 @@
 // bound.
 #pragma once
 
+#include <array>
+
+#include "spu/volume/blending.h"
 #include "spu/volume/context.h"
-#include "spu/volume/pipeline.h"
 #include "volume/image.h"
 
 namespace understudy::spu {
 
-/// Draws premultiplied images under `ONE, 1 - SRC_ALPHA` with the application's scissor and colour mask. Holds
-/// one texture, one program and one vertex array of the context it was made in.
+/// Draws images under the blending of the slices they stand for, with the application's scissor and colour
+/// mask. Holds one texture, one program and one vertex array of the context it was made in.
 class Presenter {
  public:
   explicit Presenter(const GlContext& context) : context_(context) {}
 
-  /// Colour as the slices would have left it, and alpha as `result` says. The squared sum, where that is the
-  /// result, is the first channel of `alpha`, over the same rectangle as `image`.
-  void present(const volume::ImageView& image, AlphaResult result, const volume::ImageView* alpha);
+  /// Colour and alpha as the slices would have left them. `alpha` is the picture of alpha_as_colour() where
+  /// `blending.alpha_stands_apart()`.
+  void present(const volume::ImageView& image, const Blending& blending, const volume::ImageView* alpha);
 
  private:
   bool prepare();
-  void draw(const volume::ImageView& image) const;
+  void show(const volume::ImageView& image) const;
+  void present_front_to_back(FrontToBack kind, const volume::ImageView& image,
+                             const std::array<GLboolean, 4>& mask) const;
+  void present_alpha(const AlphaBlending& alpha, const volume::ImageView& image) const;
 
   const GlContext& context_;
   GLuint program_ = 0;
@@ -28,6 +33,7 @@ class Presenter {
   GLuint vertex_array_ = 0;
   GLint origin_ = -1;  ///< location of the uniform that places the rectangle
   GLint first_as_alpha_ = -1;
+  GLint shown_ = -1;  ///< how much of the colour has been drawn; negative: it is drawn in one
 };
 
 }  // namespace understudy::spu

@@ -19,8 +19,9 @@ struct Difference {
   double psnr() const;     ///< dB; infinite when equal
 };
 
-/// Draws `run` as the application would have, over transparent black, and compares it with `image`. Null when
-/// the driver cannot provide the framebuffer.
+/// Draws `run` as the application would have, over transparent black (white for a minimum), and compares it
+/// with `image`, both as the application's framebuffer could show them: clamped to [0,1], or, where it is
+/// float, as parts of the largest value. Null when the driver cannot provide the framebuffer.
 std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
                                                    const volume::RenderRequest& request,
                                                    const volume::ImageView& image);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "spu/track/track.h"
+#include "spu/volume/conditional_render.h"
 #include "spu/volume/depth.h"
 #include "spu/volume/depth_debt.h"
 #include "spu/volume/draw_slots.h"
@@ -117,6 +118,18 @@ void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
   key.push_back(value);
 }
 
+/// The other value of inputs that nobody tells: a colour that depends on one of them is not the sample's alone.
+constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
+
+/// What an assembly program may read besides the coordinate and the primary colour, and feedback does not tell.
+void append_untold_inputs(std::vector<StageInput>& inputs) {
+  constexpr int coordinate_sets = 8;
+  for (int set = 1; set < coordinate_sets; ++set)
+    inputs.push_back({fmt::format("gl_TexCoord[{}]", set), GL_FLOAT_VEC4, 4, false});
+  inputs.push_back({"gl_FrontSecondaryColor", GL_FLOAT_VEC4, 4, false});
+  inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
+}
+
 /// Magenta wherever the volume is: a picture that proves where it came from.
 void tint(volume::Image& picture) {
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -127,18 +140,13 @@ void tint(volume::Image& picture) {
   }
 }
 
-/// The classification whose picture holds, in its first channel, the sum of alpha^2 T: what blending alpha with
-/// SRC_ALPHA leaves in the framebuffer's alpha.
-volume::Classification squared_alpha(const volume::Classification& classification) {
-  if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {
-    volume::TransferFunction squared = *function;
-    for (volume::Rgba& entry : squared.entries) entry = {entry[3] * entry[3], 0, 0, entry[3]};
-    return squared;
-  }
-  volume::LinearMap map = std::get<volume::LinearMap>(classification);
-  for (std::size_t column = 0; column < 4; ++column) map.matrix[column] = map.matrix[12 + column];
-  map.multiply_by_alpha = true;
-  return map;
+/// The order in which slices must be drawn for the nodes' operator to do the same.
+SliceOrder order_of(const Pipeline& pipeline) {
+  if (pipeline.blending.front_to_back != FrontToBack::no) return SliceOrder::front_to_back;
+  // Slices that write depth hide whatever comes later and lies behind them.
+  const bool matters =
+      pipeline.blending.op == volume::Operator::over || pipeline.blending.alpha.op == volume::Operator::over;
+  return matters || (pipeline.depth_test && pipeline.depth_write) ? SliceOrder::back_to_front : SliceOrder::any;
 }
 
 /// Texels of `size` that samples of `region` read, linear filter included.
@@ -217,6 +225,7 @@ const GlContext& VolumeUnit::context() {
 }
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
+  if (phase == Phase::plain) fill_conditional_render_slots(table);
   if (phase == Phase::watching) fill_watching_slots(table);
   if (phase == Phase::owing) fill_owing_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
@@ -259,6 +268,7 @@ bool VolumeUnit::opens_run() {
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
     reason = known(texture).given_back;
+    if (conditional_render) reason = "the slices are rendered conditionally";
     if (reason.empty() && chain_.group().is_rendered_to(texture))
       reason = "the volume texture is rendered into, or another texture shares its texels";
   }
@@ -337,6 +347,7 @@ void VolumeUnit::observe(Substitution& s) {
   } else {
     s.fragment.inputs = {{"gl_TexCoord[0]", GL_FLOAT_VEC4, 4, false},
                          {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
+    if (s.pipeline.assembly) append_untold_inputs(s.fragment.inputs);
   }
   if (gl.IsEnabled(GL_COLOR_SUM)) throw Doubt{"a secondary colour is added after texturing"};
   GLint colour_control = 0;
@@ -354,11 +365,14 @@ void VolumeUnit::observe(Substitution& s) {
       s.fragment.first.push_back({});
     } else if (input.name == "gl_FrontColor") {
       s.fragment.first.push_back(s.polygons.primary_colour);
+    } else if (s.pipeline.assembly) {
+      s.fragment.first.push_back({0.25F, 0.25F, 0.25F, 1});
     } else {
       throw Doubt{"the fragment shader reads " + input.name + ", which feedback does not tell"};
     }
   }
   s.fragment.last = s.fragment.first;
+  if (s.pipeline.assembly) std::fill(s.fragment.last.begin() + 2, s.fragment.last.end(), untold_value);
 }
 
 void VolumeUnit::find_geometry(Substitution& s) {
@@ -368,7 +382,7 @@ void VolumeUnit::find_geometry(Substitution& s) {
   if (s.polygons.clipped) {
     s.request.clip_planes = clip_planes_in_texture_space(*context().gl, s.fit->texture_to_clip);
   }
-  SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes);
+  SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes, order_of(s.pipeline));
   if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
   s.slices = std::get<SliceSet>(finding);
 }
@@ -423,8 +437,13 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
 void VolumeUnit::classify(Substitution& s) {
   const DispatchTable& gl = *context().gl;
   KnownVolume& known = s.volume;
-  std::vector<float> key{known.range[0], known.range[1], s.pipeline.premultiplied ? 1.0F : 0.0F,
-                         float(known.texture.base), float(known.texture.type)};
+  std::vector<float> key{known.range[0],
+                         known.range[1],
+                         s.pipeline.blending.premultiplied ? 1.0F : 0.0F,
+                         float(known.texture.base),
+                         float(known.texture.type),
+                         float(s.pipeline.blending.op),
+                         s.pipeline.target.floating ? 1.0F : 0.0F};
   for (const GLint swizzle : known.texture.swizzle) key.push_back(float(swizzle));
   if (!context().core) append_alpha_test(gl, key);
   if (s.fragment.record != nullptr) {
@@ -432,6 +451,8 @@ void VolumeUnit::classify(Substitution& s) {
     const auto values =
         fragment_uniform_values(context(), s.pipeline.program, stages(s.pipeline.program, *s.fragment.record));
     key.insert(key.end(), values.begin(), values.end());
+  } else if (s.pipeline.assembly) {
+    key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
   } else {
     append_fixed_function_state(gl, key);
   }
@@ -473,6 +494,7 @@ void VolumeUnit::compose_request(Substitution& s) {
   request.texture_to_clip = s.fit->texture_to_clip;
   request.planes = s.slices.planes;
   request.region = s.slices.region;
+  request.op = s.pipeline.blending.op;
   request.filter = s.volume.texture.filter;
   if (s.pipeline.depth_test) {
     request.depth =
@@ -514,6 +536,7 @@ void VolumeUnit::explain(const Substitution& s) {
                   std::holds_alternative<volume::LinearMap>(s.request.classification)
                       ? "colours in the texels"
                       : (s.pipeline.program != 0 ? "table probed from the program"
+                         : s.pipeline.assembly   ? "table probed from the assembly program"
                                                  : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));
@@ -537,9 +560,10 @@ void VolumeUnit::substitute(const Run& run) {
   verify(s, rendered.image);
 
   // The service's picture is gone with its next answer.
+  const Blending& blending = s.pipeline.blending;
   volume::Image picture;
   volume::ImageView shown = rendered.image;
-  if (options.debug_tint || s.pipeline.alpha == AlphaResult::squared_sum) {
+  if (options.debug_tint || blending.alpha_stands_apart()) {
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
@@ -551,13 +575,14 @@ void VolumeUnit::substitute(const Run& run) {
   }
   if (options.debug_tint) tint(picture);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
-  if (s.pipeline.alpha == AlphaResult::squared_sum) {
-    s.request.classification = squared_alpha(s.request.classification);
-    const compositor::Rendered squares = service.render(s.request);
-    counts += squares.counts;
-    presenter_->present(shown, s.pipeline.alpha, &squares.image);
+  if (blending.alpha_stands_apart()) {
+    s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
+    s.request.op = blending.alpha.op;
+    const compositor::Rendered alpha = service.render(s.request);
+    counts += alpha.counts;
+    presenter_->present(shown, blending, &alpha.image);
   } else {
-    presenter_->present(shown, s.pipeline.alpha, nullptr);
+    presenter_->present(shown, blending, nullptr);
   }
   settle_depth(s);
   if (s.volume.frames == 0 || options.explain) explain(s);

@@ -61,6 +61,8 @@ class VolumeUnit final : public Unit {
   /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of
   /// OpenGL.
   bool inside_begin = false;
+  /// Between glBeginConditionalRender and glEndConditionalRender, where our own drawing may do nothing.
+  bool conditional_render = false;
 
   /// The depth that the last substituted slices would have written is being used; or is gone, unused.
   void depth_looked_at();

@@ -20,8 +20,10 @@ std::vector<Refusal> refusals() {
        [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},
       {"lines", "polygons are not filled",
        [](GlApplication& a) { a.gl().PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
-      {"maximum blending", "the blend equation is not addition",
-       [](GlApplication& a) { a.gl().BlendEquation(GL_MAX); }},
+      {"a subtraction", "the blend equation is a subtraction",
+       [](GlApplication& a) { a.gl().BlendEquation(GL_FUNC_REVERSE_SUBTRACT); }},
+      {"a subtraction of alpha", "the blend equation of alpha is a subtraction",
+       [](GlApplication& a) { a.gl().BlendEquationSeparate(GL_FUNC_ADD, GL_FUNC_REVERSE_SUBTRACT); }},
       {"a depth function that keeps what is farther", "the depth function is neither LESS nor LEQUAL",
        [](GlApplication& a) {
          a.gl().Enable(GL_DEPTH_TEST);
@@ -38,6 +40,33 @@ std::vector<Refusal> refusals() {
       {"mip-mapping", "the texture is mip-mapped or filtered differently when minified",
        [](GlApplication& a) {
          a.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+       }},
+      {"smoothed polygons", "polygons are smoothed",
+       [](GlApplication& a) { a.gl().Enable(GL_POLYGON_SMOOTH); }},
+      {"stippled polygons", "polygons are stippled",
+       [](GlApplication& a) { a.gl().Enable(GL_POLYGON_STIPPLE); }},
+      {"an origin at the upper left", "clip control turns or moves the view volume",
+       [](GlApplication& a) { a.gl().ClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE); }},
+      {"conditional rendering", "the slices are rendered conditionally",
+       [](GlApplication& a) {
+         GLuint query = 0;
+         a.gl().GenQueries(1, &query);
+         a.gl().BeginQuery(GL_SAMPLES_PASSED, query);
+         a.gl().EndQuery(GL_SAMPLES_PASSED);
+         // No sample has passed: nothing of what follows is drawn.
+         a.gl().BeginConditionalRender(query, GL_QUERY_WAIT);
+       }},
+      {"a query that counts primitives", "a query counts the primitives of the slices",
+       [](GlApplication& a) {
+         GLuint query = 0;
+         a.gl().GenQueries(1, &query);
+         a.gl().BeginQuery(GL_PRIMITIVES_GENERATED, query);
+       }},
+      {"a query of pipeline statistics", "a query counts what the slices' pipeline does",
+       [](GlApplication& a) {
+         GLuint query = 0;
+         a.gl().GenQueries(1, &query);
+         a.gl().BeginQuery(GL_FRAGMENT_SHADER_INVOCATIONS, query);
        }},
       {"an occlusion query", "an occlusion query surrounds the slices",
        [](GlApplication& a) {

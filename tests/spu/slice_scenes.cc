@@ -127,7 +127,15 @@ void SliceScene::draw_to_the_last_slice(GlApplication& app, double angle) const 
   slices(app, angle);
 }
 
+SliceBlending usual_blending() {
+  return {[](const DispatchTable& gl) { gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA); }};
+}
+
 SliceScene immediate_rgba() {
+  return immediate_rgba(usual_blending());
+}
+
+SliceScene immediate_rgba(const SliceBlending& blending) {
   SliceScene scene{"glBegin/glEnd quads, fixed function, RGBA8 voxels"};
   scene.set_up = [](GlApplication& app) {
     const Blob blob;
@@ -142,17 +150,19 @@ SliceScene immediate_rgba() {
     app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, blob.x, blob.y, blob.z, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                         colours.data());
   };
-  scene.slices = [](GlApplication& app, double angle) {
+  scene.slices = [blending](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
-    blend_over(app.gl());
+    app.gl().Enable(GL_BLEND);
+    blending.set(app.gl());
     app.gl().Enable(GL_TEXTURE_3D);
     app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
     app.gl().Color4f(1, 0.8F, 0.9F, 1);
     for (int i = 0; i < slices; ++i) {
+      const double z = slice_z(blending.front_to_back ? slices - 1 - i : i);
       app.gl().Begin(GL_QUADS);
       for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
-        app.gl().TexCoord3d(x, y, slice_z(i));
-        app.gl().Vertex3d(x, y, slice_z(i));
+        app.gl().TexCoord3d(x, y, z);
+        app.gl().Vertex3d(x, y, z);
       }
       app.gl().End();
     }
@@ -240,6 +250,10 @@ SliceScene display_list_texgen() {
 }
 
 SliceScene client_arrays_table() {
+  return client_arrays_table(usual_blending());
+}
+
+SliceScene client_arrays_table(const SliceBlending& blending) {
   SliceScene scene{"one client array refilled for every slice, GLSL 1.20 fragments with a 1-D table"};
   auto name = std::make_shared<GLuint>(0);
   scene.set_up = [name](GlApplication& app) {
@@ -256,9 +270,10 @@ SliceScene client_arrays_table() {
     app.gl().UseProgram(0);
   };
   auto array = std::make_shared<std::array<GLfloat, 12>>();
-  scene.slices = [name, array](GlApplication& app, double angle) {
+  scene.slices = [name, array, blending](GlApplication& app, double angle) {
     fixed_function_camera(app.gl(), angle);
-    blend_over(app.gl());
+    app.gl().Enable(GL_BLEND);
+    blending.set(app.gl());
     app.gl().UseProgram(*name);
     std::array<GLfloat, 12>& corners = *array;
     app.gl().EnableClientState(GL_VERTEX_ARRAY);
@@ -266,7 +281,7 @@ SliceScene client_arrays_table() {
     app.gl().VertexPointer(3, GL_FLOAT, 0, corners.data());
     app.gl().TexCoordPointer(3, GL_FLOAT, 0, corners.data());
     for (int i = 0; i < slices; ++i) {
-      quad_corners(slice_z(i), corners);
+      quad_corners(slice_z(blending.front_to_back ? slices - 1 - i : i), corners);
       app.gl().DrawArrays(GL_TRIANGLE_FAN, 0, 4);
     }
   };
@@ -314,6 +329,81 @@ SliceScene vertex_shader_varying() {
     app.gl().DisableVertexAttribArray(3);
     app.gl().UseProgram(0);
     app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene assembly_program(bool two_dimensional_table) {
+  SliceScene scene{two_dimensional_table ? "ARB vertex and fragment programs with a 2-D table"
+                                         : "ARB fragment program with a 1-D table"};
+  auto names = std::make_shared<std::array<GLuint, 2>>();
+  const auto load = [](const DispatchTable& gl, GLenum target, GLuint name, const std::string& text) {
+    gl.BindProgramARB(target, name);
+    gl.ProgramStringARB(target, GL_PROGRAM_FORMAT_ASCII_ARB, GLsizei(text.size()), text.data());
+  };
+  scene.set_up = [names, load, two_dimensional_table](GlApplication& app) {
+    const DispatchTable& gl = app.gl();
+    scalar_texture(gl, GL_LUMINANCE8, GL_LUMINANCE);
+    gl.GenProgramsARB(2, names->data());
+    if (!two_dimensional_table) {
+      table_texture(gl);
+      load(gl, GL_FRAGMENT_PROGRAM_ARB, (*names)[0],
+           "!!ARBfp1.0\n"
+           "TEMP field;\n"
+           "TEX field, fragment.texcoord[0], texture[0], 3D;\n"
+           "TEX result.color, field, texture[1], 1D;\n"
+           "END\n");
+      return;
+    }
+    std::vector<float> table;
+    for (int row = 0; row < 4; ++row) {
+      for (int i = 0; i < 64; ++i) {
+        const float s = float(i) / 63;
+        table.insert(table.end(), {s, row == 2 ? 1 - s : 0.0F, 0.5F, 0.2F * s * s});
+      }
+    }
+    GLuint texture = 0;
+    gl.GenTextures(1, &texture);
+    gl.ActiveTexture(GL_TEXTURE1);
+    gl.BindTexture(GL_TEXTURE_2D, texture);
+    filter(gl, GL_TEXTURE_2D, GL_LINEAR);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 64, 4, 0, GL_RGBA, GL_FLOAT, table.data());
+    gl.ActiveTexture(GL_TEXTURE0);
+    load(gl, GL_FRAGMENT_PROGRAM_ARB, (*names)[0],
+         "!!ARBfp1.0\n"
+         "TEMP field, colour;\n"
+         "TEX field, fragment.texcoord[0], texture[0], 3D;\n"
+         "MOV field.y, 0.625;\n"
+         "TEX colour, field, texture[1], 2D;\n"
+         "MUL result.color, colour, program.local[0];\n"
+         "END\n");
+    gl.ProgramLocalParameter4fARB(GL_FRAGMENT_PROGRAM_ARB, 0, 1, 0.75F, 1, 0.8F);
+    load(gl, GL_VERTEX_PROGRAM_ARB, (*names)[1],
+         "!!ARBvp1.0\n"
+         "OPTION ARB_position_invariant;\n"
+         "MOV result.texcoord[0], vertex.texcoord[0];\n"
+         "END\n");
+  };
+  scene.slices = [names, two_dimensional_table](GlApplication& app, double angle) {
+    fixed_function_camera(app.gl(), angle);
+    blend_over(app.gl());
+    app.gl().Enable(GL_FRAGMENT_PROGRAM_ARB);
+    app.gl().BindProgramARB(GL_FRAGMENT_PROGRAM_ARB, (*names)[0]);
+    if (two_dimensional_table) {
+      app.gl().Enable(GL_VERTEX_PROGRAM_ARB);
+      app.gl().BindProgramARB(GL_VERTEX_PROGRAM_ARB, (*names)[1]);
+    }
+    app.gl().Begin(GL_QUADS);
+    for (int i = 0; i < slices; ++i) {
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        app.gl().TexCoord3d(x, y, slice_z(i));
+        app.gl().Vertex3d(x, y, slice_z(i));
+      }
+    }
+    app.gl().End();
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    for (const GLenum off : {GL_FRAGMENT_PROGRAM_ARB, GL_VERTEX_PROGRAM_ARB, GL_BLEND}) app.gl().Disable(off);
   };
   return scene;
 }
@@ -367,8 +457,8 @@ SliceScene core_batched() {
 }
 
 std::vector<SliceScene> all_slice_scenes() {
-  return {immediate_rgba(), display_list_texgen(), client_arrays_table(), vertex_shader_varying(),
-          core_batched()};
+  return {immediate_rgba(),        display_list_texgen(),  client_arrays_table(), vertex_shader_varying(),
+          assembly_program(false), assembly_program(true), core_batched()};
 }
 
 }  // namespace understudy::spu::testing

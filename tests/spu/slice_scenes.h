@@ -24,15 +24,28 @@ struct SliceScene {
   void draw_to_the_last_slice(GlApplication& app, double angle) const;
 };
 
+/// How a scene's slices go on top of each other.
+struct SliceBlending {
+  std::function<void(const DispatchTable&)> set;  ///< equation and factors
+  bool front_to_back = false;
+};
+/// SRC_ALPHA, 1 - SRC_ALPHA, back to front.
+SliceBlending usual_blending();
+
 /// glBegin/glEnd quads, fixed function, RGBA8 voxels.
 SliceScene immediate_rgba();
+SliceScene immediate_rgba(const SliceBlending& blending);
 /// A display list of quads with eye-linear texgen, six clip planes, lighting with a constant normal, an alpha
 /// test, and an INTENSITY texture padded to powers of two: what osgvolume does.
 SliceScene display_list_texgen();
 /// GLSL 1.20 fragment shader on gl_TexCoord[0] with a 1-D table; one client array refilled for every slice.
 SliceScene client_arrays_table();
+SliceScene client_arrays_table(const SliceBlending& blending);
 /// GLSL 1.20 with a vertex shader and a varying of its own.
 SliceScene vertex_shader_varying();
+/// An ARB fragment program whose second look-up depends on the first: a 1-D table, or a 2-D one under an ARB
+/// vertex program.
+SliceScene assembly_program(bool two_dimensional_table);
 /// Core profile, vertex buffer, one batched draw of triangles with uniforms.
 SliceScene core_batched();
 

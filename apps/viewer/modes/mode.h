@@ -3,6 +3,11 @@
 //   rgba   colours looked up per voxel on the CPU, RGBA8 texture, fixed function, immediate mode
 //   table  scalar texture, colours looked up per fragment in a 1-D texture (GLSL 1.20), vertex arrays
 //   core   the same look-up in an OpenGL 3.3 core profile, all slices in one batch from a vertex buffer
+//   time   as table, with a new time step in the texture every frame
+//   bricks as table, with many small textures in visibility order
+//   lit    as table, with directional light on the field's surfaces
+//   preint pre-integrated slabs: two samples and a 2-D table a fragment
+//   stacks three stacks of 2-D textures instead of one 3-D texture
 #pragma once
 
 #include <memory>
@@ -18,7 +23,7 @@
 
 namespace viewer {
 
-enum class ModeKind { rgba, table, core };
+enum class ModeKind { rgba, table, core, time, bricks, lit, preint, stacks };
 
 std::string_view name_of(ModeKind kind);
 std::optional<ModeKind> mode_named(std::string_view name);
@@ -33,6 +38,8 @@ class Mode {
 
   /// The colours of all slices drawn from now on.
   virtual void set_table(const Table& table) = 0;
+  /// Before anything of a frame is drawn.
+  virtual void next_frame() {}
   virtual void draw_opaque(const OpaqueGeometry& geometry, const Matrices& matrices) = 0;
   /// Blending and depth state are the caller's.
   virtual void draw_slices(const SliceStack& stack, const Matrices& matrices) = 0;
@@ -40,7 +47,7 @@ class Mode {
   virtual std::string_view texture_format() const = 0;
 };
 
-/// Needs a current context: compatibility for rgba and table, 3.3 core for core. `file` names the volume in
+/// Needs a current context: 3.3 core for core, compatibility for all others. `file` names the volume in
 /// errors. Throws Error when the volume does not fit the texture limits, or OpenGL refuses.
 std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file);
 

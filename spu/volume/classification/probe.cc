@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
 
@@ -56,21 +57,25 @@ class Bench {
   /// Texels of the probe volume: width x height x 1, `components` floats each.
   void show(GLenum internal_format, GLenum format, int width, int height, const std::vector<float>& texels,
             const std::array<GLint, 4>& swizzle, bool with_swizzle) {
+    show(internal_format, format, {width, height, 1}, texels, GL_NEAREST, swizzle, with_swizzle);
+  }
+  void show(GLenum internal_format, GLenum format, const std::array<int, 3>& size,
+            const std::vector<float>& texels, GLenum filter, const std::array<GLint, 4>& swizzle,
+            bool with_swizzle) {
     gl_.BindTexture(GL_TEXTURE_3D, texture_);
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GLint(filter));
+    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GLint(filter));
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
       gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
     }
     if (with_swizzle) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), width, height, 1, 0, format, GL_FLOAT,
+    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), size[0], size[1], size[2], 0, format, GL_FLOAT,
                    texels.data());
   }
 
-  /// One fragment a pixel; a pixel whose fragment was discarded stays zero.
-  Picture draw(const InputValues& values, bool with_alpha_test) {
-    constexpr std::array<float, 4> nothing{};
-    gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`.
+  Picture draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {}) {
+    gl_.ClearBufferfv(GL_COLOR, 0, background.data());
     if (with_alpha_test && alpha_test_) gl_.Enable(GL_ALPHA_TEST);
     gl_.UseProgram(program_);
     const GLint location = gl_.GetUniformLocation(program_, "understudy_value");
@@ -146,6 +151,58 @@ bool finite(const Picture& picture) {
   });
 }
 
+/// Whether colours change where the field has a slope: the application looks at more than one place, which flat
+/// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
+/// for about its value.
+bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescription& texture,
+                     const std::array<float, 2>& range, const InputValues& inputs, const Picture& table) {
+  constexpr int weight_error = 32;  // entries: hardware may weight texels by 8 bits
+  constexpr std::array<double, 3> slope{1.0 / 6, 2.0 / 6, 3.0 / 6};
+  const double extent = double(range[1]) - range[0];
+  std::vector<float> texels;
+  for (int i = 0; i < 8; ++i) {
+    const double place = (i & 1) * slope[0] + (i >> 1 & 1) * slope[1] + (i >> 2) * slope[2];
+    texels.push_back(float(range[0] + place * extent));
+  }
+  bench.show(probe_format(texture.base), upload_format(texture.base), {2, 2, 2}, texels, GL_LINEAR,
+             texture.swizzle, context.version >= 330);
+  const Picture picture = bench.draw(inputs, true);
+  // Between the texels' centres, and away from them: the slope has a bend there.
+  for (int y = edge / 4 + 2; y < 3 * edge / 4 - 2; ++y) {
+    for (int x = edge / 4 + 2; x < 3 * edge / 4 - 2; ++x) {
+      const double place =
+          slope[0] * ((x + 0.5) / edge * 2 - 0.5) + slope[1] * ((y + 0.5) / edge * 2 - 0.5) + slope[2] * 0.5;
+      const int entry = int(std::lround(place * (probed_entries - 1)));
+      const volume::Rgba& colour = picture[std::size_t(y * edge + x)];
+      for (std::size_t c = 0; c < 4; ++c) {
+        float low = std::numeric_limits<float>::max();
+        float high = std::numeric_limits<float>::lowest();
+        for (int i = std::max(entry - weight_error, 0); i <= std::min(entry + weight_error, probed_entries - 1);
+             ++i) {
+          low = std::min(low, table[std::size_t(i)][c]);
+          high = std::max(high, table[std::size_t(i)][c]);
+        }
+        if (!(colour[c] >= low - same_colour && colour[c] <= high + same_colour)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Whether texels in [0,1] may give colours outside of it.
+bool leaves_unit_interval(const std::array<float, 16>& matrix) {
+  for (std::size_t row = 0; row < 4; ++row) {
+    float low = 0;
+    float high = 0;
+    for (std::size_t column = 0; column < 4; ++column) {
+      low += std::min(matrix[4 * row + column], 0.0F);
+      high += std::max(matrix[4 * row + column], 0.0F);
+    }
+    if (low < -same_colour || high > 1 + same_colour) return true;
+  }
+  return false;
+}
+
 ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                          const TextureDescription& texture, const FragmentInputs& fragment,
                          const std::array<float, 2>& range) {
@@ -163,6 +220,11 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   const Picture table = bench.draw(first, true);
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
+  // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
+  if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
+    if (bench.draw(first, true, {1, 1, 1, 1}) != table) return "fragments are discarded under a minimum";
+  }
+
   // The same samples with other coordinates and other inputs: a single texel, spread over the whole picture.
   for (const int entry :
        {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
@@ -174,14 +236,22 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
     }
   }
 
+  if (sees_neighbours(bench, context, texture, range, first, table))
+    return "the colour depends on the field around the sample (gradient, lighting)";
+
   volume::TransferFunction function;
   function.low = range[0];
   function.high = range[1];
   function.entries.assign(table.begin(), table.begin() + probed_entries);
   for (volume::Rgba& entry : function.entries) {
-    // The application's framebuffer clamps fragments before it blends them.
-    for (float& component : entry) component = std::clamp(component, 0.0F, 1.0F);
-    if (pipeline.premultiplied) continue;
+    // The application's framebuffer clamps fragments before it blends them, unless it is float.
+    if (pipeline.target.floating) {
+      const bool composable = *std::min_element(entry.begin(), entry.end()) >= 0 && entry[3] <= 1;
+      if (!composable) return "the colours leave [0,1] in a float framebuffer";
+    } else {
+      for (float& component : entry) component = std::clamp(component, 0.0F, 1.0F);
+    }
+    if (pipeline.blending.premultiplied) continue;
     for (std::size_t c = 0; c < 3; ++c) entry[c] *= entry[3];
   }
   return volume::Classification{std::move(function)};
@@ -190,7 +260,7 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
 ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                        const TextureDescription& texture, const FragmentInputs& fragment) {
   volume::LinearMap map;
-  map.multiply_by_alpha = !pipeline.premultiplied;
+  map.multiply_by_alpha = !pipeline.blending.premultiplied;
   if (bench.alpha_test_enabled()) {
     const DispatchTable& gl = *context.gl;
     GLint compare = 0;
@@ -225,6 +295,8 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
     if (!(largest_difference(mapped[i], expected) <= same_colour))
       return "the map of a colour volume is not linear";
   }
+  if (pipeline.target.floating && leaves_unit_interval(map.matrix))
+    return "the colours leave [0,1] in a float framebuffer";
   bench.show(GL_RGBA32F, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, 0.5F}, texture.swizzle, context.version >= 330);
   const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
   for (std::size_t row = 0; row < 4; ++row) {

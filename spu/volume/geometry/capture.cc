@@ -1,5 +1,6 @@
 #include "spu/volume/geometry/capture.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace understudy::spu {
@@ -96,6 +97,14 @@ InputValues values_at(std::span<const float> vertex, const ProgramStages& stages
   return values;
 }
 
+bool within_texture(std::span<const ObservedVertex> vertices) {
+  constexpr double slack = 1e-4;
+  return std::all_of(vertices.begin(), vertices.end(), [](const ObservedVertex& vertex) {
+    return std::all_of(vertex.texture.begin(), vertex.texture.end(),
+                       [](double t) { return t >= -slack && t <= 1 + slack; });
+  });
+}
+
 }  // namespace
 
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages) {
@@ -130,21 +139,31 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
     if (v % 3 == 2) polygons.first.push_back(v + 1);
   }
 
+  // Of several that are affine maps of the position (a place in the world, a second coordinate), the one that
+  // stays within the texture addresses it.
+  const auto take_coordinates = [&](std::size_t at) {
+    for (std::size_t v = 0; v < vertices; ++v) {
+      for (std::size_t c = 0; c < 3; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
+    }
+  };
+  std::size_t chosen = 0;
   std::size_t at = 4;
   for (const StageInput& input : stages.inputs) {
-    if (!input.integer && input.components >= 3) {
-      for (std::size_t v = 0; v < vertices; ++v) {
-        for (std::size_t c = 0; c < 3; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
-      }
-      const auto fit = fit_camera(polygons.vertices);
-      if (fit && fit->residual <= max_fit_residual) {
-        capture.coordinate = input.name;
-        capture.fit = fit;
-        return capture;
-      }
-    }
+    const std::size_t here = at;
     at += std::size_t(input.components);
+    if (input.integer || input.components < 3) continue;
+    take_coordinates(here);
+    const auto fit = fit_camera(polygons.vertices);
+    if (!fit || fit->residual > max_fit_residual) continue;
+    const bool inside = within_texture(polygons.vertices);
+    if (!capture.fit || inside) {
+      capture.coordinate = input.name;
+      capture.fit = fit;
+      chosen = here;
+    }
+    if (inside) return capture;
   }
+  if (capture.fit) take_coordinates(chosen);
   return capture;
 }
 

@@ -95,7 +95,7 @@ double depth_at(const volume::Matrix4& a, const Vec3& t) {
 }  // namespace
 
 SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
-                         std::span<const volume::HalfSpace> clip_planes) {
+                         std::span<const volume::HalfSpace> clip_planes, SliceOrder order) {
   std::vector<Vec3> points;
   // One normal for all slices: the sum of all area vectors, turned to agree, outweighs slivers.
   Vec3 normal{};
@@ -164,7 +164,11 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
   Vec3 beyond = middle;
   for (int k = 0; k < 3; ++k) beyond[k] += 1e-3 * (set.planes.spacing < 0 ? -normal[k] : normal[k]);
   if (depth_at(camera.texture_to_clip, beyond) < depth_at(camera.texture_to_clip, middle)) {
-    return "slices are drawn front to back under a back-to-front blend";
+    if (order == SliceOrder::back_to_front) return "slices are drawn front to back under a back-to-front blend";
+    set.planes.first = offsets.front();
+    set.planes.spacing = step;
+  } else if (order == SliceOrder::front_to_back) {
+    return "slices are drawn back to front under a front-to-back blend";
   }
 
   std::vector<HalfSpace> cuts(clip_planes.begin(), clip_planes.end());

@@ -12,9 +12,12 @@
 namespace understudy::spu {
 
 struct SliceSet {
-  volume::SlicePlanes planes;  ///< plane 0 is the one drawn last, nearest to the eye
+  volume::SlicePlanes planes;  ///< plane 0 is nearest to the eye
   volume::Box region;          ///< the box of texture space that the slices fill
 };
+
+/// The order of drawing under which a blending means what the nodes do.
+enum class SliceOrder { back_to_front, front_to_back, any };
 
 /// Either the slices, or why they are none, in words that end in the report ("slices are not equally spaced").
 using SliceFinding = std::variant<SliceSet, std::string>;
@@ -23,6 +26,7 @@ using SliceFinding = std::variant<SliceSet, std::string>;
 /// out of the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the
 /// check.
 SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
-                         std::span<const volume::HalfSpace> clip_planes);
+                         std::span<const volume::HalfSpace> clip_planes,
+                         SliceOrder order = SliceOrder::back_to_front);
 
 }  // namespace understudy::spu

@@ -1,0 +1,29 @@
+// What the modes with a colour table in GLSL 1.20 share: a program that looks texels up in a table, and one
+// triangle fan per slice from client vertex arrays.
+#pragma once
+
+#include <string>
+
+#include "apps/viewer/modes/gl_objects.h"
+#include "apps/viewer/modes/mode.h"
+
+namespace viewer {
+
+class TableSlices {
+ public:
+  /// Uniforms `volume` (unit 0) and `table` (unit 1); null sources: the plain look-up. `name` names the program
+  /// in errors.
+  explicit TableSlices(const std::string& name, const char* vertex_source = nullptr,
+                       const char* fragment_source = nullptr);
+
+  GLuint program() const { return program_.name(); }
+  const Texture& table() const { return table_; }
+  /// Draws the stack through a 3-D texture.
+  void draw(const SliceStack& stack, const Matrices& matrices, const Texture& volume) const;
+
+ private:
+  Texture table_;
+  Program program_;
+};
+
+}  // namespace viewer

@@ -1,0 +1,14 @@
+// As the table mode, but every frame shows another time step, uploaded into the same texture: the volume,
+// brighter and darker by turns. 8 bits.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/viewer/modes/mode.h"
+
+namespace viewer {
+
+std::unique_ptr<Mode> make_time_mode(const Texels& texels, const std::string& file);
+
+}  // namespace viewer

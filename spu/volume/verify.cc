@@ -64,11 +64,10 @@ double Difference::psnr() const {
   return mean_square > 0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
-                                                   const volume::RenderRequest& request,
-                                                   const volume::ImageView& image) {
+std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+                                                      const volume::RenderRequest& request,
+                                                      const volume::Rect& rect) {
   const DispatchTable& gl = *context.gl;
-  const volume::Rect& rect = image.rect;
   if (rect.empty() || request.viewport.x < 0 || request.viewport.y < 0) return std::nullopt;
   const int width = request.viewport.x + request.viewport.width;
   const int height = request.viewport.y + request.viewport.height;
@@ -97,14 +96,38 @@ std::optional<Difference> compare_with_application(const GlContext& context, con
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
   gl.BlendFuncSeparate(GLenum(factors[0]), GLenum(factors[1]), GLenum(factors[2]), GLenum(factors[3]));
 
+  return drawn;
+}
+
+Difference difference_between(const volume::Rect& rect, std::span<const float> drawn,
+                              const volume::ImageView& image) {
   Difference difference;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const double d = std::abs(double(drawn[i]) - image.rgba[i]);
-    difference.max = std::max(difference.max, d);
-    difference.mean_square += d * d;
+  const volume::Rect& inside = image.rect;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      const bool known =
+          x >= inside.x && y >= inside.y && x < inside.x + inside.width && y < inside.y + inside.height;
+      const std::size_t ours =
+          4 * (std::size_t(y - inside.y) * std::size_t(inside.width) + std::size_t(x - inside.x));
+      const std::size_t theirs =
+          4 * (std::size_t(y - rect.y) * std::size_t(rect.width) + std::size_t(x - rect.x));
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double d = std::abs(double(drawn[theirs + c]) - (known ? double(image.rgba[ours + c]) : 0.0));
+        difference.max = std::max(difference.max, d);
+        difference.mean_square += d * d;
+      }
+    }
   }
   difference.mean_square /= double(drawn.size());
   return difference;
+}
+
+std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
+                                                   const volume::RenderRequest& request,
+                                                   const volume::ImageView& image) {
+  const auto drawn = application_picture(context, run, request, image.rect);
+  if (!drawn) return std::nullopt;
+  return difference_between(image.rect, *drawn, image);
 }
 
 }  // namespace understudy::spu

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "spu/volume/context.h"
 #include "spu/volume/run.h"
@@ -18,6 +20,16 @@ struct Difference {
   double mean_square = 0;  ///< over the pixels of the footprint, all four channels
   double psnr() const;     ///< dB; infinite when equal
 };
+
+/// What `run` draws over transparent black, over `rect`: four floats a pixel, alpha as coverage. Null when the
+/// driver cannot provide the framebuffer.
+std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+                                                      const volume::RenderRequest& request,
+                                                      const volume::Rect& rect);
+
+/// Between that and `image`, which is transparent outside of its rectangle.
+Difference difference_between(const volume::Rect& rect, std::span<const float> drawn,
+                              const volume::ImageView& image);
 
 /// Draws `run` as the application would have, over transparent black, and compares it with `image`. Null when
 /// the driver cannot provide the framebuffer.

@@ -98,7 +98,8 @@ InputValues values_at(std::span<const float> vertex, const ProgramStages& stages
 
 }  // namespace
 
-Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages) {
+Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
+                         const std::string& coordinate) {
   const DispatchTable& gl = *context.gl;
   Capture capture;
   const std::size_t stride = captured_floats(stages);
@@ -132,7 +133,7 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
 
   std::size_t at = 4;
   for (const StageInput& input : stages.inputs) {
-    if (!input.integer && input.components >= 3) {
+    if (!input.integer && input.components >= 3 && (coordinate.empty() || input.name == coordinate)) {
       for (std::size_t v = 0; v < vertices; ++v) {
         for (std::size_t c = 0; c < 3; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
       }

@@ -93,6 +93,7 @@ std::vector<int> KdTree::visibility_order(const Matrix4& texture_to_clip) const 
 }
 
 std::vector<int> KdTree::visibility_order(const RenderRequest& request) const {
+  if (request.steps) return visibility_order(request.texture_to_clip);  // steps are counted along depth
   const Vec4 eye = eye_of(request.texture_to_clip);
   // The middle plane that the region meets says whether plane indices rise with depth or fall.
   const Vec3& n = request.planes.normal;

@@ -63,6 +63,20 @@ struct SlicePlanes {
   int count = 0;
 };
 
+/// The sample positions of a ray caster: constant steps along every ray, from where it enters the region. The
+/// unit of length is the step: a ray that is in the region from t0 to t1 is L = |metric (t1 - t0)| steps long.
+/// Sample i lies first + i steps from t0, i >= 0, up to L.
+struct RaySteps {
+  std::array<double, 9> metric{};  ///< row-major; texture space to a space whose unit of length is the step
+  double first = 0;
+  /// The ray is divided into n = floor(L + rounding) equal parts, n >= 1 (otherwise it has no samples); sample
+  /// i lies first + i parts from t0, 0 <= i < n.
+  bool divided = false;
+  double rounding = 0.5;
+  /// Samples up to so many steps behind the opaque geometry still count.
+  double past_depth = 0;
+};
+
 struct Box {
   Vec3 low{0, 0, 0};
   Vec3 high{1, 1, 1};
@@ -89,9 +103,10 @@ struct RenderRequest {
   Rect window;                ///< the pixels that may be touched: viewport, scissor and framebuffer intersected
   std::array<double, 2> depth_range{0, 1};
   SlicePlanes planes;
+  std::optional<RaySteps> steps;  ///< set: the samples lie here, not on planes
   Operator op = Operator::over;
   Filter filter = Filter::linear;
-  Box region;  ///< where slices exist: samples outside this box of texture space do not
+  Box region;  ///< where slices exist: samples outside this box of texture space do not; rays enter it
   std::vector<HalfSpace> clip_planes;
   Classification classification;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.

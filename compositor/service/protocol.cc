@@ -81,6 +81,27 @@ Classification read_classification(Reader& in) {
   return map;
 }
 
+void write(Writer& out, const std::optional<RaySteps>& steps) {
+  out.integer(steps.has_value());
+  if (!steps) return;
+  write(out, steps->metric);
+  out.real(steps->first);
+  out.integer(steps->divided);
+  out.real(steps->rounding);
+  out.real(steps->past_depth);
+}
+
+std::optional<RaySteps> read_steps(Reader& in) {
+  if (!in.flag("steps")) return std::nullopt;
+  RaySteps steps;
+  read(in, "steps.metric", steps.metric);
+  steps.first = in.real("steps.first");
+  steps.divided = in.flag("steps.divided");
+  steps.rounding = in.real("steps.rounding");
+  steps.past_depth = in.real("steps.past_depth");
+  return steps;
+}
+
 void write(Writer& out, const std::optional<DepthImage>& depth) {
   out.integer(depth.has_value());
   if (!depth) return;
@@ -190,6 +211,7 @@ std::vector<std::byte> encode(const RenderRequest& request) {
   out.real(request.planes.first);
   out.real(request.planes.spacing);
   out.integer(request.planes.count);
+  write(out, request.steps);
   out.integer(std::int64_t(request.op));
   out.integer(std::int64_t(request.filter));
   write(out, request.region.low);
@@ -218,6 +240,7 @@ RenderRequest decode_request(std::span<const std::byte> payload) {
   request.planes.first = in.real("planes.first");
   request.planes.spacing = in.real("planes.spacing");
   request.planes.count = in.small("planes.count", 0, max_planes);
+  request.steps = read_steps(in);
   request.op = in.enumerator("op", Operator::add);
   request.filter = in.enumerator("filter", Filter::linear);
   read(in, "region.low", request.region.low);

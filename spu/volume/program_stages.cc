@@ -177,12 +177,13 @@ void describe_fragment_stage(const GlContext& context, const ProgramRecord& reco
       input.type = GLenum(answer[0]);
       const UniformShape shape = shape_of(input.type);
       if (input.name == "gl_FragCoord" || input.name == "gl_FrontFacing" || input.name == "gl_PointCoord") {
-        stages.trouble = "the fragment shader reads " + input.name;
-        break;
+        if (stages.trouble.empty()) stages.trouble = "the fragment shader reads " + input.name;
+        continue;
       }
       if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
-        stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
-        break;
+        if (stages.trouble.empty())
+          stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
+        continue;
       }
       input.components = shape.components;
       input.integer = shape.kind != UniformShape::Kind::real;
@@ -229,7 +230,7 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   const DispatchTable& gl = *context.gl;
   ProgramStages stages;
   describe_fragment_stage(context, record, stages);
-  if (!stages.trouble.empty() || !record.vertex_shader) return stages;
+  if (!record.vertex_shader) return stages;
 
   const GLuint program = compile(gl, GL_VERTEX_SHADER, record.vertex_sources, gl.CreateProgram());
   GLint attributes = 0;
@@ -248,7 +249,7 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   if (linked(gl, program)) {
     stages.observer = program;
   } else {
-    stages.trouble = "the vertex shader does not link for capture";
+    if (stages.trouble.empty()) stages.trouble = "the vertex shader does not link for capture";
     gl.DeleteProgram(program);
   }
   return stages;

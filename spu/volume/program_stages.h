@@ -28,12 +28,12 @@ struct StageUniform {
 
 /// Programs built from the sources of one link of the application's program. The names live in its context.
 struct ProgramStages {
-  std::vector<StageInput> inputs;      ///< of the fragment stage
+  std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
   std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
   bool uniform_blocks = false;         ///< the fragment stage reads uniform buffers
   GLuint observer =
       0;  ///< vertex stage; captures gl_Position, then every input, interleaved as floats; 0: none
-  std::string trouble;  ///< why the stages could not be had; empty: they stand
+  std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
 };
 
 /// Needs the program's record; `application` is the program itself, for attribute locations.

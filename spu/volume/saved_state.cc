@@ -1,5 +1,7 @@
 #include "spu/volume/saved_state.h"
 
+#include <algorithm>
+
 namespace understudy::spu {
 namespace {
 
@@ -58,6 +60,11 @@ SavedState::SavedState(const GlContext& context)
   gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl_.DepthMask(GL_FALSE);
   gl_.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+bool SavedState::was_enabled(GLenum capability) const {
+  return std::any_of(capabilities_.begin(), capabilities_.end(),
+                     [&](const Capability& c) { return c.name == capability && c.enabled; });
 }
 
 void SavedState::borrow_texture(GLenum target, int unit) {

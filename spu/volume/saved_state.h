@@ -24,6 +24,9 @@ class SavedState {
   /// The active unit stays the caller's choice until the SavedState goes.
   void borrow_texture(GLenum target, int unit);
 
+  /// Of the capabilities that are switched off meanwhile.
+  bool was_enabled(GLenum capability) const;
+
   GLuint draw_framebuffer() const { return GLuint(draw_framebuffer_); }
 
  private:

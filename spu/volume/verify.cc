@@ -101,11 +101,10 @@ double Difference::psnr() const {
   return mean_square > 0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
-                                                   const volume::RenderRequest& request,
-                                                   const volume::ImageView& image) {
+std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+                                                      const volume::RenderRequest& request,
+                                                      const volume::Rect& rect) {
   const DispatchTable& gl = *context.gl;
-  const volume::Rect& rect = image.rect;
   if (rect.empty() || request.viewport.x < 0 || request.viewport.y < 0) return std::nullopt;
   const int width = request.viewport.x + request.viewport.width;
   const int height = request.viewport.y + request.viewport.height;
@@ -131,6 +130,13 @@ std::optional<Difference> compare_with_application(const GlContext& context, con
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
 
+  return drawn;
+}
+
+Difference difference_between(const Pipeline& pipeline, const volume::Rect& rect, std::span<const float> drawn,
+                              const volume::ImageView& image) {
+  const volume::Operator op = pipeline.blending.op;
+  const bool minimum = op == volume::Operator::min;
   const bool floating = pipeline.target.floating;
   const float largest = floating ? std::max(1.0F, *std::max_element(drawn.begin(), drawn.end())) : 1.0F;
   const auto shown = [&](float value) {
@@ -139,18 +145,33 @@ std::optional<Difference> compare_with_application(const GlContext& context, con
   };
   Difference difference;
   std::vector<double> squares(rect.pixels(), 0.0);
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const double d = std::abs(shown(drawn[i]) - shown(image.rgba[i]));
-    difference.max = std::max(difference.max, d);
-    squares[i / 4] += d * d;
+  const volume::Rect& inside = image.rect;
+  for (std::size_t pixel = 0; pixel < squares.size(); ++pixel) {
+    const int x = rect.x + int(pixel % std::size_t(rect.width)) - inside.x;
+    const int y = rect.y + int(pixel / std::size_t(rect.width)) - inside.y;
+    const bool known = x >= 0 && y >= 0 && x < inside.width && y < inside.height;
+    const std::size_t at = 4 * (std::size_t(y) * std::size_t(inside.width) + std::size_t(x));
+    for (std::size_t c = 0; c < 4; ++c) {
+      const float ours = known ? image.rgba[at + c] : (minimum ? 1.0F : 0.0F);
+      const double d = std::abs(shown(drawn[4 * pixel + c]) - shown(ours));
+      difference.max = std::max(difference.max, d);
+      squares[pixel] += d * d;
+    }
   }
-  const volume::Operator op = pipeline.blending.op;
   const bool extremum = op == volume::Operator::max || op == volume::Operator::min;
   const std::size_t counted = squares.size() - (extremum ? squares.size() / strayed_part : 0);
   std::nth_element(squares.begin(), squares.begin() + std::ptrdiff_t(counted) - 1, squares.end());
   const double sum = std::accumulate(squares.begin(), squares.begin() + std::ptrdiff_t(counted), 0.0);
   difference.mean_square = sum / (4.0 * double(counted));
   return difference;
+}
+
+std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
+                                                   const volume::RenderRequest& request,
+                                                   const volume::ImageView& image) {
+  const auto drawn = application_picture(context, run, request, image.rect);
+  if (!drawn) return std::nullopt;
+  return difference_between(run.pipeline(), image.rect, *drawn, image);
 }
 
 }  // namespace understudy::spu

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "spu/volume/context.h"
 #include "spu/volume/run.h"
@@ -19,9 +21,18 @@ struct Difference {
   double psnr() const;     ///< dB; infinite when equal
 };
 
-/// Draws `run` as the application would have, over transparent black (white for a minimum), and compares it
-/// with `image`, both as the application's framebuffer could show them: clamped to [0,1], or, where it is
-/// float, as parts of the largest value. Null when the driver cannot provide the framebuffer.
+/// What `run` draws over transparent black (white for a minimum), over `rect`: four floats a pixel, alpha going
+/// the way of the colour. Null when the driver cannot provide the framebuffer.
+std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+                                                      const volume::RenderRequest& request,
+                                                      const volume::Rect& rect);
+
+/// Between that and `image`, which is empty outside of its rectangle, both as the application's framebuffer
+/// could show them: clamped to [0,1], or, where it is float, as parts of the largest value.
+Difference difference_between(const Pipeline& pipeline, const volume::Rect& rect, std::span<const float> drawn,
+                              const volume::ImageView& image);
+
+/// Both of these. Null when the driver cannot provide the framebuffer.
 std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
                                                    const volume::RenderRequest& request,
                                                    const volume::ImageView& image);

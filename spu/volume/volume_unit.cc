@@ -14,6 +14,7 @@
 #include "spu/volume/geometry/feedback.h"
 #include "spu/volume/save_frames.h"
 #include "spu/volume/saved_state.h"
+#include "spu/volume/substitution.h"
 #include "spu/volume/verify.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
@@ -30,14 +31,6 @@ double milliseconds_since(Clock::time_point start) {
 /// After this many refusals in a row a volume is looked at only in one frame of so many.
 constexpr int patient_refusals = 8;
 constexpr std::uint64_t refused_retry_frames = 64;
-
-/// Ends the substitution of one run: the application draws, and the reason goes to the report.
-struct Doubt {
-  std::string reason;
-};
-
-/// Nothing of the run is visible: the application may draw it, it costs nothing and means nothing.
-struct NothingVisible {};
 
 volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   std::array<GLdouble, 16> column_major{};
@@ -199,19 +192,6 @@ void count_reason(VolumeCounters& counters, const std::string& reason) {
 
 }  // namespace
 
-/// What is found out about one run on its way to a picture.
-struct VolumeUnit::Substitution {
-  const Run& run;
-  const Pipeline& pipeline;
-  KnownVolume& volume;
-  std::uint64_t texture_version = 0;
-  ObservedPolygons polygons{};
-  std::optional<CameraFit> fit{};
-  FragmentInputs fragment{};
-  SliceSet slices{};
-  volume::RenderRequest request{};
-};
-
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
     : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {
   frame_.error_rms = -1;
@@ -330,12 +310,16 @@ void VolumeUnit::observe(Substitution& s) {
   s.fragment.application = s.pipeline.program;
   if (record != nullptr) {
     const ProgramStages& parts = stages(s.pipeline.program, *record);
-    if (!parts.trouble.empty()) throw Doubt{parts.trouble};
     s.fragment.inputs = parts.inputs;
+    const bool one_draw = s.run.draws == 1 && parts.observer != 0;
+    if (!parts.trouble.empty() && !one_draw) throw Doubt{parts.trouble};
     if (record->vertex_shader) {
       if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
       Capture capture = capture_vertices(context(), s.run, parts);
       if (capture.polygons.count() == 0) throw NothingVisible{};
+      s.proxy = one_draw && capture.fit && box_of(capture.polygons);
+      if (s.proxy) return;
+      if (!parts.trouble.empty()) throw Doubt{parts.trouble};
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
       s.polygons = std::move(capture.polygons);
       s.fit = capture.fit;
@@ -387,7 +371,7 @@ void VolumeUnit::find_geometry(Substitution& s) {
   s.slices = std::get<SliceSet>(finding);
 }
 
-void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
+void VolumeUnit::describe_volume(Substitution& s) {
   const DispatchTable& gl = *context().gl;
   KnownVolume& known = s.volume;
   GLint active = 0;
@@ -400,7 +384,13 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   known.texture = texture;
   for (int k = 0; k < 3; ++k) known.counters->size[k] = texture.size[std::size_t(k)];
   put(known.counters->texture_format, texture.format_name);
+}
 
+void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
+  const DispatchTable& gl = *context().gl;
+  describe_volume(s);
+  KnownVolume& known = s.volume;
+  const TextureDescription& texture = known.texture;
   volume::VolumeDescription wanted;
   wanted.id = known.description.id;
   wanted.version = s.texture_version;
@@ -546,28 +536,34 @@ void VolumeUnit::substitute(const Run& run) {
   Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.pipeline().volume.texture)};
   s.texture_version = chain_.group().texture_version(s.pipeline.volume.texture);
   observe(s);
-  find_geometry(s);
+  if (!s.proxy) find_geometry(s);
   const Options& options = session_->options();
   const auto lock = session_->lock();
   compositor::RenderService& service = session_->service();
   process_counters().nodes = service.nodes();
-  upload(s, service);
-  classify(s);
-  compose_request(s);
+  if (s.proxy) {
+    compose_proxy_request(s, service);
+  } else {
+    upload(s, service);
+    classify(s);
+    compose_request(s);
+  }
   const Clock::time_point asked = Clock::now();
   const compositor::Rendered rendered = service.render(s.request);
   frame_.render_ms += milliseconds_since(asked);
-  verify(s, rendered.image);
 
   // The service's picture is gone with its next answer.
   const Blending& blending = s.pipeline.blending;
   volume::Image picture;
   volume::ImageView shown = rendered.image;
-  if (options.debug_tint || blending.alpha_stands_apart()) {
+  const bool maxima = s.proxy && s.volume.march->maximum;
+  if (options.debug_tint || blending.alpha_stands_apart() || maxima) {
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
   }
+  if (maxima) classify_maxima(*s.volume.march, picture);
+  verify(s, shown);
   volume::FrameCounts counts = rendered.counts;
   if (!options.save_frames.empty()) {
     const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown);
@@ -575,7 +571,17 @@ void VolumeUnit::substitute(const Run& run) {
   }
   if (options.debug_tint) tint(picture);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
-  if (blending.alpha_stands_apart()) {
+  if (blending.alpha_stands_apart() && s.proxy) {
+    // The whole ray is one fragment.
+    volume::Image alpha(shown.rect);
+    for (std::size_t i = 0; i < alpha.rgba.size(); i += 4) {
+      const float a = shown.rgba[i + 3];
+      alpha.rgba[i] = blending.alpha.squared ? a * a : a;
+      alpha.rgba[i + 3] = a;
+    }
+    const volume::ImageView view = alpha.view();
+    presenter_->present(shown, blending, &view);
+  } else if (blending.alpha_stands_apart()) {
     s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
     s.request.op = blending.alpha.op;
     const compositor::Rendered alpha = service.render(s.request);

@@ -18,6 +18,7 @@
 #include "spu/volume/geometry/slices.h"
 #include "spu/volume/present.h"
 #include "spu/volume/program_samplers.h"
+#include "spu/volume/proxy/march.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
 
@@ -31,6 +32,8 @@ struct KnownVolume {
   std::array<float, 2> range{0, 1};
   std::optional<volume::Classification> classification;
   std::vector<float> classification_inputs;  ///< what the classification was probed under
+  std::optional<March> march;                ///< how its ray caster marches, where it is drawn by one
+  MarchInputs march_inputs;                  ///< what the march was measured under
   bool depth_looked_at = false;              ///< somebody used the depth that its slices write
   std::string given_back;   ///< why the volume is left to the application for good; empty: it is not
   std::string last_reason;  ///< the last reason for leaving it that was said
@@ -79,9 +82,13 @@ class VolumeUnit final : public Unit {
   KnownVolume& known(GLuint texture);
   void observe(Substitution& s);
   void find_geometry(Substitution& s);
+  void describe_volume(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
   void classify(Substitution& s);
   void compose_request(Substitution& s);
+  void compose_proxy_request(Substitution& s, compositor::RenderService& service);
+  /// The march whose picture is most like the application's.
+  March choose_march(Substitution& s, compositor::RenderService& service, const std::vector<March>& marches);
   void verify(Substitution& s, const volume::ImageView& image);
   void explain(const Substitution& s);
   /// The phase between runs.

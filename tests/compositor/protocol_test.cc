@@ -37,6 +37,7 @@ RenderRequest some_request(bool colours, bool depth) {
   r.window = {0, 6, 300, 20};
   r.depth_range = {0.25, 0.75};
   r.planes = {{0.1, -0.2, 0.3}, -1.5, 1.0 / 512, 999};
+  r.steps = RaySteps{{1, 2, 3, 4, 5, 6, 7, 8, 10}, 0.5, true, 0.25, 2};
   r.op = Operator::min;
   r.filter = Filter::nearest;
   r.region = {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}};
@@ -110,6 +111,12 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.planes.first, sent.planes.first);
   EXPECT_EQ(got.planes.spacing, sent.planes.spacing);
   EXPECT_EQ(got.planes.count, sent.planes.count);
+  ASSERT_TRUE(got.steps.has_value());
+  EXPECT_EQ(got.steps->metric, sent.steps->metric);
+  EXPECT_EQ(got.steps->first, sent.steps->first);
+  EXPECT_EQ(got.steps->divided, sent.steps->divided);
+  EXPECT_EQ(got.steps->rounding, sent.steps->rounding);
+  EXPECT_EQ(got.steps->past_depth, sent.steps->past_depth);
   EXPECT_EQ(got.op, sent.op);
   EXPECT_EQ(got.filter, sent.filter);
   EXPECT_EQ(got.region.low, sent.region.low);

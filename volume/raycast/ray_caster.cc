@@ -60,6 +60,27 @@ void validate_classification(const VolumeDescription& volume, const Classificati
   }
 }
 
+void validate_steps(const RaySteps& steps, const Box& region) {
+  if (!all_finite(steps.metric) || !std::isfinite(steps.first) || !std::isfinite(steps.rounding) ||
+      !std::isfinite(steps.past_depth))
+    refuse("the steps along rays hold a value that is not finite");
+  const auto row = [&](std::size_t r) {
+    return Vec3{steps.metric[3 * r], steps.metric[3 * r + 1], steps.metric[3 * r + 2]};
+  };
+  const double volume = std::abs(dot(row(0), cross(row(1), row(2))));
+  if (!(volume > 1e-9 * length(row(0)) * length(row(1)) * length(row(2))))
+    refuse("the metric of the steps along rays is singular");
+  if (!(steps.first >= 0 && steps.rounding >= 0 && steps.rounding <= 1 && steps.past_depth >= 0 &&
+        steps.first <= max_planes && steps.past_depth <= max_planes))
+    refuse("rays begin {} steps from their entry, end {} behind opaque geometry, and are rounded by {}",
+           steps.first, steps.past_depth, steps.rounding);
+  const Vec3 across = subtract(region.high, region.low);
+  double most = 0;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t k = 0; k < 3; ++k) most += std::abs(steps.metric[3 * r + k] * across[k]);
+  if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
+}
+
 /// Whether a block of colours can show anything: bounds of the mapped components over the block's ranges.
 bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels) {
   std::array<float, 4> highest{};
@@ -83,10 +104,13 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
   if (!believable(request.viewport) || !believable(request.window) || request.viewport.empty())
     refuse("viewport of {} x {} pixels at ({}, {})", request.viewport.width, request.viewport.height,
            request.viewport.x, request.viewport.y);
+  if (request.steps) validate_steps(*request.steps, request.region);
   const SlicePlanes& planes = request.planes;
-  if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
+  if (request.steps) {
+    // They are not looked at.
+  } else if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
     refuse("the slice planes hold a value that is not finite");
-  if (!(length(planes.normal) > 0)) refuse("the slice planes have no direction");
+  if (!request.steps && !(length(planes.normal) > 0)) refuse("the slice planes have no direction");
   if (planes.count < 0 || planes.count > max_planes)
     refuse("{} slice planes (0 to {} are possible)", planes.count, max_planes);
   if (!all_finite(request.region.low) || !all_finite(request.region.high))
@@ -173,7 +197,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   counts.blocks_empty += prepared_->skip.empty_blocks();
 
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
-  if (pixels.empty() || request.planes.count == 0) return;
+  if (pixels.empty() || (!request.steps && request.planes.count == 0)) return;
 
   const RaySetup setup(request, store);
   Scene scene;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/raycast/ray_setup.cc"
@@ -15,6 +16,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Products and sums stay unfused here: every node must round alike, whatever its instruction set.
+
+constexpr std::size_t region_bounds = 6;
 
 /// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or
 /// is null.
@@ -36,7 +39,10 @@ void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
       return hn::Add(hn::Set(d, l.c + ndc_y * l.y), hn::Mul(X, hn::Set(d, l.x)));
     };
     const V det = evaluate(setup.det), sign = hn::CopySign(one, det);
-    V low = zero, high = hn::Set(d, double(setup.last_plane));
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    V low = hn::Set(d, setup.steps ? -infinity : 0.0);
+    V high = hn::Set(d, setup.steps ? infinity : double(setup.last_plane));
+    V entry = zero, exit = zero, hidden_from = hn::Set(d, infinity);
     auto meets = hn::And(hn::Gt(hn::Abs(det), hn::Set(d, setup.smallest_det)),
                          hn::Lt(hn::Iota(d, double(column)), hn::Set(d, double(width))));
 
@@ -53,18 +59,57 @@ void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
       const auto holds = strict ? hn::Gt(value, zero) : hn::Ge(value, zero);
       meets = hn::And(meets, hn::Or(holds, hn::Or(rising, falling)));
     };
-    for (const IndexBound& bound : setup.bounds) limit(evaluate(bound.value), evaluate(bound.slope), false);
+    for (std::size_t i = 0; i < setup.bounds.size(); ++i) {
+      limit(evaluate(setup.bounds[i].value), evaluate(setup.bounds[i].slope), false);
+      if (i + 1 == region_bounds) {
+        entry = low;
+        exit = high;
+      }
+    }
     if (depth) {
+      const V before = high;
+      if (setup.steps) high = hidden_from;
       // Window depth z / w * half + middle < D, times w > 0.
       const V half = hn::Set(d, (depth_range[1] - depth_range[0]) / 2);
       const V room = hn::Sub(hn::LoadU(d, depth + column), hn::Set(d, (depth_range[1] + depth_range[0]) / 2));
       limit(hn::Sub(hn::Mul(evaluate(setup.clip_w.value), room), hn::Mul(evaluate(setup.clip_z.value), half)),
             hn::Sub(hn::Mul(evaluate(setup.clip_w.slope), room), hn::Mul(evaluate(setup.clip_z.slope), half)),
-            !depth_or_equal);
+            !depth_or_equal && !setup.steps);
+      if (setup.steps) {
+        hidden_from = high;
+        high = before;
+      }
     }
-    low = hn::Ceil(low);
-    high = hn::Floor(high);
-    meets = hn::And(meets, hn::Le(low, high));
+    V part = one;  // of the index, from sample to sample
+    V first = hn::Ceil(low), last = hn::Floor(high);
+    if (setup.steps) {
+      V speed = zero;
+      for (const LinearInPixel& component : setup.speed) {
+        const V along = evaluate(component);
+        speed = hn::Add(speed, hn::Mul(along, along));
+      }
+      part = hn::Div(hn::Abs(det), hn::Sqrt(speed));
+      const V offset = hn::Set(d, setup.steps->first);
+      V parts = hn::Set(d, infinity);
+      if (setup.steps->divided) {
+        const V way = hn::Sub(exit, entry);
+        parts = hn::Floor(hn::Add(hn::Div(way, part), hn::Set(d, setup.steps->rounding)));
+        meets = hn::And(meets, hn::Ge(parts, one));
+        part = hn::Div(way, parts);
+      }
+      const auto steps_to = [&](V end) HWY_ATTR { return hn::Sub(hn::Div(hn::Sub(end, entry), part), offset); };
+      first = hn::Max(hn::Ceil(steps_to(low)), zero);
+      last = hn::Floor(hn::Min(steps_to(high), hn::Sub(parts, one)));
+      if (depth) {
+        meets = hn::And(meets, hn::Ge(hidden_from, entry));
+        const V to_depth = hn::Add(steps_to(hidden_from), hn::Set(d, setup.steps->past_depth));
+        last = hn::Min(last, hn::Floor(to_depth));
+      }
+      low = hn::Add(entry, hn::Mul(hn::Add(offset, first), part));
+    } else {
+      low = first;
+    }
+    meets = hn::And(meets, hn::Le(first, last));
 
     const V inverse = hn::Div(one, det);
     low = hn::IfThenElseZero(meets, low);
@@ -72,14 +117,14 @@ void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
       const V slope = evaluate(setup.position[axis].slope);
       const V at_first = hn::Mul(hn::Add(evaluate(setup.position[axis].value), hn::Mul(low, slope)), inverse);
       const V rest = hn::Set(d, setup.resting_place[axis]);
-      const V step = hn::IfThenElseZero(meets, hn::Mul(slope, inverse));
+      const V step = hn::IfThenElseZero(meets, hn::Mul(hn::Mul(slope, inverse), part));
       hn::Store(hn::DemoteTo(d_float, hn::IfThenElse(meets, at_first, rest)), d_float,
                 strip.start[axis].data() + offset + column);
       hn::Store(hn::DemoteTo(d_float, step), d_float, strip.step[axis].data() + offset + column);
     }
-    const V last = hn::IfThenElse(meets, hn::Sub(high, low), hn::Set(d, -1.0));
+    const V more = hn::IfThenElse(meets, hn::Sub(last, first), hn::Set(d, -1.0));
     hn::Store(hn::Zero(d_int), d_int, strip.first.data() + offset + column);
-    hn::Store(hn::DemoteTo(d_int, last), d_int, strip.last.data() + offset + column);
+    hn::Store(hn::DemoteTo(d_int, more), d_int, strip.last.data() + offset + column);
   }
 }
 
@@ -110,6 +155,43 @@ LinearInPixel sum(const LinearInPixel& a, const LinearInPixel& b) {
 }
 LinearInPixel times(double factor, const LinearInPixel& a) {
   return {factor * a.c, factor * a.x, factor * a.y};
+}
+
+/// Planes across all rays through the viewport, one unit of the index apart, with rising depth; plane 0 goes
+/// through the middle of the region.
+SlicePlanes planes_across(const RenderRequest& request, const LinearVector& direction, const Vec3& across_eye) {
+  const auto direction_at = [&](double x, double y) {
+    return add(direction.c, add(scale(direction.x, x), scale(direction.y, y)));
+  };
+  // Planes that face the eye never run along a ray; where the eye is (nearly) at infinity they are rounding
+  // alone, and the direction of view itself serves.
+  SlicePlanes planes;
+  double best = -1;
+  for (const Vec3& normal : {across_eye, direction_at(0, 0)}) {
+    if (!(length(normal) > 0)) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double x : {-1.0, 1.0})
+      for (const double y : {-1.0, 1.0}) {
+        const Vec3 ray = direction_at(x, y);
+        const double cosine = dot(normal, ray) / (length(normal) * length(ray));
+        least = std::min(least, dot(normal, direction_at(0, 0)) < 0 ? -cosine : cosine);
+      }
+    if (!(least > best)) continue;
+    best = least;
+    planes.normal = scale(normal, 1 / length(normal));
+  }
+  const Matrix4& m = request.texture_to_clip;
+  const Vec3 middle = scale(add(request.region.low, request.region.high), 0.5);
+  const Vec4 clip = transform_point(m, middle);
+  // The sign of d(z / w) along the normal, at the middle of the picture.
+  const Vec3 ray = direction_at(0, 0);
+  const double z = m[8] * ray[0] + m[9] * ray[1] + m[10] * ray[2];
+  const double w = m[12] * ray[0] + m[13] * ray[1] + m[14] * ray[2];
+  const bool deeper = (z * clip[3] - w * clip[2] > 0) == (dot(planes.normal, ray) > 0);
+  if (!deeper) planes.normal = scale(planes.normal, -1);
+  planes.first = dot(planes.normal, middle);
+  planes.spacing = 1;
+  return planes;
 }
 
 /// Smallest k in [0, count] from which on `reached` holds (count: never), for a condition that stays once it
@@ -171,10 +253,11 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   const auto row = [&](int r) { return Vec3{m[4 * r], m[4 * r + 1], m[4 * r + 2]}; };
   const Vec3 a0 = row(0), a1 = row(1), a3 = row(3);
   const double w0 = m[3], w1 = m[7], w3 = m[15];
-  const Vec3& n = request.planes.normal;
 
   // The ray's direction, and where it meets the plane through the origin: both times det.
   const LinearVector direction{cross(a0, a1), cross(a1, a3), cross(a3, a0)};
+  const SlicePlanes planes = request.steps ? planes_across(request, direction, a3) : request.planes;
+  const Vec3& n = planes.normal;
   const LinearVector origin{cross(n, subtract(scale(a1, w0), scale(a0, w1))),
                             cross(n, subtract(scale(a3, w1), scale(a1, w3))),
                             cross(n, subtract(scale(a0, w3), scale(a3, w0)))};
@@ -186,8 +269,8 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   /// normal . t + offset at sample i, times det.
   const auto at_sample = [&](const Vec3& normal, double offset) {
     const LinearInPixel along = project(normal, direction);
-    return IndexBound{sum(sum(project(normal, origin), times(request.planes.first, along)), times(offset, det)),
-                      times(request.planes.spacing, along)};
+    return IndexBound{sum(sum(project(normal, origin), times(planes.first, along)), times(offset, det)),
+                      times(planes.spacing, along)};
   };
   const auto negated = [](const IndexBound& b) { return IndexBound{times(-1, b.value), times(-1, b.slope)}; };
 
@@ -228,7 +311,13 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   first_x = (0.5 - request.viewport.x) * pixel_to_x - 1;
   pixel_to_y = 2.0 / request.viewport.height;
   first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
-  last_plane = request.planes.count - 1;
+  last_plane = planes.count - 1;
+  steps = request.steps;
+  if (steps) {
+    const auto& metric = steps->metric;
+    for (std::size_t row = 0; row < 3; ++row)
+      speed[row] = project({metric[3 * row], metric[3 * row + 1], metric[3 * row + 2]}, direction);
+  }
 }
 
 bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,

@@ -7,9 +7,13 @@
 // cancel, since A3 x A3 = 0). So are all quantities a ray needs, and every bound on the sample index i
 // (region, near, far and clip planes) has the form (value + i slope) / det >= 0 with value and slope linear
 // in X and Y.
+//
+// Where samples lie on constant steps along the ray, the index is a continuous parameter: a plane through the
+// middle of the region gives the rays, the region's bounds give entry and exit, and steps are counted between.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "volume/brick/brick_store.h"
@@ -36,8 +40,11 @@ struct RaySetup {
   LinearInPixel det;
   double smallest_det = 0;             ///< rays with |det| under this run parallel to the planes
   std::array<IndexBound, 3> position;  ///< sample position in lattice coordinates, times det
-  std::vector<IndexBound> bounds;
-  IndexBound clip_z, clip_w;           ///< clip coordinates of sample i, times det
+  std::vector<IndexBound> bounds;      ///< the first six are the region's
+  std::optional<RaySteps> steps;
+  std::array<LinearInPixel, 3>
+      speed;                  ///< with steps: how many one unit of the index is, as a vector, times det
+  IndexBound clip_z, clip_w;  ///< clip coordinates of sample i, times det
   double pixel_to_x = 0, first_x = 0;  ///< X of the centre of pixel x: first_x + x pixel_to_x
   double pixel_to_y = 0, first_y = 0;
   int last_plane = 0;

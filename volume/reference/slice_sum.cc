@@ -157,6 +157,93 @@ bool nearer(const std::optional<DepthImage>& image, int x, int y, double depth) 
   return image->or_equal ? depth <= there : depth < there;
 }
 
+/// The point s of the way (in depth) from `near` to `far`, both homogeneous.
+Vec3 between(const Vec4& near, const Vec4& far, double s) {
+  Vec3 t;
+  const double w = near[3] + s * (far[3] - near[3]);
+  for (int k = 0; k < 3; ++k) t[k] = (near[k] + s * (far[k] - near[k])) / w;
+  return t;
+}
+
+bool cut_away(const RenderRequest& request, const Vec3& t) {
+  for (const HalfSpace& plane : request.clip_planes)
+    if (dot(plane.normal, t) + plane.offset < 0) return true;
+  return false;
+}
+
+/// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back.
+template <typename SampleAt>
+void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far, int x, int y,
+                 SampleAt sample_at) {
+  for (int i = 0; i < request.planes.count; ++i) {
+    // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or
+    // not at all.
+    const double plane = request.planes.first + i * request.planes.spacing;
+    const auto offset = [&](const Vec4& p) {
+      return dot(request.planes.normal, {p[0], p[1], p[2]}) - plane * p[3];
+    };
+    const double at_near = offset(near), at_far = offset(far);
+    if (at_near == at_far || (at_near > 0) == (at_far > 0)) continue;
+    const double s = at_near / (at_near - at_far);
+    const Vec3 t = between(near, far, s);
+    bool kept = !cut_away(request, t);
+    for (int k = 0; k < 3; ++k) kept = kept && t[k] >= request.region.low[k] && t[k] <= request.region.high[k];
+    // In clip coordinates both points have w = 1, so depth is linear between them.
+    const double depth = request.depth_range[0] + s * (request.depth_range[1] - request.depth_range[0]);
+    if (kept && nearer(request.depth, x, y, depth)) sample_at(t);
+  }
+}
+
+/// The same for samples on steps along the ray.
+template <typename SampleAt>
+void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far, int x, int y,
+                SampleAt sample_at) {
+  const RaySteps& rule = *request.steps;
+  const Vec3 start = between(near, far, 0), end = between(near, far, 1);
+  // The ray in world space, continued to both sides as far as the region reaches.
+  double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
+  for (int k = 0; k < 3; ++k) {
+    const double way = end[k] - start[k];
+    double a = (request.region.low[k] - start[k]) / way, b = (request.region.high[k] - start[k]) / way;
+    if (way == 0) {
+      if (start[k] < request.region.low[k] || start[k] > request.region.high[k]) return;
+      continue;
+    }
+    if (a > b) std::swap(a, b);
+    enter = std::max(enter, a);
+    leave = std::min(leave, b);
+  }
+  if (!(enter <= leave)) return;
+  const auto point = [&](double s) { return add(start, scale(subtract(end, start), s)); };
+  const auto steps_between = [&](double a, double b) {
+    const Vec3 d = subtract(point(b), point(a));
+    Vec3 m;
+    for (int r = 0; r < 3; ++r)
+      m[r] = rule.metric[3 * r] * d[0] + rule.metric[3 * r + 1] * d[1] + rule.metric[3 * r + 2] * d[2];
+    return length(m);
+  };
+  double steps = steps_between(enter, leave), part = (leave - enter) / steps;
+  int count = int(std::floor(steps - rule.first)) + 1;
+  if (rule.divided) {
+    count = int(std::floor(steps + rule.rounding));
+    if (count < 1) return;
+    part = (leave - enter) / count;
+  }
+  for (int i = 0; i < count; ++i) {
+    const double s = enter + (rule.first + i) * part;
+    // Of the opaque geometry's depth, which the samples may pass by a few steps but the entry may not.
+    const auto visible = [&](double at) {
+      if (!request.depth) return true;
+      const double n = near[3] * at / (far[3] + at * (near[3] - far[3]));  // from world space to depth
+      return nearer(request.depth, x, y,
+                    request.depth_range[0] + n * (request.depth_range[1] - request.depth_range[0]));
+    };
+    const double depth_s = s - rule.past_depth * part;
+    if (s < 0 || s > 1 || s > leave || cut_away(request, point(s))) continue;
+    if (visible(depth_s) && visible(enter)) sample_at(point(s));
+  }
+}
+
 }  // namespace
 
 Field texture_field(const VolumeDescription& volume, Filter filter, std::span<const std::byte> texels) {
@@ -180,30 +267,9 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
       const Vec4 near = transform(*clip_to_texture, {X, Y, -1, 1}),
                  far = transform(*clip_to_texture, {X, Y, 1, 1});
       double* pixel = image.rgba.data() + (image.at(x, y) - image.rgba.data());
-      for (int i = 0; i < request.planes.count; ++i) {
-        // Signed offsets of the pixel's near and far point from the plane: the ray crosses between them or
-        // not at all.
-        const double plane = request.planes.first + i * request.planes.spacing;
-        const auto offset = [&](const Vec4& p) {
-          return dot(request.planes.normal, {p[0], p[1], p[2]}) - plane * p[3];
-        };
-        const double at_near = offset(near), at_far = offset(far);
-        if (at_near == at_far || (at_near > 0) == (at_far > 0)) continue;
-        const double s = at_near / (at_near - at_far);
-        Vec3 t;
-        const double w = near[3] + s * (far[3] - near[3]);
-        for (int k = 0; k < 3; ++k) t[k] = (near[k] + s * (far[k] - near[k])) / w;
-
-        bool kept = true;
-        for (int k = 0; k < 3; ++k)
-          kept = kept && t[k] >= request.region.low[k] && t[k] <= request.region.high[k];
-        for (const HalfSpace& plane_cut : request.clip_planes)
-          kept = kept && dot(plane_cut.normal, t) + plane_cut.offset >= 0;
-        // In clip coordinates both points have w = 1, so depth is linear between them.
-        const double depth = request.depth_range[0] + s * (request.depth_range[1] - request.depth_range[0]);
+      const auto sample_at = [&](const Vec3& t) {
         Sample colour;
-        if (!kept || !nearer(request.depth, x, y, depth) || !fragment(request.classification, field(t), colour))
-          continue;
+        if (!fragment(request.classification, field(t), colour)) return;
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {
             case Operator::over:
@@ -219,7 +285,11 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
               pixel[k] = std::min(pixel[k], colour[k]);
               break;
           }
-      }
+      };
+      if (request.steps)
+        take_steps(request, near, far, x, y, sample_at);
+      else
+        meet_planes(request, near, far, x, y, sample_at);
     }
   return image;
 }

@@ -1,6 +1,6 @@
-// What the application's slices mean, literally and in double precision: for every pixel the ordered
-// composition of every plane that its ray meets. Slow, plain and written independently of the ray caster,
-// which is judged by it.
+// What the application's samples mean, literally and in double precision: for every pixel the ordered
+// composition of every plane that its ray meets, or of every step that it takes. Slow, plain and written
+// independently of the ray caster, which is judged by it.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ struct ReferenceImage {
   }
 };
 
-/// Composes all planes of `request` over the pixels of `rect` that lie in its window; never terminates early.
-/// Throws std::invalid_argument when the matrix is singular.
+/// Composes all planes (or steps) of `request` over the pixels of `rect` that lie in its window; never
+/// terminates early. Throws std::invalid_argument when the matrix is singular.
 ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect);
 
 }  // namespace understudy::volume

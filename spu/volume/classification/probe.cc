@@ -102,34 +102,6 @@ class Bench {
   GLuint program_ = 0;
 };
 
-GLenum probe_format(BaseFormat base) {
-  switch (base) {
-    case BaseFormat::luminance:
-      return GL_LUMINANCE32F_ARB;
-    case BaseFormat::intensity:
-      return GL_INTENSITY32F_ARB;
-    case BaseFormat::alpha:
-      return GL_ALPHA32F_ARB;
-    case BaseFormat::rgba:
-      return GL_RGBA32F;
-    default:
-      return GL_R32F;
-  }
-}
-
-GLenum upload_format(BaseFormat base) {
-  switch (base) {
-    case BaseFormat::luminance:
-      return GL_LUMINANCE;
-    case BaseFormat::alpha:
-      return GL_ALPHA;
-    case BaseFormat::rgba:
-      return GL_RGBA;
-    default:
-      return GL_RED;
-  }
-}
-
 /// The values of all inputs but the coordinate, in the order in which the probe program numbers them.
 InputValues without_coordinate(const FragmentInputs& fragment, const InputValues& values) {
   InputValues others;
@@ -312,6 +284,34 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
 }
 
 }  // namespace
+
+GLenum probe_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE32F_ARB;
+    case BaseFormat::intensity:
+      return GL_INTENSITY32F_ARB;
+    case BaseFormat::alpha:
+      return GL_ALPHA32F_ARB;
+    case BaseFormat::rgba:
+      return GL_RGBA32F;
+    default:
+      return GL_R32F;
+  }
+}
+
+GLenum upload_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE;
+    case BaseFormat::alpha:
+      return GL_ALPHA;
+    case BaseFormat::rgba:
+      return GL_RGBA;
+    default:
+      return GL_RED;
+  }
+}
 
 ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipeline,
                                   const TextureDescription& texture, const FragmentInputs& fragment,

@@ -30,6 +30,10 @@ struct FragmentInputs {
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
 constexpr int probed_entries = 16 * 255 + 1;
 
+/// Of a float texture that reads like one of base format `base`: internal format, and format of its texels.
+GLenum probe_format(BaseFormat base);
+GLenum upload_format(BaseFormat base);
+
 using ProbeFinding = std::variant<volume::Classification, std::string>;
 
 /// `range` is the interval of texel values that the table covers. Uses the current context's fragment state

@@ -107,7 +107,8 @@ bool within_texture(std::span<const ObservedVertex> vertices) {
 
 }  // namespace
 
-Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages) {
+Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
+                         const std::string& coordinate) {
   const DispatchTable& gl = *context.gl;
   Capture capture;
   const std::size_t stride = captured_floats(stages);
@@ -152,6 +153,7 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
     const std::size_t here = at;
     at += std::size_t(input.components);
     if (input.integer || input.components < 3) continue;
+    if (!coordinate.empty() && input.name != coordinate) continue;
     take_coordinates(here);
     const auto fit = fit_camera(polygons.vertices);
     if (!fit || fit->residual > max_fit_residual) continue;

@@ -1,0 +1,38 @@
+// Proxy geometry: the box whose faces a ray caster draws, and the rays through it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "spu/volume/geometry/polygon.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+/// The box (in units of the observed coordinate) whose six faces, whole and once each, are what was drawn; null
+/// when the polygons are anything else.
+std::optional<volume::Box> box_of(const ObservedPolygons& polygons);
+
+/// True when all of the box lies before the eye and behind the near plane: then every ray enters at a face.
+bool wholly_in_view(const volume::Matrix4& texture_to_clip, const volume::Box& box);
+
+/// The rays of a camera through a box.
+class RaysThroughBox {
+ public:
+  /// `texture_to_clip` must be regular.
+  RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box);
+
+  /// From entry to exit, in texture space, on the ray at normalised device coordinates (x, y); null where it
+  /// misses the box.
+  std::optional<volume::Vec3> way(double x, double y) const;
+
+  /// Where the middle of the box is seen.
+  std::array<double, 2> middle() const { return middle_; }
+
+ private:
+  volume::Matrix4 clip_to_texture_;
+  volume::Box box_;
+  std::array<double, 2> middle_{};
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,177 @@
+#include "spu/volume/proxy/field_probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spu/volume/classification/probe.h"
+
+namespace understudy::spu {
+namespace {
+
+constexpr int most_columns = 1024;
+constexpr int finest_viewport = 4096;
+
+bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
+  if (texture.target != GL_TEXTURE_2D || texture.texture == 0) return false;
+  GLint active = 0;
+  GLint bits = 0;
+  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
+  gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_DEPTH_SIZE, &bits);
+  gl.ActiveTexture(GLenum(active));
+  return bits > 0;
+}
+
+std::array<GLint, 4> rectangle(const DispatchTable& gl, GLenum name) {
+  std::array<GLint, 4> value{};
+  gl.GetIntegerv(name, value.data());
+  return value;
+}
+
+}  // namespace
+
+bool samples_depth(const GlContext& context, const Pipeline& pipeline) {
+  return std::any_of(pipeline.others.begin(), pipeline.others.end(),
+                     [&](const SampledTexture& texture) { return is_depth_texture(*context.gl, texture); });
+}
+
+FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture)
+    : gl_(*context.gl),
+      run_(run),
+      texture_(texture),
+      with_swizzle_(context.version >= 330),
+      viewport_(rectangle(gl_, GL_VIEWPORT)),
+      scissor_(rectangle(gl_, GL_SCISSOR_BOX)),
+      saved_(context) {
+  std::array<GLint, 2> largest{};
+  gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data());
+  fine_ = std::min({finest_viewport, int(largest[0]), int(largest[1])});
+  size_ = {std::max(most_columns, viewport_[0] + viewport_[2]), std::max(1, viewport_[1] + viewport_[3])};
+
+  const Pipeline& pipeline = run.pipeline();
+  GLuint far_plane = 0;
+  for (const SampledTexture& other : pipeline.others) {
+    if (!is_depth_texture(gl_, other)) continue;
+    saved_.borrow_texture(GL_TEXTURE_2D, other.unit);
+    if (far_plane == 0) {
+      constexpr float farthest = 1;
+      gl_.GenTextures(1, &far_plane);
+      textures_.push_back(far_plane);
+      gl_.BindTexture(GL_TEXTURE_2D, far_plane);
+      gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &farthest);
+      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    gl_.BindTexture(GL_TEXTURE_2D, far_plane);
+  }
+  saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
+
+  gl_.GenRenderbuffers(1, &colour_);
+  gl_.GenFramebuffers(1, &framebuffer_);
+  GLint application_renderbuffer = 0;
+  gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &application_renderbuffer);
+  gl_.BindRenderbuffer(GL_RENDERBUFFER, colour_);
+  gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, size_[0], size_[1]);
+  gl_.BindRenderbuffer(GL_RENDERBUFFER, GLuint(application_renderbuffer));
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+  complete_ = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  // Which of the box's faces make fragments is the application's choice.
+  if (saved_.was_enabled(GL_CULL_FACE)) gl_.Enable(GL_CULL_FACE);
+  gl_.Enable(GL_SCISSOR_TEST);
+}
+
+FieldProbe::~FieldProbe() {
+  gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
+  gl_.Disable(GL_CULL_FACE);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.DeleteFramebuffers(1, &framebuffer_);
+  gl_.DeleteRenderbuffers(1, &colour_);
+  gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
+}
+
+GLuint FieldProbe::field(const std::array<float, 8>& corners) {
+  GLuint name = 0;
+  gl_.GenTextures(1, &name);
+  textures_.push_back(name);
+  gl_.BindTexture(GL_TEXTURE_3D, name);
+  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+    gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+  }
+  if (with_swizzle_) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, texture_.swizzle.data());
+  gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(probe_format(texture_.base)), 2, 2, 2, 0, upload_format(texture_.base),
+                 GL_FLOAT, corners.data());
+  return name;
+}
+
+std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const float> values) {
+  return at_slope(x, y, values, 0);
+}
+
+std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<const float> values, float rise) {
+  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
+  const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
+  const int py = std::clamp(int(std::floor((y + 1) / 2 * fine_)), 0, fine_ - 1);
+  const std::size_t room = std::size_t(size_[0]) * std::size_t(size_[1]);
+  std::vector<volume::Rgba> colours;
+  while (colours.size() < values.size()) {
+    const std::size_t count = std::min(room, values.size() - colours.size());
+    const int rows = int((count + std::size_t(size_[0]) - 1) / std::size_t(size_[0]));
+    gl_.Scissor(0, 0, size_[0], rows);
+    constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
+    gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+    gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
+    for (std::size_t i = 0; i < count; ++i) {
+      const int column = int(i) % size_[0];
+      const int row = int(i) / size_[0];
+      std::array<float, 8> corners;
+      for (std::size_t c = 0; c < 8; ++c) {
+        const float height = float(c & 1) + float(c >> 1 & 1) + float(c >> 2 & 1);
+        corners[c] = values[colours.size() + i] + rise * (height / 3 - 0.5F);
+      }
+      field(corners);
+      gl_.Viewport(column - px, row - py, fine_, fine_);
+      gl_.Scissor(column, row, 1, 1);
+      run_.replay(gl_);
+    }
+    std::vector<volume::Rgba> read_back = read(size_[0], rows);
+    colours.insert(colours.end(), read_back.begin(), read_back.begin() + std::ptrdiff_t(count));
+  }
+  return colours;
+}
+
+std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {
+  return in_place(0, first_row, viewport_[2], rows, value);
+}
+
+volume::Rgba FieldProbe::pixel(int column, int row, float value) {
+  return in_place(column, row, 1, 1, value).front();
+}
+
+std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height, float value) {
+  std::array<float, 8> corners;
+  corners.fill(value);
+  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
+  field(corners);
+  // At its own place, so that whatever depends on the place of a fragment is as it will be.
+  const int x = viewport_[0] + column;
+  const int y = viewport_[1] + row;
+  gl_.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+  gl_.Scissor(x, y, width, height);
+  constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
+  gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+  run_.replay(gl_);
+  std::vector<volume::Rgba> colours(std::size_t(width) * std::size_t(height));
+  gl_.ReadPixels(x, y, width, height, GL_RGBA, GL_FLOAT, colours.data());
+  return colours;
+}
+
+std::vector<volume::Rgba> FieldProbe::read(int width, int height) {
+  std::vector<volume::Rgba> colours(std::size_t(width) * std::size_t(height));
+  gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, colours.data());
+  return colours;
+}
+
+}  // namespace understudy::spu

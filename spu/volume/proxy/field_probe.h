@@ -1,0 +1,67 @@
+// The application's own draw over fields that are known: its volume is replaced by one value, its depth texture
+// by the far plane, its framebuffer by a float one. Everything is put back.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "spu/volume/run.h"
+#include "spu/volume/saved_state.h"
+#include "spu/volume/texels.h"
+#include "volume/classification.h"
+
+namespace understudy::spu {
+
+/// What the alpha of a pixel is that no fragment reached.
+constexpr float no_fragment = -1;
+
+class FieldProbe {
+ public:
+  FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture);
+  ~FieldProbe();
+  FieldProbe(const FieldProbe&) = delete;
+  FieldProbe& operator=(const FieldProbe&) = delete;
+
+  /// Whether the driver offers a float framebuffer. Nothing may be drawn otherwise.
+  bool complete() const { return complete_; }
+
+  /// The fragments on the ray at normalised device coordinates (x, y), over the field of each of `values`.
+  std::vector<volume::Rgba> at(double x, double y, std::span<const float> values);
+
+  /// The same over fields that rise by `rise` through the volume, in the middle of which they have the value.
+  std::vector<volume::Rgba> at_slope(double x, double y, std::span<const float> values, float rise);
+
+  /// The fragments of `rows` rows of the application's viewport from `first_row` on, over the field of `value`.
+  std::vector<volume::Rgba> rows(int first_row, int rows, float value);
+
+  /// The fragment of one pixel of the application's viewport, over the field of `value`.
+  volume::Rgba pixel(int column, int row, float value);
+
+  int width() const { return viewport_[2]; }
+  int height() const { return viewport_[3]; }
+
+ private:
+  GLuint field(const std::array<float, 8>& corners);
+  std::vector<volume::Rgba> in_place(int column, int row, int width, int height, float value);
+  std::vector<volume::Rgba> read(int width, int height);
+
+  const DispatchTable& gl_;
+  const Run& run_;
+  const TextureDescription& texture_;
+  bool with_swizzle_;
+  std::array<GLint, 4> viewport_{};  ///< the application's
+  std::array<GLint, 4> scissor_{};
+  std::array<int, 2> size_{};  ///< of the framebuffer
+  int fine_ = 0;               ///< edge of the viewport that rays are picked from
+  SavedState saved_;
+  std::vector<GLuint> textures_;
+  GLuint colour_ = 0;
+  GLuint framebuffer_ = 0;
+  bool complete_ = false;
+};
+
+/// Whether the program samples a depth texture: it ends its rays at opaque geometry.
+bool samples_depth(const GlContext& context, const Pipeline& pipeline);
+
+}  // namespace understudy::spu

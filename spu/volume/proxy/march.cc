@@ -1,0 +1,451 @@
+#include "spu/volume/proxy/march.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::Rgba;
+using volume::Vec3;
+
+/// Multiples of 1/255 fall on entries.
+constexpr int table_entries = 4 * 255 + 1;
+constexpr int bands = 24;  ///< of two rows each, on which samples are counted
+
+float value_at(const std::array<float, 2>& range, double place) {
+  return float(range[0] + place * (double(range[1]) - range[0]));
+}
+
+bool reached(const Rgba& fragment) {
+  return fragment[3] != no_fragment;
+}
+
+bool finite(const std::vector<Rgba>& fragments) {
+  return std::all_of(fragments.begin(), fragments.end(), [](const Rgba& f) {
+    return std::all_of(f.begin(), f.end(), [](float x) { return std::isfinite(x); });
+  });
+}
+
+/// The fragment as it would be blended: premultiplied.
+Rgba premultiplied(Rgba fragment, bool already) {
+  if (!reached(fragment)) return {};
+  for (std::size_t c = 0; c < 3 && !already; ++c) fragment[c] *= fragment[3];
+  return fragment;
+}
+
+/// One of `n` equal samples that make up `ray`, both premultiplied.
+Rgba sample_of(const Rgba& ray, double n) {
+  if (n == 1) return ray;
+  Rgba sample{};
+  sample[3] = float(-std::expm1(std::log1p(-std::min(double(ray[3]), 1.0)) / n));
+  const float part = ray[3] > 0 ? sample[3] / ray[3] : float(1 / n);
+  for (std::size_t c = 0; c < 3; ++c) sample[c] = ray[c] * part;
+  return sample;
+}
+
+Rgba ray_of(const Rgba& sample, double n) {
+  Rgba ray{};
+  ray[3] = float(-std::expm1(n * std::log1p(-std::min(double(sample[3]), 1.0))));
+  const float times = sample[3] > 0 ? ray[3] / sample[3] : float(n);
+  for (std::size_t c = 0; c < 3; ++c) ray[c] = sample[c] * times;
+  return ray;
+}
+
+Rgba table_at(const volume::TransferFunction& table, float value) {
+  const auto last = float(table.entries.size() - 1);
+  const float place = std::clamp((value - table.low) / (table.high - table.low), 0.0F, 1.0F) * last;
+  const auto below = std::size_t(place);
+  const std::size_t above = std::min(below + 1, table.entries.size() - 1);
+  const float s = place - float(below);
+  Rgba colour;
+  for (std::size_t c = 0; c < 4; ++c)
+    colour[c] = table.entries[below][c] + s * (table.entries[above][c] - table.entries[below][c]);
+  return colour;
+}
+
+float largest_difference(const Rgba& a, const Rgba& b) {
+  float largest = 0;
+  for (std::size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
+  return largest;
+}
+
+struct Ray {
+  double x = 0;
+  double y = 0;
+  double length = 0;  ///< in steps
+};
+
+/// The ray in view whose length comes closest to `wanted` steps, looked for from the middle of the box
+/// outwards.
+Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted) {
+  const auto length_at = [&](double x, double y) {
+    const auto way = rays.way(x, y);
+    return way ? steps_of_way(steps, *way) : 0.0;
+  };
+  const auto middle = rays.middle();
+  const double mx = std::clamp(middle[0], -0.9, 0.9);
+  const double my = std::clamp(middle[1], -0.9, 0.9);
+  Ray best{mx, my, length_at(mx, my)};
+  for (int direction = 0; direction < 16; ++direction) {
+    const double angle = M_PI / 8 * direction + 0.1;
+    double inside = 0;
+    double outside = 3;
+    for (int halving = 0; halving < 24; ++halving) {
+      const double reach = (inside + outside) / 2;
+      const double x = mx + reach * std::cos(angle);
+      const double y = my + reach * std::sin(angle);
+      const bool in_view = std::abs(x) < 0.99 && std::abs(y) < 0.99;
+      const double length = in_view ? length_at(x, y) : 0;
+      if (length > 0 && std::abs(length - wanted) < std::abs(best.length - wanted)) best = {x, y, length};
+      (length > wanted ? inside : outside) = reach;
+    }
+  }
+  return best;
+}
+
+/// Counts of samples on rays all over the box.
+std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
+                                                                const RaysThroughBox& rays, float value,
+                                                                bool& constant) {
+  const bool already = measured.run.pipeline().blending.premultiplied;
+  std::vector<Vec3> ways;
+  std::vector<double> opacities;
+  std::vector<Rgba> colours;
+  for (int band = 0; band < bands; ++band) {
+    const int y = std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2));
+    const auto fragments = probe.rows(y, 2, value);
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (!reached(fragments[i])) continue;
+      const int column = int(i) % probe.width();
+      const int row = y + int(i) / probe.width();
+      const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+      if (!way) continue;
+      ways.push_back(*way);
+      colours.push_back(premultiplied(fragments[i], already));
+      opacities.push_back(colours.back()[3]);
+    }
+  }
+  if (ways.size() < 64) return "too little of the box is in view to measure its rays";
+  const auto [least, most] = std::minmax_element(opacities.begin(), opacities.end());
+  constant = *most - *least < 1e-3 * *most;
+  if (constant) {
+    std::vector<double> lengths;
+    for (const Vec3& way : ways) lengths.push_back(volume::length(way));
+    const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
+    if (*longest < 1.1 * *shortest) return "rays of one length alone do not tell the step";
+  }
+  std::vector<CountedRay> counted;
+  if (constant) return counted;
+  const std::vector<double> counts = counts_from_opacities(opacities);
+  if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
+  // Colour over opacity stays what it is for one sample.
+  const std::size_t longest = std::size_t(most - opacities.begin());
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double expected = double(colours[longest][c]) / *most * opacities[i];
+      if (std::abs(colours[i][c] - expected) > 0.01)
+        return "the colours of a ray's samples are not composed by over";
+    }
+    counted.push_back({ways[i], counts[i]});
+  }
+  return counted;
+}
+
+/// One step per texel, scaled so that it explains the counts: for rays of a single direction, which tell no
+/// more.
+std::optional<StepFit> fit_of_one_direction(std::span<const CountedRay> rays, const std::array<int, 3>& size) {
+  volume::RaySteps texels;
+  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
+  double n = 0;
+  double sum_l = 0;
+  double sum_c = 0;
+  double sum_ll = 0;
+  double sum_lc = 0;
+  for (const CountedRay& ray : rays) {
+    const double l = steps_of_way(texels, ray.way);
+    n += 1;
+    sum_l += l;
+    sum_c += ray.samples;
+    sum_ll += l * l;
+    sum_lc += l * ray.samples;
+  }
+  const double spread = n * sum_ll - sum_l * sum_l;
+  if (!(spread > 1e-6 * sum_l * sum_l)) return std::nullopt;
+  StepFit fit;
+  const double slope = (n * sum_lc - sum_l * sum_c) / spread;
+  if (!(slope > 0)) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) fit.metric[4 * k] = slope * size[k];
+  fit.offset = (sum_c - slope * sum_l) / n;
+  fit.unexplained = 0;
+  for (const CountedRay& ray : rays) {
+    const double off = ray.samples - slope * steps_of_way(texels, ray.way) - fit.offset;
+    if (std::abs(off) > 0.55) fit.unexplained += 1 / n;
+  }
+  return fit;
+}
+
+/// For a maximum, which does not tell how many samples it was taken of: one or two a texel.
+std::vector<volume::RaySteps> rules_for_maximum(const std::array<int, 3>& size) {
+  std::vector<volume::RaySteps> rules;
+  for (const double density : {1.0, 2.0}) {
+    for (const double first : {1.0, 0.0}) {
+      volume::RaySteps steps;
+      for (std::size_t k = 0; k < 3; ++k) steps.metric[4 * k] = density * size[k];
+      steps.first = first;
+      rules.push_back(steps);
+    }
+  }
+  return rules;
+}
+
+bool is_scalar(GLenum type) {
+  switch (type) {
+    case GL_FLOAT_VEC2:
+    case GL_FLOAT_VEC3:
+    case GL_FLOAT_VEC4:
+    case GL_FLOAT_MAT2:
+    case GL_FLOAT_MAT3:
+    case GL_FLOAT_MAT4:
+      return false;
+    default:
+      return true;
+  }
+}
+
+std::size_t components(GLenum type) {
+  switch (type) {
+    case GL_FLOAT_VEC2:
+      return 2;
+    case GL_FLOAT_VEC3:
+      return 3;
+    case GL_FLOAT_VEC4:
+    case GL_FLOAT_MAT2:
+      return 4;
+    case GL_FLOAT_MAT3:
+      return 9;
+    case GL_FLOAT_MAT4:
+      return 16;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) {
+  const DispatchTable& gl = *measured.context.gl;
+  const Pipeline& pipeline = measured.run.pipeline();
+  MarchInputs inputs;
+  inputs.fixed = {measured.range[0], measured.range[1], pipeline.blending.premultiplied ? 1.0F : 0.0F,
+                  float(measured.texture.base)};
+  for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
+  for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
+  const auto record = group.programs().program(pipeline.program);
+  inputs.fixed.push_back(record ? float(record->link) : 0.0F);
+  for (const StageUniform& uniform : measured.stages.uniforms) {
+    const GLint location = gl.GetUniformLocation(pipeline.program, uniform.name.c_str());
+    if (location < 0) continue;
+    std::array<GLfloat, 16> value{};
+    gl.GetUniformfv(pipeline.program, location, value.data());
+    auto& to = is_scalar(uniform.type) ? inputs.fixed : inputs.varying;
+    to.insert(to.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
+  }
+  for (const SampledTexture& other : pipeline.others) {
+    if (group.is_rendered_to(other.texture)) continue;  // the opaque geometry's depth
+    inputs.fixed.push_back(float(other.texture));
+    inputs.fixed.push_back(float(group.texture_version(other.texture)));
+  }
+  return inputs;
+}
+
+std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
+  std::vector<CoordinateSpace> of_texels;
+  const auto& size = measured.texture.size;
+  for (const StageInput& input : measured.stages.inputs) {
+    if (input.integer || input.components < 3) continue;
+    const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, input.name);
+    if (!capture.fit) continue;
+    const auto box = box_of(capture.polygons);
+    if (!box) continue;
+    bool unit = true;
+    bool texels = true;
+    CoordinateSpace in_texels{input.name};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double n = size[k];
+      const double slack = 1.01 / n;
+      unit = unit && box->low[k] >= -slack && box->high[k] <= 1 + slack;
+      texels = texels && box->low[k] >= -1.01 && box->high[k] <= n + 1.01;
+      in_texels.scale[k] = 1 / n;
+    }
+    if (unit) return {{input.name}};
+    if (!texels || !of_texels.empty()) continue;
+    of_texels.push_back(in_texels);
+    for (std::size_t k = 0; k < 3; ++k) in_texels.offset[k] = 0.5 / size[k];
+    of_texels.push_back(in_texels);
+  }
+  return of_texels;
+}
+
+std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space) {
+  const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, space.input);
+  if (!capture.fit || capture.fit->residual > max_fit_residual) return std::nullopt;
+  auto box = box_of(capture.polygons);
+  if (!box || !wholly_in_view(capture.fit->texture_to_clip, *box)) return std::nullopt;
+  ProxyBox proxy{*box, *capture.fit};
+  volume::Matrix4 to_input = volume::identity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    proxy.region.low[k] = space.scale[k] * box->low[k] + space.offset[k];
+    proxy.region.high[k] = space.scale[k] * box->high[k] + space.offset[k];
+    to_input[5 * k] = 1 / space.scale[k];
+    to_input[4 * k + 3] = -space.offset[k] / space.scale[k];
+  }
+  proxy.camera.texture_to_clip = volume::multiply(capture.fit->texture_to_clip, to_input);
+  return proxy;
+}
+
+MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
+                           const ProxyBox& box) {
+  if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
+  FieldProbe probe(measured.context, measured.run, measured.texture);
+  if (!probe.complete()) return "the driver offers no float framebuffer to probe with";
+  const bool already = measured.run.pipeline().blending.premultiplied;
+  const auto& size = measured.texture.size;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  volume::RaySteps texels;
+  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
+
+  // A value that lets about half of the light through the whole box.
+  constexpr int tried = 128;
+  std::vector<float> values;
+  for (int i = 0; i < tried; ++i) values.push_back(value_at(measured.range, double(i) / (tried - 1)));
+  const auto middle = rays.middle();
+  const auto through = probe.at(middle[0], middle[1], values);
+  if (!finite(through)) return "the fragment stage gives colours that are not finite";
+  March march;
+  float nearest = 0.48F;
+  for (std::size_t i = 0; i < through.size(); ++i) {
+    if (!reached(through[i]) || std::abs(through[i][3] - 0.5F) > nearest) continue;
+    nearest = std::abs(through[i][3] - 0.5F);
+    march.translucent = values[i];
+  }
+  if (nearest == 0.48F) return "no value is translucent over the whole box: its samples cannot be counted";
+
+  // Lighting needs a gradient, however small.
+  const float slight = 1e-5F * (measured.range[1] - measured.range[0]);
+  const std::array one{march.translucent};
+  const Rgba flat = probe.at(middle[0], middle[1], one).front();
+  const Rgba sloping = probe.at_slope(middle[0], middle[1], one, slight).front();
+  if (!(largest_difference(flat, sloping) <= 0.02F)) return "the colour depends on the gradient (lighting)";
+
+  bool constant = false;
+  const auto counted = counted_rays(measured, probe, rays, march.translucent, constant);
+  if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
+  march.maximum = constant;
+  std::vector<volume::RaySteps> rules;
+  if (constant) {
+    rules = rules_for_maximum(size);
+  } else {
+    const auto& all = std::get<std::vector<CountedRay>>(counted);
+    auto fit = fit_steps(all);
+    if (!fit) fit = fit_of_one_direction(all, size);
+    if (!fit) return "rays of one length alone do not tell the step";
+    if (fit->unexplained > 0.02)
+      return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
+    rules = rules_of(*fit);
+  }
+
+  // Short rays keep the colours of single samples apart.
+  const Ray shortest = ray_of_length(rays, rules.front(), constant ? 3.0 : rules.front().first + 0.5);
+  const double n = constant ? 1 : samples_of_length(rules.front(), shortest.length);
+  constexpr double most_samples = 8;
+  if (n < 1 || n > most_samples) return "no short ray is in view: the opacity of one sample cannot be told";
+  values.clear();
+  for (int i = 0; i < table_entries; ++i)
+    values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
+  const auto fragments = probe.at(shortest.x, shortest.y, values);
+  if (!finite(fragments)) return "the fragment stage gives colours that are not finite";
+  march.table.low = measured.range[0];
+  march.table.high = measured.range[1];
+  for (const Rgba& fragment : fragments)
+    march.table.entries.push_back(sample_of(premultiplied(fragment, already), n));
+
+  std::vector<March> marches;
+  const bool ends_at_depth = samples_depth(measured.context, measured.run.pipeline());
+  for (const CoordinateSpace& space : spaces) {
+    for (const volume::RaySteps& rule : rules) {
+      march.space = space;
+      march.steps = rule;
+      // The step that reaches the opaque geometry is usually taken before it is noticed.
+      march.steps.past_depth = ends_at_depth ? 1 : 0;
+      marches.push_back(march);
+    }
+  }
+  return marches;
+}
+
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  constexpr float same_colour = 5e-3F;
+  FieldProbe probe(measured.context, measured.run, measured.texture);
+  if (!probe.complete()) return false;
+  const bool already = measured.run.pipeline().blending.premultiplied;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  const double wanted = march.maximum ? 3 : march.steps.first + 0.5;
+  const Ray shortest = ray_of_length(rays, march.steps, wanted);
+  constexpr int looked_at = 16;
+  std::vector<float> values;
+  for (int i = 0; i < looked_at; ++i)
+    values.push_back(value_at({march.table.low, march.table.high}, (i + 0.5) / looked_at));
+  const auto expected = [&](const Rgba& fragment, float value, double n) {
+    const Rgba sample = table_at(march.table, value);
+    const Rgba got = premultiplied(fragment, already);
+    if (march.maximum) return largest_difference(got, sample) <= same_colour;
+    // A ray whose end falls on a sample may have one more or less.
+    for (const double count : {n, n - 1, n + 1}) {
+      if (count >= 1 && largest_difference(got, ray_of(sample, count)) <= same_colour) return true;
+    }
+    return false;
+  };
+  const double samples = march.maximum ? 1 : samples_of_length(march.steps, shortest.length);
+  const auto fragments = probe.at(shortest.x, shortest.y, values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!expected(fragments[i], values[i], samples)) return false;
+  }
+  if (march.maximum) return true;
+  // A long ray: its step may have another length in another direction.
+  const auto middle = rays.middle();
+  const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
+  const int row = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
+  const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+  if (!way) return true;
+  return expected(probe.pixel(column, row, march.translucent), march.translucent,
+                  samples_of_length(march.steps, steps_of_way(march.steps, *way)));
+}
+
+volume::Classification asked_of_nodes(const March& march) {
+  if (!march.maximum) return march.table;
+  // The value travels in the first channel; where the lowest one is invisible, so are blocks of nothing else.
+  const Rgba& lowest = march.table.entries.front();
+  const bool all_visible = std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
+  volume::TransferFunction ramp;
+  ramp.low = march.table.low;
+  ramp.high = march.table.high;
+  ramp.entries = {{0, 0, 0, all_visible ? 1.0F : 0.0F}, {1, 0, 0, 1}};
+  return ramp;
+}
+
+void classify_maxima(const March& march, volume::Image& picture) {
+  const volume::TransferFunction& table = march.table;
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    Rgba colour{};
+    if (picture.rgba[i + 3] > 0)
+      colour = table_at(table, table.low + picture.rgba[i] * (table.high - table.low));
+    std::copy(colour.begin(), colour.end(), picture.rgba.begin() + std::ptrdiff_t(i));
+  }
+}
+
+}  // namespace understudy::spu

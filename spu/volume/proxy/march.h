@@ -1,0 +1,85 @@
+// How a fragment shader marches through its volume, measured on what it draws.
+//
+// Four things are asked: which input of the fragment stage is the texture coordinate, how samples are placed on
+// a ray, how they are composed, and what colour one sample has. Where two answers fit, all are given: the
+// volume unit takes the one whose picture is the application's.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/geometry/capture.h"
+#include "spu/volume/program_stages.h"
+#include "spu/volume/proxy/box.h"
+#include "spu/volume/texels.h"
+#include "volume/classification.h"
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+/// Texture coordinate = scale * input + offset, axis by axis.
+struct CoordinateSpace {
+  std::string input;
+  volume::Vec3 scale{1, 1, 1};
+  volume::Vec3 offset{};
+};
+
+/// The box of one draw, in texture space.
+struct ProxyBox {
+  volume::Box region;
+  CameraFit camera;
+};
+
+struct March {
+  CoordinateSpace space;
+  volume::RaySteps steps;
+  /// Samples are not composed: the largest value of the ray is classified by `table`.
+  bool maximum = false;
+  volume::TransferFunction table;  ///< premultiplied; of one sample
+  float translucent = 0;           ///< a value whose field lets a long ray through
+};
+
+/// What a march was measured under. While `fixed` stays, and a look at a few rays says so, it holds: the camera
+/// is among the inputs that vary.
+struct MarchInputs {
+  std::vector<float> fixed;
+  std::vector<float> varying;
+  bool operator==(const MarchInputs&) const = default;
+};
+
+/// Everything that `run` is measured on.
+struct MarchContext {
+  const GlContext& context;
+  const Run& run;
+  const ProgramStages& stages;
+  const TextureDescription& texture;
+  std::array<float, 2> range;  ///< of the texels' values
+};
+
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);
+
+/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole box
+/// that fits the texture's.
+std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
+
+/// The box of the draw in the texture space of `space`; null when it is no whole box (the near plane has cut
+/// it).
+std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space);
+
+/// Either marches that may be the application's, or why there are none, in words that end in the report.
+using MarchFinding = std::variant<std::vector<March>, std::string>;
+MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
+                           const ProxyBox& box);
+
+/// Whether a few rays still are as `march` says.
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);
+
+/// What the nodes are asked to show for a march, and what their picture becomes: colours as they are, or, of
+/// largest values, the colours that these have.
+volume::Classification asked_of_nodes(const March& march);
+void classify_maxima(const March& march, volume::Image& picture);
+
+}  // namespace understudy::spu

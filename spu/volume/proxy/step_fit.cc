@@ -1,0 +1,203 @@
+#include "spu/volume/proxy/step_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::Vec3;
+
+/// The six products that a quadratic form is linear in.
+std::array<double, 6> products(const Vec3& d) {
+  return {d[0] * d[0], d[1] * d[1], d[2] * d[2], 2 * d[0] * d[1], 2 * d[0] * d[2], 2 * d[1] * d[2]};
+}
+
+/// Gaussian elimination with pivoting; null when singular. Unknowns are scaled by the diagonal first.
+template <std::size_t N>
+std::optional<std::array<double, N>> solved(std::array<std::array<double, N + 1>, N> m) {
+  std::array<double, N> unit{};
+  for (std::size_t i = 0; i < N; ++i) {
+    if (!(m[i][i] > 0)) return std::nullopt;
+    unit[i] = std::sqrt(m[i][i]);
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) m[i][j] /= unit[i] * unit[j];
+    m[i][N] /= unit[i];
+  }
+  for (std::size_t i = 0; i < N; ++i) {
+    std::size_t pivot = i;
+    for (std::size_t j = i + 1; j < N; ++j) {
+      if (std::abs(m[j][i]) > std::abs(m[pivot][i])) pivot = j;
+    }
+    std::swap(m[i], m[pivot]);
+    if (!(std::abs(m[i][i]) > 1e-10)) return std::nullopt;
+    for (std::size_t j = 0; j < N; ++j) {
+      if (j == i) continue;
+      const double factor = m[j][i] / m[i][i];
+      for (std::size_t k = i; k <= N; ++k) m[j][k] -= factor * m[i][k];
+    }
+  }
+  std::array<double, N> x{};
+  for (std::size_t i = 0; i < N; ++i) x[i] = m[i][N] / m[i][i] / unit[i];
+  return x;
+}
+
+template <std::size_t N>
+class LeastSquares {
+ public:
+  void add(const std::array<double, N>& row, double value, double weight) {
+    for (std::size_t i = 0; i < N; ++i) {
+      for (std::size_t j = 0; j < N; ++j) m_[i][j] += weight * row[i] * row[j];
+      m_[i][N] += weight * row[i] * value;
+    }
+  }
+  std::optional<std::array<double, N>> solution() const { return solved<N>(m_); }
+
+ private:
+  std::array<std::array<double, N + 1>, N> m_{};
+};
+
+double form(const std::array<double, 6>& g, const std::array<double, 6>& p) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) sum += g[i] * p[i];
+  return sum;
+}
+
+/// Upper triangle R with R^T R = g; null when g is not positive definite.
+std::optional<std::array<double, 9>> root(const std::array<double, 6>& g) {
+  std::array<double, 9> r{};
+  if (!(g[0] > 0)) return std::nullopt;
+  r[0] = std::sqrt(g[0]);
+  r[1] = g[3] / r[0];
+  r[2] = g[4] / r[0];
+  const double second = g[1] - r[1] * r[1];
+  if (!(second > 0)) return std::nullopt;
+  r[4] = std::sqrt(second);
+  r[5] = (g[5] - r[1] * r[2]) / r[4];
+  const double third = g[2] - r[2] * r[2] - r[5] * r[5];
+  if (!(third > 0)) return std::nullopt;
+  r[8] = std::sqrt(third);
+  return r;
+}
+
+}  // namespace
+
+std::optional<StepFit> fit_steps(std::span<const CountedRay> rays) {
+  constexpr std::size_t fewest = 64;
+  constexpr double shortest = 4;  // samples: very short rays are all rounding
+  std::vector<std::array<double, 6>> ways;
+  std::vector<double> counts;
+  for (const CountedRay& ray : rays) {
+    if (ray.samples < shortest) continue;
+    ways.push_back(products(ray.way));
+    counts.push_back(ray.samples);
+  }
+  if (ways.size() < fewest) return std::nullopt;
+
+  LeastSquares<6> squares;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    squares.add(ways[i], counts[i] * counts[i], 1 / (counts[i] * counts[i]));
+  }
+  auto g = squares.solution();
+  if (!g) return std::nullopt;
+  double offset = 0;
+  for (int round = 0; round < 6; ++round) {
+    LeastSquares<7> refinement;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const double length = std::sqrt(std::max(form(*g, ways[i]), 1e-9));
+      std::array<double, 7> row{};
+      for (std::size_t k = 0; k < 6; ++k) row[k] = ways[i][k] / (2 * length);
+      row[6] = 1;
+      refinement.add(row, counts[i] - length - offset, 1);
+    }
+    const auto change = refinement.solution();
+    if (!change) return std::nullopt;
+    for (std::size_t k = 0; k < 6; ++k) (*g)[k] += (*change)[k];
+    offset += (*change)[6];
+  }
+  const auto metric = root(*g);
+  if (!metric) return std::nullopt;
+
+  StepFit fit{*metric, offset, 0};
+  constexpr double rounding = 0.55;  // half a step, and what the fit itself leaves
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    if (std::abs(counts[i] - std::sqrt(std::max(form(*g, ways[i]), 0.0)) - offset) > rounding)
+      fit.unexplained += 1;
+  }
+  fit.unexplained /= double(ways.size());
+  return fit;
+}
+
+std::vector<double> counts_from_opacities(std::span<const double> opacities) {
+  constexpr double whole = 0.1;  // how far a count may be from a whole number
+  std::vector<double> depths;    // optical
+  for (const double a : opacities) {
+    if (!(a >= 0 && a < 1)) return {};
+    depths.push_back(-std::log1p(-a));
+  }
+  std::vector<double> sorted = depths;
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.empty() || !(sorted.back() > 0)) return {};
+  // The smallest step between different depths is one sample's; anything far smaller is rounding.
+  const double noise = 1e-5 + 1e-5 * sorted.back();
+  double one = sorted.back();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double gap = sorted[i] - sorted[i - 1];
+    if (gap > 10 * noise) one = std::min(one, gap);
+  }
+  // A first guess from one gap is improved by all depths, short ones first.
+  for (const double limit : {8.0, 32.0, 128.0, 1e9}) {
+    double product = 0;
+    double square = 0;
+    for (const double depth : sorted) {
+      const double n = std::round(depth / one);
+      if (n < 1 || n > limit) continue;
+      product += n * depth;
+      square += n * n;
+    }
+    if (square > 0) one = product / square;
+  }
+  std::vector<double> counts;
+  std::size_t off = 0;
+  for (const double depth : depths) {
+    const double n = depth / one;
+    off += std::abs(n - std::round(n)) > whole ? 1 : 0;
+    counts.push_back(std::round(n));
+  }
+  if (off * 100 > counts.size()) return {};
+  return counts;
+}
+
+std::vector<volume::RaySteps> rules_of(const StepFit& fit) {
+  std::vector<volume::RaySteps> rules;
+  volume::RaySteps steps;
+  steps.metric = fit.metric;
+  // first + i <= L: floor(L - first) + 1 samples, so the offset is 1/2 - first.
+  steps.first = std::clamp(std::round(2 * (0.5 - fit.offset)) / 2, 0.0, 2.0);
+  rules.push_back(steps);
+  steps.divided = true;
+  steps.rounding = std::clamp(fit.offset + 0.5, 0.0, 1.0);
+  for (const double first : {0.0, 0.5}) {
+    steps.first = first;
+    rules.push_back(steps);
+  }
+  return rules;
+}
+
+double steps_of_way(const volume::RaySteps& steps, const Vec3& way) {
+  const auto& m = steps.metric;
+  return volume::length({m[0] * way[0] + m[1] * way[1] + m[2] * way[2],
+                         m[3] * way[0] + m[4] * way[1] + m[5] * way[2],
+                         m[6] * way[0] + m[7] * way[1] + m[8] * way[2]});
+}
+
+double samples_of_length(const volume::RaySteps& steps, double length) {
+  const double count =
+      steps.divided ? std::floor(length + steps.rounding) : std::floor(length - steps.first) + 1;
+  return std::max(count, 0.0);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,44 @@
+// From the number of samples on many rays to the rule that places them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+/// A ray's way through the box, in texture space, and how many samples lie on it.
+struct CountedRay {
+  volume::Vec3 way{};
+  double samples = 0;
+};
+
+/// samples = round(|metric way| + offset), where |metric way| is the length of the way in steps.
+struct StepFit {
+  std::array<double, 9> metric{};
+  double offset = 0;
+  /// The part of the rays whose count the fit does not explain by rounding: 0 when the rule is one of constant
+  /// steps from the entry, large when rays start at places of their own (jitter) or are cut elsewhere.
+  double unexplained = 1;
+};
+
+/// Null when the rays are too few or of one direction only.
+std::optional<StepFit> fit_steps(std::span<const CountedRay> rays);
+
+/// How many samples rays of the opacities 1 - q^n hold, for an unknown q: the counts n. Empty when the
+/// opacities are not of that kind.
+std::vector<double> counts_from_opacities(std::span<const double> opacities);
+
+/// Rules that count as `fit` does: constant steps, and ways divided evenly, from their beginning or from the
+/// middle of the first part.
+std::vector<volume::RaySteps> rules_of(const StepFit& fit);
+
+/// Length of a way in steps.
+double steps_of_way(const volume::RaySteps& steps, const volume::Vec3& way);
+
+/// Samples on a ray of so many steps.
+double samples_of_length(const volume::RaySteps& steps, double length);
+
+}  // namespace understudy::spu

@@ -1,0 +1,109 @@
+// The volume unit's way for ray casters: from the draw of a box to a request.
+#include <fmt/format.h>
+
+#include "spu/volume/depth.h"
+#include "spu/volume/proxy/march.h"
+#include "spu/volume/substitution.h"
+#include "spu/volume/verify.h"
+#include "volume/footprint.h"
+
+namespace understudy::spu {
+namespace {
+
+/// A box whose texture coordinates are known by name: measured again when the program or the texture changes.
+ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
+  const auto box = proxy_box(measured, space);
+  if (!box) throw Doubt{"the near plane cuts the ray caster's box, or the eye is inside"};
+  return *box;
+}
+
+void show(volume::RenderRequest& request, const March& march) {
+  request.steps = march.steps;
+  request.op = march.maximum ? volume::Operator::max : volume::Operator::over;
+  request.classification = asked_of_nodes(march);
+}
+
+}  // namespace
+
+void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderService& service) {
+  KnownVolume& known = s.volume;
+  const auto record = chain_.group().programs().program(s.pipeline.program);
+  const ProgramStages& parts = stages(s.pipeline.program, *record);
+  const auto use = [&](const ProxyBox& box) {
+    s.fit = box.camera;
+    s.slices.region = box.region;
+  };
+  describe_volume(s);
+  const auto context_of = [&] { return MarchContext{context(), s.run, parts, known.texture, known.range}; };
+  std::vector<CoordinateSpace> spaces;
+  if (known.march) {
+    spaces = {known.march->space};
+  } else {
+    spaces = coordinate_spaces(context_of());
+    if (spaces.empty())
+      throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
+  }
+  use(box_in(context_of(), spaces.front()));
+  upload(s, service);  // says what values there are
+
+  const MarchContext measured = context_of();
+  MarchInputs inputs = march_inputs(measured, chain_.group());
+  ProxyBox box{s.slices.region, *s.fit};
+  const bool same = known.march && inputs == known.march_inputs;
+  const bool holds = same || (known.march && inputs.fixed == known.march_inputs.fixed &&
+                              still_marches(measured, *known.march, box));
+  if (!holds) {
+    known.march.reset();
+    spaces = coordinate_spaces(measured);
+    if (spaces.empty())
+      throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
+    box = box_in(measured, spaces.front());
+    use(box);
+    MarchFinding finding = measure_march(measured, spaces, box);
+    if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+    known.march = choose_march(s, service, std::get<std::vector<March>>(finding));
+    known.frames = 0;  // looked at again, as a new volume is
+  }
+  known.march_inputs = std::move(inputs);
+  use(box_in(measured, known.march->space));
+  compose_request(s);
+  show(s.request, *known.march);
+}
+
+March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& service,
+                               const std::vector<March>& marches) {
+  const auto record = chain_.group().programs().program(s.pipeline.program);
+  const MarchContext measured{context(), s.run, stages(s.pipeline.program, *record), s.volume.texture,
+                              s.volume.range};
+  std::optional<std::vector<float>> drawn;
+  volume::Rect rect;
+  const March* best = nullptr;
+  double least = 0;
+  for (const March& march : marches) {
+    const auto box = proxy_box(measured, march.space);
+    if (!box) continue;
+    s.fit = box->camera;
+    s.slices.region = box->region;
+    compose_request(s);
+    show(s.request, march);
+    if (!drawn) {
+      rect = volume::footprint(s.request, s.request.region);
+      drawn = application_picture(context(), s.run, s.request, rect);
+      if (!drawn) break;
+    }
+    const compositor::Rendered rendered = service.render(s.request);
+    volume::Image picture;
+    picture.rect = rendered.image.rect;
+    picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
+    if (march.maximum) classify_maxima(march, picture);
+    const double square = difference_between(s.pipeline, rect, *drawn, picture.view()).mean_square;
+    if (best == nullptr || square < least) {
+      best = &march;
+      least = square;
+    }
+  }
+  if (best == nullptr) throw Doubt{"the driver offers no float framebuffer to compare pictures in"};
+  return *best;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,164 @@
+// Samples on constant steps along the rays, as ray casters in a fragment shader take them: against the
+// double-precision reference, and the same for any partition.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tests/volume/scenes.h"
+#include "volume/footprint.h"
+#include "volume/kd_tree.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+/// Steps of `length` in a space that is stretched and sheared against texture space.
+RaySteps steps_of(double length) {
+  RaySteps steps;
+  steps.metric = {1.0 / length, 0.1 / length, 0, 0, 0.8 / length, 0, 0.2 / length, 0, 1.3 / length};
+  return steps;
+}
+
+Matrix4 parallel_camera() {
+  return multiply(parallel(0.9, 0.8, -5, 5),
+                  multiply(look_at({0.9, 0.7, 1.6}, {0, 0, 0}, {0, 1, 0}), unit_cube()));
+}
+
+struct Case {
+  const char* name;
+  Matrix4 camera;
+  double first;
+  bool divided;
+  Operator op;
+};
+
+std::vector<Case> cases() {
+  const Matrix4 usual = usual_camera(45, 39);
+  return {{"perspective, one step in", usual, 1, false, Operator::over},
+          {"perspective, from the entry", usual, 0, false, Operator::over},
+          {"perspective, divided", usual, 0, true, Operator::over},
+          {"perspective, divided, middles", usual, 0.5, true, Operator::add},
+          {"parallel, half a step in", parallel_camera(), 0.5, false, Operator::over},
+          {"parallel, divided, maximum", parallel_camera(), 0, true, Operator::max}};
+}
+
+RenderRequest request_of(const Texture& texture, const Case& c) {
+  RenderRequest request = request_for(texture, c.camera, 45, 39, 0);
+  request.steps = steps_of(0.031);
+  request.steps->first = c.first;
+  request.steps->divided = c.divided;
+  request.op = c.op;
+  request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
+  return request;
+}
+
+void compose(Operator op, float* front, const float* back) {
+  const float room = 1 - front[3];
+  for (int k = 0; k < 4; ++k)
+    front[k] = op == Operator::over  ? front[k] + room * back[k]
+               : op == Operator::add ? front[k] + back[k]
+                                     : std::max(front[k], back[k]);
+}
+
+/// A sample that lies on the very end of its ray may count here and not there.
+constexpr int pixels_at_the_end = 3;
+
+TEST(RaySteps, GiveThePictureOfTheReference) {
+  for (const TexelType type : {TexelType::u8, TexelType::f32}) {
+    const Texture texture = noise(describe({37, 29, 41}, type, Wrap::edge), 5);
+    const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+    const BrickStore store = filled(texture);
+    for (const Case& c : cases()) {
+      RenderRequest request = request_of(texture, c);
+      Image image(request.window);
+      FrameCounts counts;
+      raycast(store, request, image, counts);
+      EXPECT_GT(counts.samples, 10000U) << c.name;
+      const Difference d = difference(image, slice_sum(field, request, request.window), 1e-3);
+      std::printf("%s: largest %.1e, rms %.1e\n", c.name, d.max, d.rms);
+      EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name;
+      EXPECT_LE(d.rms, 3e-4) << c.name;
+      // Another rule gives another picture: the comparison can fail.
+      request.steps->first += c.divided ? 0.3 : 0.5;
+      if (c.op == Operator::over) {
+        EXPECT_GT(difference(image, slice_sum(field, request, request.window)).rms, 1e-3) << c.name;
+      }
+    }
+  }
+}
+
+TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
+  const Texture texture = noise(describe({37, 29, 41}, TexelType::u8, Wrap::edge), 6);
+  const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+  const BrickStore store = filled(texture);
+  for (const double past : {0.0, 1.0})
+    for (const Case& c : cases()) {
+      RenderRequest request = request_of(texture, c);
+      request.steps->past_depth = past;
+      request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
+      const auto whole = slice_sum(field, request, request.window);
+      DepthImage depth;
+      depth.rect = request.window;
+      // A tilted wall through the middle of the volume.
+      const Vec4 middle = transform_point(c.camera, {0.5, 0.5, 0.5}),
+                 end = transform_point(c.camera, {1, 0.2, 0.9});
+      const double there = (middle[2] / middle[3] + 1) / 2, slope = (end[2] / end[3] + 1) / 2 - there;
+      for (int y = 0; y < depth.rect.height; ++y)
+        for (int x = 0; x < depth.rect.width; ++x)
+          depth.depth.push_back(float(there + slope * (x - depth.rect.width / 2) / depth.rect.width));
+      request.depth = depth;
+      Image image(request.window);
+      FrameCounts counts;
+      raycast(store, request, image, counts);
+      const auto reference = slice_sum(field, request, request.window);
+      const Difference d = difference(image, reference, 1e-3);
+      EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name << ", " << past << " steps past the depth";
+      EXPECT_GT(difference(whole, reference).rms, 1e-3) << "the wall hides nothing: the test tests nothing";
+    }
+}
+
+TEST(RaySteps, GiveTheSamePictureForAnyPartition) {
+  double worst = 0;
+  for (int ranks = 2; ranks <= 9; ++ranks)
+    for (const Case& c : cases()) {
+      const Texture texture = noise(describe({37, 29, 41}, TexelType::u8, Wrap::edge), unsigned(ranks));
+      const RenderRequest request = request_of(texture, c);
+      Image one(request.window), many(request.window);
+      FrameCounts counts_of_one, counts_of_many;
+      raycast(filled(texture), request, one, counts_of_one);
+      const KdTree tree(texture.description, ranks);
+      for (const int rank : tree.visibility_order(request)) {
+        Image part(footprint(request, texture.description, tree.box(rank)));
+        raycast(filled(texture, tree.box(rank)), request, part, counts_of_many);
+        for (int y = part.rect.y; y < part.rect.y + part.rect.height; ++y)
+          for (int x = part.rect.x; x < part.rect.x + part.rect.width; ++x)
+            compose(c.op, many.at(x, y), part.at(x, y));
+      }
+      EXPECT_EQ(counts_of_one.samples, counts_of_many.samples) << c.name << ", " << ranks << " ranks";
+      const double d = difference(one, many).max;
+      worst = std::max(worst, d);
+      EXPECT_LE(d, c.op == Operator::add ? 2e-5 : 1e-5) << c.name << ", " << ranks << " ranks";
+    }
+  std::printf("2 to 9 ranks against 1: largest difference %.2e\n", worst);
+}
+
+TEST(RaySteps, WithoutSenseAreRefused) {
+  const Texture texture = noise(describe({9, 9, 9}, TexelType::u8, Wrap::edge), 1);
+  const RenderRequest good = request_of(texture, cases().front());
+  EXPECT_NO_THROW(validate(texture.description, good));
+  RenderRequest bad = good;
+  bad.steps->metric = {1, 0, 0, 2, 0, 0, 0, 0, 1};
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument);
+  bad = good;
+  bad.steps->metric[4] = NAN;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument);
+  bad = good;
+  for (double& m : bad.steps->metric) m *= 1e6;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument);
+  bad = good;
+  bad.steps->first = -1;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

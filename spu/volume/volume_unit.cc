@@ -307,7 +307,7 @@ void VolumeUnit::observe(Substitution& s) {
       if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
       Capture capture = capture_vertices(context(), s.run, parts);
       if (capture.polygons.count() == 0) throw NothingVisible{};
-      s.proxy = one_draw && capture.fit && box_of(capture.polygons);
+      s.proxy = one_draw && capture.fit && draws_box(context(), s.run, parts, capture);
       if (s.proxy) return;
       if (!parts.trouble.empty()) throw Doubt{parts.trouble};
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};

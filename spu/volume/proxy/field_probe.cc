@@ -49,20 +49,23 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
   const int height = std::max(1, viewport_[1] + viewport_[3]);
 
   const Pipeline& pipeline = run.pipeline();
-  GLuint far_plane = 0;
   for (const SampledTexture& other : pipeline.others) {
     if (!is_depth_texture(gl_, other)) continue;
     saved_.borrow_texture(GL_TEXTURE_2D, other.unit);
-    if (far_plane == 0) {
-      constexpr float farthest = 1;
-      gl_.GenTextures(1, &far_plane);
-      textures_.push_back(far_plane);
-      gl_.BindTexture(GL_TEXTURE_2D, far_plane);
-      gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &farthest);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
+    // Of the same size: some programs fetch texels by the place of the fragment.
+    std::array<GLint, 2> size{};
+    gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &size[0]);
+    gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &size[1]);
+    const std::vector<float> farthest(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]),
+                                      1.0F);
+    GLuint far_plane = 0;
+    gl_.GenTextures(1, &far_plane);
+    textures_.push_back(far_plane);
     gl_.BindTexture(GL_TEXTURE_2D, far_plane);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                   farthest.data());
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 

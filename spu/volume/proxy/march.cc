@@ -147,39 +147,6 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   return counted;
 }
 
-/// One step per texel, scaled so that it explains the counts: for rays of a single direction, which tell no
-/// more.
-std::optional<StepFit> fit_of_one_direction(std::span<const CountedRay> rays, const std::array<int, 3>& size) {
-  volume::RaySteps texels;
-  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
-  double n = 0;
-  double sum_l = 0;
-  double sum_c = 0;
-  double sum_ll = 0;
-  double sum_lc = 0;
-  for (const CountedRay& ray : rays) {
-    const double l = steps_of_way(texels, ray.way);
-    n += 1;
-    sum_l += l;
-    sum_c += ray.samples;
-    sum_ll += l * l;
-    sum_lc += l * ray.samples;
-  }
-  const double spread = n * sum_ll - sum_l * sum_l;
-  if (!(spread > 1e-6 * sum_l * sum_l)) return std::nullopt;
-  StepFit fit;
-  const double slope = (n * sum_lc - sum_l * sum_c) / spread;
-  if (!(slope > 0)) return std::nullopt;
-  for (std::size_t k = 0; k < 3; ++k) fit.metric[4 * k] = slope * size[k];
-  fit.offset = (sum_c - slope * sum_l) / n;
-  fit.unexplained = 0;
-  for (const CountedRay& ray : rays) {
-    const double off = ray.samples - slope * steps_of_way(texels, ray.way) - fit.offset;
-    if (std::abs(off) > 0.55) fit.unexplained += 1 / n;
-  }
-  return fit;
-}
-
 /// For a maximum, which does not tell how many samples it was taken of: one or two a texel.
 std::vector<volume::RaySteps> rules_for_maximum(const std::array<int, 3>& size) {
   std::vector<volume::RaySteps> rules;
@@ -398,12 +365,13 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
     const auto counted = counted_rays(measured, probe, rays, march.translucent);
     if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
     const auto& all = std::get<std::vector<CountedRay>>(counted);
-    auto fit = fit_steps(all);
-    if (!fit) fit = fit_of_one_direction(all, size);
-    if (!fit) return "rays of one length alone do not tell the step";
-    if (fit->unexplained > 0.02)
-      return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
-    rules = rules_of(*fit);
+    const auto fits = fit_steps(all, size);
+    if (fits.empty()) return "too few rays of several samples are in view to tell the step";
+    for (const StepFit& fit : fits) {
+      if (fit.unexplained > most_unexplained)
+        return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
+      for (const volume::RaySteps& rule : rules_of(fit)) rules.push_back(rule);
+    }
   }
 
   march.table.low = measured.range[0];

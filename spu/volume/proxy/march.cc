@@ -174,6 +174,7 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
     values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
   auto& entries = march.table.entries;
   entries.clear();
+  std::vector<float> shortest;  // opacity of the shortest ray
   for (const double samples : {1.0, 6.0, 40.0}) {
     const double wanted = march.maximum ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
     const Ray ray = ray_of_length(rays, rule, wanted);
@@ -187,8 +188,11 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
       const Rgba colour = premultiplied(fragments[i], already);
       if (entries.size() <= i) {
         entries.push_back(sample_of(colour, n));
+        shortest.push_back(colour[3]);
       } else if (colour[3] < opaque) {
-        entries[i] = sample_of(colour, n);
+        // An opacity that does not grow with the way is that floor.
+        const bool grows = colour[3] > shortest[i] + 1e-5F;
+        entries[i] = grows ? sample_of(colour, n) : Rgba{};
       }
     }
     if (march.maximum) break;

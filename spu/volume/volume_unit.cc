@@ -173,6 +173,22 @@ std::string_view name_of(volume::TexelType type) {
   }
 }
 
+/// Where the samples lie, in words.
+std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size) {
+  if (!request.steps) {
+    return fmt::format("{} slices {:.5f} of the texture apart", request.planes.count,
+                       std::abs(request.planes.spacing));
+  }
+  const volume::RaySteps& steps = *request.steps;
+  std::array<double, 3> a_texel{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    a_texel[k] = volume::length({steps.metric[k], steps.metric[3 + k], steps.metric[6 + k]}) / size[k];
+  }
+  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}",
+                     a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
+                     request.op == volume::Operator::max ? ", maximum" : "");
+}
+
 template <std::size_t N>
 void put(char (&to)[N], std::string_view text) {
   const std::size_t length = std::min(text.size(), N - 1);
@@ -317,7 +333,7 @@ void VolumeUnit::observe(Substitution& s) {
       if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
       Capture capture = capture_vertices(context(), s.run, parts);
       if (capture.polygons.count() == 0) throw NothingVisible{};
-      s.proxy = one_draw && capture.fit && box_of(capture.polygons);
+      s.proxy = one_draw && capture.fit && draws_box(context(), s.run, parts, capture);
       if (s.proxy) return;
       if (!parts.trouble.empty()) throw Doubt{parts.trouble};
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
@@ -513,16 +529,16 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
 }
 
 void VolumeUnit::explain(const Substitution& s) {
-  const volume::SlicePlanes& planes = s.slices.planes;
   const volume::Matrix4& a = s.request.texture_to_clip;
   const bool perspective = std::abs(a[12]) + std::abs(a[13]) + std::abs(a[14]) > 1e-9 * std::abs(a[15]);
   put(s.volume.counters->explanation,
-      fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, "
+      fmt::format("{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, "
                   "fit to {:.1e}, "
                   "{} clip planes, {}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
-                  name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count,
-                  std::abs(planes.spacing), s.request.filter == volume::Filter::linear ? "linear" : "nearest",
+                  name_of(s.volume.texture.type), s.volume.texture.format_name,
+                  sampling_of(s.request, s.volume.texture.size),
+                  s.request.filter == volume::Filter::linear ? "linear" : "nearest",
                   std::holds_alternative<volume::LinearMap>(s.request.classification)
                       ? "colours in the texels"
                       : (s.pipeline.program != 0 ? "table probed from the program"

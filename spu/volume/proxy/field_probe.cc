@@ -8,7 +8,6 @@
 namespace understudy::spu {
 namespace {
 
-constexpr int most_columns = 1024;
 constexpr int finest_viewport = 4096;
 
 bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
@@ -46,23 +45,27 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
   std::array<GLint, 2> largest{};
   gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data());
   fine_ = std::min({finest_viewport, int(largest[0]), int(largest[1])});
-  size_ = {std::max(most_columns, viewport_[0] + viewport_[2]), std::max(1, viewport_[1] + viewport_[3])};
+  const int width = std::max(1, viewport_[0] + viewport_[2]);
+  const int height = std::max(1, viewport_[1] + viewport_[3]);
 
   const Pipeline& pipeline = run.pipeline();
-  GLuint far_plane = 0;
   for (const SampledTexture& other : pipeline.others) {
     if (!is_depth_texture(gl_, other)) continue;
     saved_.borrow_texture(GL_TEXTURE_2D, other.unit);
-    if (far_plane == 0) {
-      constexpr float farthest = 1;
-      gl_.GenTextures(1, &far_plane);
-      textures_.push_back(far_plane);
-      gl_.BindTexture(GL_TEXTURE_2D, far_plane);
-      gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, &farthest);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
+    // Of the same size: some programs fetch texels by the place of the fragment.
+    std::array<GLint, 2> size{};
+    gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &size[0]);
+    gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &size[1]);
+    const std::vector<float> farthest(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]),
+                                      1.0F);
+    GLuint far_plane = 0;
+    gl_.GenTextures(1, &far_plane);
+    textures_.push_back(far_plane);
     gl_.BindTexture(GL_TEXTURE_2D, far_plane);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                   farthest.data());
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 
@@ -71,7 +74,7 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
   GLint application_renderbuffer = 0;
   gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &application_renderbuffer);
   gl_.BindRenderbuffer(GL_RENDERBUFFER, colour_);
-  gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, size_[0], size_[1]);
+  gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
   gl_.BindRenderbuffer(GL_RENDERBUFFER, GLuint(application_renderbuffer));
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
@@ -90,8 +93,10 @@ FieldProbe::~FieldProbe() {
   gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
 }
 
-GLuint FieldProbe::field(const std::array<float, 8>& corners) {
+void FieldProbe::show(const std::array<float, 8>& corners) {
+  // A texture for every field: changing one that is in use would wait for the draw.
   GLuint name = 0;
+  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
   gl_.GenTextures(1, &name);
   textures_.push_back(name);
   gl_.BindTexture(GL_TEXTURE_3D, name);
@@ -103,7 +108,6 @@ GLuint FieldProbe::field(const std::array<float, 8>& corners) {
   if (with_swizzle_) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, texture_.swizzle.data());
   gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(probe_format(texture_.base)), 2, 2, 2, 0, upload_format(texture_.base),
                  GL_FLOAT, corners.data());
-  return name;
 }
 
 std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const float> values) {
@@ -111,35 +115,44 @@ std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const flo
 }
 
 std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<const float> values, float rise) {
-  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
+  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all. They
+  // lie in the middle of the viewport: near its rim some viewers discard fragments.
   const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
   const int py = std::clamp(int(std::floor((y + 1) / 2 * fine_)), 0, fine_ - 1);
-  const std::size_t room = std::size_t(size_[0]) * std::size_t(size_[1]);
+  const int columns = std::max(1, viewport_[2] / 2);
+  const int most_rows = std::max(1, viewport_[3] / 2);
+  const int left = viewport_[0] + viewport_[2] / 4;
+  const int bottom = viewport_[1] + viewport_[3] / 4;
   std::vector<volume::Rgba> colours;
   while (colours.size() < values.size()) {
-    const std::size_t count = std::min(room, values.size() - colours.size());
-    const int rows = int((count + std::size_t(size_[0]) - 1) / std::size_t(size_[0]));
-    gl_.Scissor(0, 0, size_[0], rows);
-    constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
-    gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
-    gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
+    const std::size_t count =
+        std::min(std::size_t(columns) * std::size_t(most_rows), values.size() - colours.size());
+    const int rows = (int(count) + columns - 1) / columns;
+    gl_.Scissor(left, bottom, columns, rows);
+    clear();
     for (std::size_t i = 0; i < count; ++i) {
-      const int column = int(i) % size_[0];
-      const int row = int(i) / size_[0];
+      const int column = left + int(i) % columns;
+      const int row = bottom + int(i) / columns;
       std::array<float, 8> corners;
       for (std::size_t c = 0; c < 8; ++c) {
         const float height = float(c & 1) + float(c >> 1 & 1) + float(c >> 2 & 1);
         corners[c] = values[colours.size() + i] + rise * (height / 3 - 0.5F);
       }
-      field(corners);
+      show(corners);
       gl_.Viewport(column - px, row - py, fine_, fine_);
       gl_.Scissor(column, row, 1, 1);
       run_.replay(gl_);
     }
-    std::vector<volume::Rgba> read_back = read(size_[0], rows);
+    std::vector<volume::Rgba> read_back(std::size_t(columns) * std::size_t(rows));
+    gl_.ReadPixels(left, bottom, columns, rows, GL_RGBA, GL_FLOAT, read_back.data());
     colours.insert(colours.end(), read_back.begin(), read_back.begin() + std::ptrdiff_t(count));
   }
   return colours;
+}
+
+void FieldProbe::clear() {
+  constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
+  gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
 }
 
 std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {
@@ -153,24 +166,16 @@ volume::Rgba FieldProbe::pixel(int column, int row, float value) {
 std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height, float value) {
   std::array<float, 8> corners;
   corners.fill(value);
-  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
-  field(corners);
+  show(corners);
   // At its own place, so that whatever depends on the place of a fragment is as it will be.
   const int x = viewport_[0] + column;
   const int y = viewport_[1] + row;
   gl_.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
   gl_.Scissor(x, y, width, height);
-  constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
-  gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+  clear();
   run_.replay(gl_);
   std::vector<volume::Rgba> colours(std::size_t(width) * std::size_t(height));
   gl_.ReadPixels(x, y, width, height, GL_RGBA, GL_FLOAT, colours.data());
-  return colours;
-}
-
-std::vector<volume::Rgba> FieldProbe::read(int width, int height) {
-  std::vector<volume::Rgba> colours(std::size_t(width) * std::size_t(height));
-  gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, colours.data());
   return colours;
 }
 

@@ -42,9 +42,9 @@ class FieldProbe {
   int height() const { return viewport_[3]; }
 
  private:
-  GLuint field(const std::array<float, 8>& corners);
+  void show(const std::array<float, 8>& corners);
+  void clear();
   std::vector<volume::Rgba> in_place(int column, int row, int width, int height, float value);
-  std::vector<volume::Rgba> read(int width, int height);
 
   const DispatchTable& gl_;
   const Run& run_;
@@ -52,8 +52,7 @@ class FieldProbe {
   bool with_swizzle_;
   std::array<GLint, 4> viewport_{};  ///< the application's
   std::array<GLint, 4> scissor_{};
-  std::array<int, 2> size_{};  ///< of the framebuffer
-  int fine_ = 0;               ///< edge of the viewport that rays are picked from
+  int fine_ = 0;  ///< edge of the viewport that rays are picked from
   SavedState saved_;
   std::vector<GLuint> textures_;
   GLuint colour_ = 0;

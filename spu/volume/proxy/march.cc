@@ -110,8 +110,7 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
 
 /// Counts of samples on rays all over the box.
 std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
-                                                                const RaysThroughBox& rays, float value,
-                                                                bool& constant) {
+                                                                const RaysThroughBox& rays, float value) {
   const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<Vec3> ways;
   std::vector<double> opacities;
@@ -131,16 +130,8 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
     }
   }
   if (ways.size() < 64) return "too little of the box is in view to measure its rays";
-  const auto [least, most] = std::minmax_element(opacities.begin(), opacities.end());
-  constant = *most - *least < 1e-3 * *most;
-  if (constant) {
-    std::vector<double> lengths;
-    for (const Vec3& way : ways) lengths.push_back(volume::length(way));
-    const auto [shortest, longest] = std::minmax_element(lengths.begin(), lengths.end());
-    if (*longest < 1.1 * *shortest) return "rays of one length alone do not tell the step";
-  }
+  const auto most = std::max_element(opacities.begin(), opacities.end());
   std::vector<CountedRay> counted;
-  if (constant) return counted;
   const std::vector<double> counts = counts_from_opacities(opacities);
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
   // Colour over opacity stays what it is for one sample.
@@ -156,39 +147,6 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   return counted;
 }
 
-/// One step per texel, scaled so that it explains the counts: for rays of a single direction, which tell no
-/// more.
-std::optional<StepFit> fit_of_one_direction(std::span<const CountedRay> rays, const std::array<int, 3>& size) {
-  volume::RaySteps texels;
-  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
-  double n = 0;
-  double sum_l = 0;
-  double sum_c = 0;
-  double sum_ll = 0;
-  double sum_lc = 0;
-  for (const CountedRay& ray : rays) {
-    const double l = steps_of_way(texels, ray.way);
-    n += 1;
-    sum_l += l;
-    sum_c += ray.samples;
-    sum_ll += l * l;
-    sum_lc += l * ray.samples;
-  }
-  const double spread = n * sum_ll - sum_l * sum_l;
-  if (!(spread > 1e-6 * sum_l * sum_l)) return std::nullopt;
-  StepFit fit;
-  const double slope = (n * sum_lc - sum_l * sum_c) / spread;
-  if (!(slope > 0)) return std::nullopt;
-  for (std::size_t k = 0; k < 3; ++k) fit.metric[4 * k] = slope * size[k];
-  fit.offset = (sum_c - slope * sum_l) / n;
-  fit.unexplained = 0;
-  for (const CountedRay& ray : rays) {
-    const double off = ray.samples - slope * steps_of_way(texels, ray.way) - fit.offset;
-    if (std::abs(off) > 0.55) fit.unexplained += 1 / n;
-  }
-  return fit;
-}
-
 /// For a maximum, which does not tell how many samples it was taken of: one or two a texel.
 std::vector<volume::RaySteps> rules_for_maximum(const std::array<int, 3>& size) {
   std::vector<volume::RaySteps> rules;
@@ -201,6 +159,45 @@ std::vector<volume::RaySteps> rules_for_maximum(const std::array<int, 3>& size) 
     }
   }
   return rules;
+}
+
+/// The colour of one sample of every value, into the march's table. Several rays are asked, from one sample on:
+/// the longest that is not opaque tells best, because some programs keep a ray's opacity above a floor.
+std::optional<std::string> measure_table(const MarchContext& measured, FieldProbe& probe,
+                                         const RaysThroughBox& rays, const volume::RaySteps& rule,
+                                         March& march) {
+  constexpr float opaque = 0.6F;
+  constexpr double most_samples_of_shortest = 8;
+  const bool already = measured.run.pipeline().premultiplied;
+  std::vector<float> values;
+  for (int i = 0; i < table_entries; ++i)
+    values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
+  auto& entries = march.table.entries;
+  entries.clear();
+  std::vector<float> shortest;  // opacity of the shortest ray
+  for (const double samples : {1.0, 6.0, 40.0}) {
+    const double wanted = march.maximum ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
+    const Ray ray = ray_of_length(rays, rule, wanted);
+    const double n = march.maximum ? 1 : samples_of_length(rule, ray.length);
+    if (entries.empty() && (n < 1 || n > most_samples_of_shortest))
+      return "no short ray is in view: the opacity of one sample cannot be told";
+    if (!entries.empty() && std::abs(n - samples) > samples / 2) continue;
+    const auto fragments = probe.at(ray.x, ray.y, values);
+    if (!finite(fragments)) return "the fragment stage gives colours that are not finite";
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      const Rgba colour = premultiplied(fragments[i], already);
+      if (entries.size() <= i) {
+        entries.push_back(sample_of(colour, n));
+        shortest.push_back(colour[3]);
+      } else if (colour[3] < opaque) {
+        // An opacity that does not grow with the way is that floor.
+        const bool grows = colour[3] > shortest[i] + 1e-5F;
+        entries[i] = grows ? sample_of(colour, n) : Rgba{};
+      }
+    }
+    if (march.maximum) break;
+  }
+  return std::nullopt;
 }
 
 bool is_scalar(GLenum type) {
@@ -263,6 +260,17 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
   return inputs;
 }
 
+bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen) {
+  constexpr std::size_t most_triangles = 4096;  // of a box
+  if (seen.polygons.count() > most_triangles) return false;
+  if (box_of(seen.polygons)) return true;
+  return std::any_of(stages.inputs.begin(), stages.inputs.end(), [&](const StageInput& input) {
+    if (input.integer || input.components < 3 || input.name == seen.coordinate) return false;
+    const Capture capture = capture_vertices(context, run, stages, input.name);
+    return capture.fit && box_of(capture.polygons);
+  });
+}
+
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
   std::vector<CoordinateSpace> of_texels;
   const auto& size = measured.texture.size;
@@ -313,27 +321,39 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
   FieldProbe probe(measured.context, measured.run, measured.texture);
   if (!probe.complete()) return "the driver offers no float framebuffer to probe with";
-  const bool already = measured.run.pipeline().blending.premultiplied;
   const auto& size = measured.texture.size;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   volume::RaySteps texels;
   for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
 
-  // A value that lets about half of the light through the whole box.
   constexpr int tried = 128;
   std::vector<float> values;
   for (int i = 0; i < tried; ++i) values.push_back(value_at(measured.range, double(i) / (tried - 1)));
   const auto middle = rays.middle();
   const auto through = probe.at(middle[0], middle[1], values);
-  if (!finite(through)) return "the fragment stage gives colours that are not finite";
+  const Ray brief = ray_of_length(rays, texels, 3);
+  const auto briefly = probe.at(brief.x, brief.y, values);
+  if (!finite(through) || !finite(briefly)) return "the fragment stage gives colours that are not finite";
   March march;
+  // Whatever the way through it, one value has one colour: samples are not composed.
+  march.maximum = true;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(largest_difference(through[i], briefly[i]) <= 2e-3F)) march.maximum = false;
+  }
+  const auto reference_way = rays.way(middle[0], middle[1]);
+  if (march.maximum && (!reference_way || steps_of_way(texels, *reference_way) < 2 * brief.length))
+    return "rays of one length alone do not tell the step";
+
+  // A value that lets about half of the light through the whole box.
+  march.translucent = values[tried / 2];
   float nearest = 0.48F;
-  for (std::size_t i = 0; i < through.size(); ++i) {
+  for (std::size_t i = 0; i < through.size() && !march.maximum; ++i) {
     if (!reached(through[i]) || std::abs(through[i][3] - 0.5F) > nearest) continue;
     nearest = std::abs(through[i][3] - 0.5F);
     march.translucent = values[i];
   }
-  if (nearest == 0.48F) return "no value is translucent over the whole box: its samples cannot be counted";
+  if (nearest == 0.48F && !march.maximum)
+    return "no value is translucent over the whole box: its samples cannot be counted";
 
   // Lighting needs a gradient, however small.
   const float slight = 1e-5F * (measured.range[1] - measured.range[0]);
@@ -342,37 +362,25 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   const Rgba sloping = probe.at_slope(middle[0], middle[1], one, slight).front();
   if (!(largest_difference(flat, sloping) <= 0.02F)) return "the colour depends on the gradient (lighting)";
 
-  bool constant = false;
-  const auto counted = counted_rays(measured, probe, rays, march.translucent, constant);
-  if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
-  march.maximum = constant;
   std::vector<volume::RaySteps> rules;
-  if (constant) {
+  if (march.maximum) {
     rules = rules_for_maximum(size);
   } else {
+    const auto counted = counted_rays(measured, probe, rays, march.translucent);
+    if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
     const auto& all = std::get<std::vector<CountedRay>>(counted);
-    auto fit = fit_steps(all);
-    if (!fit) fit = fit_of_one_direction(all, size);
-    if (!fit) return "rays of one length alone do not tell the step";
-    if (fit->unexplained > 0.02)
-      return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
-    rules = rules_of(*fit);
+    const auto fits = fit_steps(all, size);
+    if (fits.empty()) return "too few rays of several samples are in view to tell the step";
+    for (const StepFit& fit : fits) {
+      if (fit.unexplained > most_unexplained)
+        return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
+      for (const volume::RaySteps& rule : rules_of(fit)) rules.push_back(rule);
+    }
   }
 
-  // Short rays keep the colours of single samples apart.
-  const Ray shortest = ray_of_length(rays, rules.front(), constant ? 3.0 : rules.front().first + 0.5);
-  const double n = constant ? 1 : samples_of_length(rules.front(), shortest.length);
-  constexpr double most_samples = 8;
-  if (n < 1 || n > most_samples) return "no short ray is in view: the opacity of one sample cannot be told";
-  values.clear();
-  for (int i = 0; i < table_entries; ++i)
-    values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
-  const auto fragments = probe.at(shortest.x, shortest.y, values);
-  if (!finite(fragments)) return "the fragment stage gives colours that are not finite";
   march.table.low = measured.range[0];
   march.table.high = measured.range[1];
-  for (const Rgba& fragment : fragments)
-    march.table.entries.push_back(sample_of(premultiplied(fragment, already), n));
+  if (auto reason = measure_table(measured, probe, rays, rules.front(), march)) return *reason;
 
   std::vector<March> marches;
   const bool ends_at_depth = samples_depth(measured.context, measured.run.pipeline());
@@ -394,7 +402,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   if (!probe.complete()) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
-  const double wanted = march.maximum ? 3 : march.steps.first + 0.5;
+  const double wanted = march.maximum ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);
   const Ray shortest = ray_of_length(rays, march.steps, wanted);
   constexpr int looked_at = 16;
   std::vector<float> values;

@@ -61,6 +61,10 @@ struct MarchContext {
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);
 
+/// Whether the draw covers a whole box in some input of the fragment stage; `seen` is one that was captured
+/// already.
+bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen);
+
 /// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole box
 /// that fits the texture's.
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "volume/matrix.h"
 
@@ -83,52 +85,119 @@ std::optional<std::array<double, 9>> root(const std::array<double, 6>& g) {
   return r;
 }
 
-}  // namespace
-
-std::optional<StepFit> fit_steps(std::span<const CountedRay> rays) {
-  constexpr std::size_t fewest = 64;
-  constexpr double shortest = 4;  // samples: very short rays are all rounding
-  std::vector<std::array<double, 6>> ways;
-  std::vector<double> counts;
+/// What of the rays is no rounding.
+double unexplained_part(std::span<const CountedRay> rays, const std::array<double, 6>& g, double offset,
+                        double rounding) {
+  std::size_t off = 0;
   for (const CountedRay& ray : rays) {
-    if (ray.samples < shortest) continue;
-    ways.push_back(products(ray.way));
-    counts.push_back(ray.samples);
+    const double length = std::sqrt(std::max(form(g, products(ray.way)), 0.0));
+    off += std::abs(ray.samples - length - offset) > rounding ? 1 : 0;
   }
-  if (ways.size() < fewest) return std::nullopt;
+  return double(off) / double(rays.size());
+}
 
-  LeastSquares<6> squares;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    squares.add(ways[i], counts[i] * counts[i], 1 / (counts[i] * counts[i]));
+std::optional<StepFit> finished(std::span<const CountedRay> rays, const std::array<double, 6>& g, double offset,
+                                double rounding) {
+  const auto metric = root(g);
+  if (!metric) return std::nullopt;
+  return StepFit{*metric, offset, unexplained_part(rays, g, offset, rounding)};
+}
+
+/// Gauss-Newton for the first N products' coefficients.
+template <std::size_t N>
+std::optional<StepFit> fit_products(std::span<const CountedRay> rays, double offset) {
+  constexpr double rounding = 0.55;  // half a step, and what the fit itself leaves
+  const auto row_of = [](const CountedRay& ray) {
+    const auto all = products(ray.way);
+    std::array<double, N> row{};
+    std::copy_n(all.begin(), N, row.begin());
+    return row;
+  };
+  LeastSquares<N> squares;
+  for (const CountedRay& ray : rays) {
+    const double length = std::max(ray.samples - offset, 0.5);
+    squares.add(row_of(ray), length * length, 1 / (length * length));
   }
-  auto g = squares.solution();
-  if (!g) return std::nullopt;
-  double offset = 0;
+  auto solution = squares.solution();
+  if (!solution) return std::nullopt;
+  std::array<double, 6> g{};
+  std::copy_n(solution->begin(), N, g.begin());
   for (int round = 0; round < 6; ++round) {
-    LeastSquares<7> refinement;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      const double length = std::sqrt(std::max(form(*g, ways[i]), 1e-9));
-      std::array<double, 7> row{};
-      for (std::size_t k = 0; k < 6; ++k) row[k] = ways[i][k] / (2 * length);
-      row[6] = 1;
-      refinement.add(row, counts[i] - length - offset, 1);
+    LeastSquares<N> refinement;
+    for (const CountedRay& ray : rays) {
+      auto row = row_of(ray);
+      const double length = std::sqrt(std::max(form(g, products(ray.way)), 1e-9));
+      for (double& x : row) x /= 2 * length;
+      refinement.add(row, ray.samples - length - offset, 1);
     }
     const auto change = refinement.solution();
     if (!change) return std::nullopt;
-    for (std::size_t k = 0; k < 6; ++k) (*g)[k] += (*change)[k];
-    offset += (*change)[6];
+    for (std::size_t k = 0; k < N; ++k) g[k] += (*change)[k];
   }
-  const auto metric = root(*g);
-  if (!metric) return std::nullopt;
+  return finished(rays, g, offset, rounding);
+}
 
-  StepFit fit{*metric, offset, 0};
-  constexpr double rounding = 0.55;  // half a step, and what the fit itself leaves
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    if (std::abs(counts[i] - std::sqrt(std::max(form(*g, ways[i]), 0.0)) - offset) > rounding)
-      fit.unexplained += 1;
+/// Every count allows an interval of the one unknown; where most of them meet is the answer.
+std::optional<StepFit> fit_texels(std::span<const CountedRay> rays, const std::array<int, 3>& texels,
+                                  double offset) {
+  constexpr double rounding = 0.51;
+  struct End {
+    double place;
+    int opens;
+  };
+  std::vector<End> ends;
+  for (const CountedRay& ray : rays) {
+    const double length =
+        volume::length({ray.way[0] * texels[0], ray.way[1] * texels[1], ray.way[2] * texels[2]});
+    if (!(length > 0)) return std::nullopt;
+    ends.push_back({(ray.samples - offset - rounding) / length, 1});
+    ends.push_back({(ray.samples - offset + rounding) / length, -1});
   }
-  fit.unexplained /= double(ways.size());
-  return fit;
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place < b.place; });
+  int open = 0;
+  int most = 0;
+  double density = 0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    open += ends[i].opens;
+    if (open <= most) continue;
+    most = open;
+    density = (ends[i].place + ends[i + 1].place) / 2;
+  }
+  if (!(density > 0)) return std::nullopt;
+  std::array<double, 6> g{};
+  for (std::size_t k = 0; k < 3; ++k) g[k] = density * density * texels[k] * texels[k];
+  return finished(rays, g, offset, rounding);
+}
+
+std::optional<StepFit> fit_axes(std::span<const CountedRay> rays, const std::array<int, 3>&, double offset) {
+  return fit_products<3>(rays, offset);
+}
+std::optional<StepFit> fit_any(std::span<const CountedRay> rays, const std::array<int, 3>&, double offset) {
+  return fit_products<6>(rays, offset);
+}
+
+}  // namespace
+
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::array<int, 3>& texels) {
+  constexpr std::size_t fewest = 64;
+  constexpr double shortest = 2;  // samples: some programs take one where there is room for none
+  std::vector<CountedRay> counted;
+  std::copy_if(rays.begin(), rays.end(), std::back_inserter(counted),
+               [](const CountedRay& ray) { return ray.samples >= shortest; });
+  if (counted.size() < fewest) return {};
+  std::optional<StepFit> best;
+  for (const auto& fit : {fit_texels, fit_axes, fit_any}) {
+    std::vector<StepFit> good;
+    for (const double offset : {-0.5, 0.0, 0.5}) {
+      const auto found = fit(counted, texels, offset);
+      if (!found) continue;
+      if (found->unexplained <= most_unexplained) good.push_back(*found);
+      if (!best || found->unexplained < best->unexplained) best = found;
+    }
+    if (!good.empty()) return good;
+  }
+  if (!best) return {};
+  return {*best};
 }
 
 std::vector<double> counts_from_opacities(std::span<const double> opacities) {
@@ -176,10 +245,10 @@ std::vector<volume::RaySteps> rules_of(const StepFit& fit) {
   volume::RaySteps steps;
   steps.metric = fit.metric;
   // first + i <= L: floor(L - first) + 1 samples, so the offset is 1/2 - first.
-  steps.first = std::clamp(std::round(2 * (0.5 - fit.offset)) / 2, 0.0, 2.0);
+  steps.first = 0.5 - fit.offset;
   rules.push_back(steps);
   steps.divided = true;
-  steps.rounding = std::clamp(fit.offset + 0.5, 0.0, 1.0);
+  steps.rounding = fit.offset + 0.5;
   for (const double first : {0.0, 0.5}) {
     steps.first = first;
     rules.push_back(steps);

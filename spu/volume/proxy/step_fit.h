@@ -18,14 +18,20 @@ struct CountedRay {
 /// samples = round(|metric way| + offset), where |metric way| is the length of the way in steps.
 struct StepFit {
   std::array<double, 9> metric{};
-  double offset = 0;
-  /// The part of the rays whose count the fit does not explain by rounding: 0 when the rule is one of constant
-  /// steps from the entry, large when rays start at places of their own (jitter) or are cut elsewhere.
+  double offset = 0;  ///< 1/2, 0 or -1/2
+  /// The part of the rays whose count the fit does not explain by rounding: nothing when the rule is one of
+  /// constant steps from the entry, much when rays start at places of their own (jitter) or are cut elsewhere.
   double unexplained = 1;
 };
 
-/// Null when the rays are too few or of one direction only.
-std::optional<StepFit> fit_steps(std::span<const CountedRay> rays);
+/// More unexplained rays than that are no rounding.
+constexpr double most_unexplained = 0.01;
+
+/// The simplest fits that explain the counts: steps of so many texels, or, where no such step does, of a length
+/// along each axis, or in any affine space. Rays of nearly one direction tell little of the other ones, and the
+/// simpler space is the one that holds when the camera has moved. Several when the counts leave open where the
+/// first sample lies; when nothing explains them, the best one; none without enough rays.
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::array<int, 3>& texels);
 
 /// How many samples rays of the opacities 1 - q^n hold, for an unknown q: the counts n. Empty when the
 /// opacities are not of that kind.

@@ -1,0 +1,281 @@
+#include "box_ray_caster.h"
+
+#include <cmath>
+#include <vector>
+
+namespace understudy::spu::testing {
+namespace {
+
+constexpr const char* vertex_source =
+    "#version 330\n"
+    "uniform mat4 camera; in vec3 corner; out vec3 place;\n"
+    "void main() { place = corner; gl_Position = camera * vec4(corner, 1.0); }\n";
+
+constexpr const char* fragment_source =
+    "#version 330\n"
+    "uniform sampler3D field; uniform sampler1D table; uniform sampler2D opaque;\n"
+    "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
+    "uniform int composition; uniform bool straight, divided, lit, jittered, reads_depth; uniform vec2 "
+    "window;\n"
+    "in vec3 place; out vec4 colour;\n"
+    "vec4 classified(vec3 at) {\n"
+    "  vec4 c = texture(table, texture(field, at).r);\n"
+    "  if (lit) {\n"
+    "    vec3 h = vec3(0.02, 0.0, 0.0);\n"
+    "    vec3 g = vec3(texture(field, at + h.xyy).r - texture(field, at - h.xyy).r,\n"
+    "                  texture(field, at + h.yxy).r - texture(field, at - h.yxy).r,\n"
+    "                  texture(field, at + h.yyx).r - texture(field, at - h.yyx).r);\n"
+    "    c.rgb *= length(g) > 0.0 ? 0.2 + 0.8 * abs(normalize(g).x) : 0.2;\n"
+    "  }\n"
+    "  return vec4(c.rgb * c.a, c.a);\n"
+    "}\n"
+    "void main() {\n"
+    "  if (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0) discard;\n"
+    "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
+    "  vec3 step = along / length(along * extent) * one_step;\n"
+    "  vec3 to_exit = (vec3(greaterThan(step, vec3(0.0))) - place) / step;\n"
+    "  float steps = min(to_exit.x, min(to_exit.y, to_exit.z));\n"
+    "  float first = 1.0, count = floor(steps);\n"
+    "  if (divided) { count = floor(steps + 0.5); step *= steps / count; first = 0.0; }\n"
+    "  if (jittered) first = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5) + 0.5;\n"
+    "  count = jittered ? floor(steps - first) + 1.0 : count;\n"
+    "  if (count < 1.0) discard;\n"
+    "  if (reads_depth) {\n"
+    "    vec4 end = vec4(2.0 * gl_FragCoord.xy / window - 1.0, 0.0, 1.0);\n"
+    "    end.z = 2.0 * texelFetch(opaque, ivec2(gl_FragCoord.xy), 0).r - 1.0;\n"
+    "    if (gl_FragCoord.z * 2.0 - 1.0 >= end.z) discard;\n"
+    "    end = inverse_camera * end;\n"
+    "    count = min(count, ceil(length((end.xyz / end.w - place) * extent) / one_step));\n"
+    "  }\n"
+    "  vec4 sum = vec4(0.0); float largest = 0.0;\n"
+    "  for (float i = 0.0; i < count && sum.a < 0.999; ++i) {\n"
+    "    vec3 at = place + (first + i) * step;\n"
+    "    vec4 sample_colour = classified(at);\n"
+    "    if (composition == 0) sum += (1.0 - sum.a) * sample_colour;\n"
+    "    if (composition == 2) sum += sample_colour;\n"
+    "    largest = max(largest, texture(field, at).r);\n"
+    "  }\n"
+    "  if (composition == 1) { vec4 c = texture(table, largest); sum = vec4(c.rgb * c.a, c.a); }\n"
+    "  sum.a = min(sum.a, 1.0);\n"
+    "  colour = straight && sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : sum;\n"
+    "}\n";
+
+constexpr const char* wall_vertices =
+    "#version 330\n"
+    "uniform float depth;\n"
+    "void main() {\n"
+    "  vec2 unit = vec2(gl_VertexID & 1, gl_VertexID >> 1);\n"
+    "  gl_Position = vec4(unit - vec2(1.0, 0.5), 2.0 * depth - 1.0, 1.0);\n"
+    "}\n";
+constexpr const char* wall_fragments =
+    "#version 330\n"
+    "out vec4 colour; void main() { colour = vec4(0.9, 0.8, 0.1, 1.0); }\n";
+
+GLuint program_of(const DispatchTable& gl, const char* vertices, const char* fragments) {
+  const GLuint program = gl.CreateProgram();
+  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertices}, {GL_FRAGMENT_SHADER, fragments}}) {
+    const GLuint shader = gl.CreateShader(GLenum(stage));
+    gl.ShaderSource(shader, 1, &source, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(program, shader);
+    gl.DeleteShader(shader);
+  }
+  gl.BindAttribLocation(program, 0, "corner");
+  gl.LinkProgram(program);
+  return program;
+}
+
+/// Two triangles a face, counterclockwise from outside.
+std::vector<GLfloat> box_triangles() {
+  std::vector<GLfloat> triangles;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool high : {false, true}) {
+      const std::array<std::array<GLfloat, 2>, 4> square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+      for (const std::size_t turn : {0, 1, 2, 0, 2, 3}) {
+        const auto& [a, b] = square[turn];
+        std::array<GLfloat, 3> corner{};
+        corner[axis] = high ? 1 : 0;
+        corner[(axis + 1) % 3] = high ? a : b;
+        corner[(axis + 2) % 3] = high ? b : a;
+        triangles.insert(triangles.end(), corner.begin(), corner.end());
+      }
+    }
+  }
+  return triangles;
+}
+
+using Matrix = std::array<double, 16>;  // column-major
+
+struct Camera {
+  Matrix forward;
+  Matrix inverse;
+  std::array<float, 4> eye;  ///< in the box's coordinates; with w = 0 the direction of view
+};
+
+/// projection * translate(0, 0, -distance) * rotate * scale(extent) * translate(-1/2), and its inverse.
+Camera camera_of(const MarchStyle& c, double angle) {
+  const double cosine = std::cos(angle * M_PI / 180);
+  const double sine = std::sin(angle * M_PI / 180);
+  const double tilt = 0.4;
+  // Rows of the rotation: about y by the angle, then about x by the tilt.
+  const std::array<std::array<double, 3>, 3> turn = {
+      {{cosine, 0, sine},
+       {std::sin(tilt) * sine, std::cos(tilt), -std::sin(tilt) * cosine},
+       {-std::cos(tilt) * sine, std::sin(tilt), std::cos(tilt) * cosine}}};
+  const double near = 0.5;
+  const double far = 10;
+  const double f = c.parallel ? 1.0 : 2.8;
+  const double zz = c.parallel ? -2 / (far - near) : (far + near) / (near - far);
+  const double zt = c.parallel ? -(far + near) / (far - near) : 2 * far * near / (near - far);
+  Camera camera{};
+  std::array<double, 3> eye{};  // x = extent (t - 1/2); eye space e = turn x - (0, 0, distance)
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::array<double, 3> e = {turn[0][k] * c.extent[k], turn[1][k] * c.extent[k],
+                                     turn[2][k] * c.extent[k]};
+    camera.forward[4 * k] = f * e[0];
+    camera.forward[4 * k + 1] = f * e[1];
+    camera.forward[4 * k + 2] = zz * e[2];
+    camera.forward[4 * k + 3] = c.parallel ? 0 : -e[2];
+    eye[k] = c.parallel ? -turn[2][k] / c.extent[k] : turn[2][k] * c.distance / c.extent[k] + 0.5;
+    camera.eye[k] = float(eye[k]);
+  }
+  camera.eye[3] = c.parallel ? 0 : 1;
+  for (std::size_t row = 0; row < 4; ++row) {
+    double middle = 0;
+    for (std::size_t k = 0; k < 3; ++k) middle += 0.5 * camera.forward[4 * k + row];
+    camera.forward[12 + row] = -middle;
+  }
+  camera.forward[14] += -zz * c.distance + zt;
+  camera.forward[15] += c.parallel ? 1 : c.distance;
+  // Backwards: e from clip, x from e (the rotation's transpose), t from x.
+  const auto backwards = [&](std::array<double, 4> clip) {
+    std::array<double, 4> e{};
+    if (c.parallel) {
+      e = {clip[0] / f, clip[1] / f, (clip[2] - zt * clip[3]) / zz, clip[3]};
+    } else {
+      // clip.w = -e.z, clip.z = zz e.z + zt e.w
+      e = {clip[0] / f, clip[1] / f, -clip[3], (clip[2] + zz * clip[3]) / zt};
+    }
+    e[2] += c.distance * e[3];
+    std::array<double, 4> t{0, 0, 0, e[3]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = turn[0][k] * e[0] + turn[1][k] * e[1] + turn[2][k] * e[2];
+      t[k] = x / c.extent[k] + 0.5 * e[3];
+    }
+    return t;
+  };
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::array<double, 4> unit{};
+    unit[k] = 1;
+    const auto column = backwards(unit);
+    for (std::size_t row = 0; row < 4; ++row) camera.inverse[4 * k + row] = column[row];
+  }
+  return camera;
+}
+
+void set_matrix(const DispatchTable& gl, GLuint program, const char* name, const Matrix& matrix) {
+  std::array<GLfloat, 16> values{};
+  for (std::size_t i = 0; i < 16; ++i) values[i] = GLfloat(matrix[i]);
+  gl.UniformMatrix4fv(gl.GetUniformLocation(program, name), 1, GL_FALSE, values.data());
+}
+
+}  // namespace
+
+void BoxRayCaster::set_table(GlApplication& app, float opacity) const {
+  std::vector<float> table;
+  for (int i = 0; i < 256; ++i) {
+    const float s = float(i) / 255;
+    table.insert(table.end(), {s, 0.5F + 0.5F * std::sin(9 * s), 1 - s, opacity * s * s});
+  }
+  app.gl().ActiveTexture(GL_TEXTURE1);
+  app.gl().TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, 256, 0, GL_RGBA, GL_FLOAT, table.data());
+  app.gl().ActiveTexture(GL_TEXTURE0);
+}
+
+void BoxRayCaster::set_up(GlApplication& app) {
+  const DispatchTable& gl = app.gl();
+  const auto texture = [&](GLenum unit, GLenum target, GLint filter) {
+    GLuint name = 0;
+    gl.GenTextures(1, &name);
+    gl.ActiveTexture(unit);
+    gl.BindTexture(target, name);
+    gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
+    gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+      gl.TexParameteri(target, axis, GL_CLAMP_TO_EDGE);
+    return name;
+  };
+  texture(GL_TEXTURE1, GL_TEXTURE_1D, GL_LINEAR);
+  set_table(app, style.composition == MarchStyle::Composition::maximum ? 0.9F : 0.2F);
+  depth_ = texture(GL_TEXTURE2, GL_TEXTURE_2D, GL_NEAREST);
+  const std::vector<GLfloat> far(std::size_t(GlApplication::size) * GlApplication::size, 1.0F);
+  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, GlApplication::size, GlApplication::size, 0,
+                GL_DEPTH_COMPONENT, GL_FLOAT, far.data());
+  texture(GL_TEXTURE0, GL_TEXTURE_3D, GL_LINEAR);
+  const Blob blob;
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE,
+                blob.texels().data());
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+
+  program_ = program_of(gl, vertex_source, fragment_source);
+  wall_program_ = program_of(gl, wall_vertices, wall_fragments);
+  const std::vector<GLfloat> triangles = box_triangles();
+  GLuint buffer = 0;
+  gl.GenVertexArrays(1, &box_);
+  gl.BindVertexArray(box_);
+  gl.GenBuffers(1, &buffer);
+  gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+  gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
+                GL_STATIC_DRAW);
+  gl.EnableVertexAttribArray(0);
+  gl.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
+void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
+  // The table changes with the phase of the stream, so every call asks for it.
+  const auto gl = [&]() -> const DispatchTable& { return app.gl(); };
+  const Camera camera = camera_of(style, angle);
+  gl().Viewport(0, 0, GlApplication::size, GlApplication::size);
+  gl().DepthMask(GL_TRUE);
+  gl().ClearColor(0.1F, 0.2F, 0.3F, 0.0F);
+  gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl().BindVertexArray(box_);
+  gl().Enable(GL_DEPTH_TEST);
+  if (wall > 0) {
+    gl().UseProgram(wall_program_);
+    gl().Uniform1f(gl().GetUniformLocation(wall_program_, "depth"), wall);
+    gl().DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  }
+  if (style.reads_depth) {
+    gl().ActiveTexture(GL_TEXTURE2);
+    gl().CopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GlApplication::size, GlApplication::size);
+    gl().ActiveTexture(GL_TEXTURE0);
+  }
+  gl().DepthMask(GL_FALSE);
+  gl().Enable(GL_CULL_FACE);
+  gl().Enable(GL_BLEND);
+  gl().BlendFunc(style.premultiplied ? GL_ONE : GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl().UseProgram(program_);
+  const auto at = [&](const char* name) { return gl().GetUniformLocation(program_, name); };
+  set_matrix(gl(), program_, "camera", camera.forward);
+  set_matrix(gl(), program_, "inverse_camera", camera.inverse);
+  gl().Uniform4fv(at("eye"), 1, camera.eye.data());
+  gl().Uniform3fv(at("extent"), 1, style.extent.data());
+  gl().Uniform2f(at("window"), GlApplication::size, GlApplication::size);
+  gl().Uniform1f(at("one_step"), style.step);
+  gl().Uniform1i(at("field"), 0);
+  gl().Uniform1i(at("table"), 1);
+  gl().Uniform1i(at("opaque"), 2);
+  gl().Uniform1i(at("composition"), int(style.composition));
+  gl().Uniform1i(at("straight"), style.premultiplied ? 0 : 1);
+  gl().Uniform1i(at("divided"), style.divided ? 1 : 0);
+  gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
+  gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
+  gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
+  gl().DrawArrays(GL_TRIANGLES, 0, 36);
+  gl().Disable(GL_BLEND);
+  gl().Disable(GL_CULL_FACE);
+}
+
+}  // namespace understudy::spu::testing

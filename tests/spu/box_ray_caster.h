@@ -1,0 +1,46 @@
+// An application that draws the faces of a box with a fragment shader that marches through its volume.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gl_application.h"
+
+namespace understudy::spu::testing {
+
+/// How it marches.
+struct MarchStyle {
+  enum class Composition { over, maximum, sum };
+
+  Composition composition = Composition::over;
+  bool premultiplied = true;  ///< what the shader writes, and the blend function
+  bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length
+  bool parallel = false;      ///< the projection
+  bool lit = false;           ///< brightness by the gradient
+  bool jittered = false;      ///< every ray starts at a place of its own
+  bool reads_depth = false;   ///< rays end at the depth of a texture
+  std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
+  float step = 0.02F;
+  double distance = 3;  ///< of the eye from the middle of the box
+};
+
+class BoxRayCaster {
+ public:
+  explicit BoxRayCaster(const MarchStyle& style) : style(style) {}
+
+  /// Program, box and volume; the application must have a core profile.
+  void set_up(GlApplication& app);
+  /// Clears, draws a wall where `wall` says so (window depth), and the volume.
+  void draw(GlApplication& app, double angle, float wall = 0);
+  void set_table(GlApplication& app, float opacity) const;
+
+  MarchStyle style;
+
+ private:
+  GLuint program_ = 0;
+  GLuint wall_program_ = 0;
+  GLuint box_ = 0;
+  GLuint depth_ = 0;
+};
+
+}  // namespace understudy::spu::testing

@@ -1,0 +1,210 @@
+// Ray casters in a fragment shader, recognised by what they draw: the same picture, or the application's own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "box_ray_caster.h"
+#include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+using Composition = MarchStyle::Composition;
+
+class ProxyScene {
+ public:
+  explicit ProxyScene(const MarchStyle& style) : app(GlApplication::start(Profile::core)), caster_(style) {
+    if (app) caster_.set_up(*app);
+  }
+
+  std::vector<float> frame(bool under, double angle, float wall = 0) {
+    app->use_chain(under);
+    caster_.draw(*app, angle, wall);
+    app->end_frame();
+    return app->read_pixels();
+  }
+
+  BoxRayCaster& caster() { return caster_; }
+
+  std::unique_ptr<GlApplication> app;
+
+ private:
+  BoxRayCaster caster_;
+};
+
+struct Kind {
+  const char* name;
+  MarchStyle style;
+};
+
+std::vector<Kind> kinds() {
+  const std::array<float, 3> stretched{1.0F, 1.3F, 0.7F};
+  const std::array<float, 3> of_cubes{1.2F, 1.0F, 0.85F};  // texels of the blob
+  return {{"over, premultiplied, steps of one length", {.extent = stretched}},
+          {"over, straight colours, a way in equal parts",
+           {.premultiplied = false, .divided = true, .extent = stretched}},
+          {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
+          {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
+          {"maximum, parallel projection",
+           {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
+}
+
+TEST(Proxies, GiveTheApplicationsPictureFromEveryAngle) {
+  for (const Kind& kind : kinds()) {
+    ProxyScene scene(kind.style);
+    if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
+    for (const double angle : {20.0, 35.0, -50.0, 110.0}) {
+      const auto before = scene.app->substituted();
+      const auto under = scene.frame(true, angle);
+      EXPECT_EQ(scene.app->substituted(), before + 1)
+          << kind.name << ", angle " << angle << ": " << scene.app->last_reason();
+      const double likeness = psnr(under, scene.frame(false, angle));
+      std::printf("%s, %g degrees: %.1f dB\n", kind.name, angle, likeness);
+      EXPECT_GE(likeness, 38) << kind.name << ", angle " << angle;
+      EXPECT_EQ(scene.app->error(), GLenum(GL_NO_ERROR));
+    }
+    EXPECT_LT(psnr(scene.frame(false, 20), scene.frame(false, 110)), 30) << "the angle changes nothing";
+  }
+}
+
+TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
+  ProxyScene scene(MarchStyle{});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  const auto before = scene.frame(true, 30);
+  scene.caster().style.step = 0.06F;
+  const auto coarse = scene.frame(true, 30);
+  EXPECT_LT(psnr(before, coarse), 30) << "the step changes nothing: the test tests nothing";
+  EXPECT_GE(psnr(coarse, scene.frame(false, 30)), 38);
+  scene.app->use_chain(true);
+  scene.caster().set_table(*scene.app, 0.9F);
+  const auto dense = scene.frame(true, 30);
+  EXPECT_LT(psnr(dense, coarse), 30) << "the table changes nothing: the test tests nothing";
+  EXPECT_GE(psnr(dense, scene.frame(false, 30)), 38);
+  EXPECT_EQ(scene.app->substituted(), 3U) << scene.app->last_reason();
+}
+
+TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
+  ProxyScene scene(MarchStyle{.reads_depth = true});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  constexpr float through_the_middle = 0.877F;  // three away, between 0.5 and 10
+  for (const double angle : {25.0, 60.0}) {
+    const auto under = scene.frame(true, angle, through_the_middle);
+    const auto bare = scene.frame(false, angle, through_the_middle);
+    std::printf("a wall through the volume, %g degrees: %.1f dB\n", angle, psnr(under, bare));
+    EXPECT_GE(psnr(under, bare), 38);
+    EXPECT_LT(psnr(scene.frame(false, angle), bare), 30) << "the wall hides nothing: the test tests nothing";
+  }
+  EXPECT_EQ(scene.app->substituted(), 2U) << scene.app->last_reason();
+}
+
+TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
+  struct Refusal {
+    const char* reason;
+    MarchStyle style;
+  };
+  for (const Refusal& refusal :
+       {Refusal{"the samples of a ray are not composed by over (a plain sum, or lighting)",
+                {.composition = Composition::sum}},
+        Refusal{"the colour depends on the gradient (lighting)", {.lit = true}},
+        Refusal{"samples do not lie on constant steps from the box's faces (jitter, cropping)",
+                {.jittered = true}},
+        Refusal{"the near plane cuts the ray caster's box, or the eye is inside", {.distance = 0.8}}}) {
+    ProxyScene scene(refusal.style);
+    if (!scene.app) GTEST_SKIP() << "no EGL context here";
+    for (int i = 0; i < 2; ++i) {
+      const auto under = scene.frame(true, 20);
+      EXPECT_EQ(scene.app->last_reason(), refusal.reason);
+      const auto bare = scene.frame(false, 20);
+      EXPECT_TRUE(under == bare) << refusal.reason << ": " << psnr(under, bare) << " dB";
+      EXPECT_EQ(scene.app->error(), GLenum(GL_NO_ERROR)) << refusal.reason;
+    }
+    EXPECT_EQ(scene.app->substituted(), 0U) << refusal.reason;
+  }
+}
+
+TEST(StepFit, TellsCountsFromOpacities) {
+  std::vector<double> opacities;
+  std::vector<double> counts;
+  for (int n = 1; n < 300; n += n % 7 + 1) {
+    counts.push_back(n);
+    opacities.push_back(double(float(1 - std::pow(1 - 0.0023, n))));
+  }
+  EXPECT_EQ(counts_from_opacities(opacities), counts);
+  for (double& a : opacities) a = 0.002 * std::sqrt(a);  // grows, but not as a power
+  EXPECT_TRUE(counts_from_opacities(opacities).empty());
+  EXPECT_TRUE(counts_from_opacities(std::vector<double>{0.5, 1.0}).empty()) << "saturated";
+}
+
+TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
+  const std::array<int, 3> texels{100, 80, 60};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.1, 1);
+  for (const std::array<double, 9>& metric : {std::array<double, 9>{120, 0, 0, 0, 96, 0, 0, 0, 72},
+                                              {120, 0, 0, 0, 70, 0, 0, 0, 90},
+                                              {100, 10, 0, 0, 140, 5, 0, 0, 70}}) {
+    for (const double first : {0.0, 0.5, 1.0}) {
+      std::vector<CountedRay> rays;
+      const volume::RaySteps truth{metric, first};
+      for (int i = 0; i < 2000; ++i) {
+        const volume::Vec3 way{uniform(random), uniform(random), uniform(random)};
+        rays.push_back({way, samples_of_length(truth, steps_of_way(truth, way))});
+      }
+      const auto fits = fit_steps(rays, texels);
+      ASSERT_EQ(fits.size(), 1U) << metric[4] << ", first " << first;
+      EXPECT_LE(fits[0].unexplained, most_unexplained);
+      const volume::RaySteps rule = rules_of(fits[0]).front();
+      EXPECT_EQ(rule.first, first);
+      for (const CountedRay& ray : rays)
+        EXPECT_NEAR(steps_of_way(rule, ray.way), steps_of_way(truth, ray.way), 0.2);
+      // Rays that begin anywhere within two steps are another matter.
+      for (CountedRay& ray : rays) ray.samples += std::floor(2 * uniform(random));
+      const auto jittered = fit_steps(rays, texels);
+      ASSERT_EQ(jittered.size(), 1U);
+      EXPECT_GT(jittered[0].unexplained, 0.05);
+    }
+  }
+}
+
+TEST(StepFit, RaysOfNearlyOneDirectionTellTheStepInTexels) {
+  const volume::RaySteps truth{{120, 0, 0, 0, 96, 0, 0, 0, 72}, 1};
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(0.1, 1);
+  std::vector<CountedRay> rays;
+  for (int i = 0; i < 500; ++i) {
+    const double length = uniform(random);
+    const volume::Vec3 way{0.8 * length, 0.5 * length, -0.3 * length};
+    rays.push_back({way, samples_of_length(truth, steps_of_way(truth, way))});
+  }
+  const auto fits = fit_steps(rays, {100, 80, 60});
+  ASSERT_GE(fits.size(), 1U);
+  const auto rule = rules_of(fits.front()).front();
+  EXPECT_NEAR(steps_of_way(rule, {0, 1, 0}), 96, 0.5);
+}
+
+TEST(ProxyBox, IsWholeOrNone) {
+  const auto faces = [](std::size_t left_out) {
+    ObservedPolygons polygons;
+    for (std::size_t face = 0; face < 6; ++face) {
+      if (face == left_out) continue;
+      for (const auto& [a, b] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        ObservedVertex v;
+        v.texture[face / 2] = double(face % 2);
+        v.texture[(face / 2 + 1) % 3] = a;
+        v.texture[(face / 2 + 2) % 3] = b;
+        polygons.vertices.push_back(v);
+      }
+      polygons.first.push_back(polygons.vertices.size());
+    }
+    return polygons;
+  };
+  EXPECT_TRUE(box_of(faces(6)));
+  EXPECT_FALSE(box_of(faces(2))) << "one face is missing";
+  auto dented = faces(6);
+  dented.vertices[5].texture = {0.5, 0.5, 0.5};
+  EXPECT_FALSE(box_of(dented));
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

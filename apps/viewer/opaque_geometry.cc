@@ -16,7 +16,7 @@ constexpr double head_length = 0.05;
 constexpr double head_radius = 0.014;
 constexpr int arrow_sides = 16;
 
-constexpr double ball_radius = 0.17;
+constexpr double ball_radius = 0.12;
 constexpr int ball_rings = 24;
 
 void add_frame(const Box& box, OpaqueGeometry& geometry) {

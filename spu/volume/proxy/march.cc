@@ -168,7 +168,7 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
                                          March& march) {
   constexpr float opaque = 0.6F;
   constexpr double most_samples_of_shortest = 8;
-  const bool already = measured.run.pipeline().premultiplied;
+  const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<float> values;
   for (int i = 0; i < table_entries; ++i)
     values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));

@@ -103,6 +103,72 @@ TEST(Program, EveryModeDrawsTheBallAndTheModesAgree) {
   EXPECT_GT(profile.psnr, 50);
 }
 
+TEST(Program, EveryOtherModeShowsTheSameBall) {
+  const TemporaryFolder folder;
+  const std::string file = ball_file(folder);
+  const Picture table = picture_of(folder, {file});
+  // Bricks differ by rounding, pre-integration and stacks by what lies between samples, light by shades.
+  for (const auto& [mode, likeness] :
+       {std::pair{"time", 50.0}, {"bricks", 45.0}, {"preint", 30.0}, {"stacks", 24.0}, {"lit", 20.0}}) {
+    const Difference d = difference(table, picture_of(folder, {file, "--mode", mode}));
+    std::printf("table against %s: PSNR %.2f dB\n", mode, d.psnr);
+    EXPECT_GT(d.psnr, likeness) << mode;
+  }
+  const Picture first = picture_of(folder, {file, "--mode", "time"});
+  EXPECT_NE(first.rgb, picture_of(folder, {file, "--mode", "time", "--frames", "5"}).rgb) << "time goes on";
+  EXPECT_NE(table.rgb, picture_of(folder, {file, "--mode", "lit"}).rgb) << "there is light";
+}
+
+TEST(Program, BricksOfALargeVolumeShowNoSeams) {
+  const TemporaryFolder folder;
+  // Fog whose density changes slowly: a seam would be the only edge within it.
+  std::vector<std::uint8_t> voxels;
+  constexpr int large = 100;
+  for (int z = 0; z < large; ++z)
+    for (int y = 0; y < large; ++y)
+      for (int x = 0; x < large; ++x) voxels.push_back(static_cast<std::uint8_t>(x / 2 + y / 3 + z / 2));
+  const std::string file = folder.write("fog.100x100x100", std::as_bytes(std::span(voxels)));
+  for (const std::vector<std::string>& camera :
+       std::vector<std::vector<std::string>>{{}, {"--ortho"}, {"--distance", "0.9"}, {"--azimuth", "200"}}) {
+    std::vector<std::string> whole = {file, "--preset", "dense", "--no-frame"};
+    whole.insert(whole.end(), camera.begin(), camera.end());
+    std::vector<std::string> bricks = whole;
+    bricks.insert(bricks.end(), {"--mode", "bricks"});
+    const Difference d = difference(picture_of(folder, whole), picture_of(folder, bricks));
+    std::printf("whole against bricks: PSNR %.2f dB\n", d.psnr);
+    EXPECT_GT(d.psnr, 45);
+  }
+}
+
+TEST(Program, UnderShowsWhatOverShows) {
+  const TemporaryFolder folder;
+  const std::string file = ball_file(folder);
+  for (const char* mode : {"rgba", "table", "core", "bricks", "stacks"}) {
+    const std::vector<std::string> over = {file,  "--mode", mode,       "--background", "0.3",
+                                           "0.5", "0.2",    "--opaque", "--second"};
+    std::vector<std::string> under = over;
+    under.insert(under.end(), {"--operator", "under"});
+    const Difference d = difference(picture_of(folder, over), picture_of(folder, under));
+    std::printf("%s, over against under: PSNR %.2f dB\n", mode, d.psnr);
+    EXPECT_GT(d.psnr, 33) << mode;
+  }
+}
+
+TEST(Program, OperatorsAndGeometryChangeThePicture) {
+  const TemporaryFolder folder;
+  const std::string file = ball_file(folder);
+  std::set<std::vector<std::uint8_t>> pictures;
+  const std::vector<std::vector<std::string>> changes = {
+      {},           {"--operator", "max"}, {"--operator", "min"},   {"--operator", "add"},
+      {"--opaque"}, {"--second"},          {"--second", "--opaque"}};
+  for (const std::vector<std::string>& change : changes) {
+    std::vector<std::string> arguments = {file, "--background", "0.5", "0.5", "0.5"};
+    arguments.insert(arguments.end(), change.begin(), change.end());
+    pictures.insert(picture_of(folder, arguments).rgb);
+  }
+  EXPECT_EQ(pictures.size(), changes.size());
+}
+
 TEST(Program, FrameAndAxesAreOutsideTheVolumeAndCanBeSwitchedOff) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);

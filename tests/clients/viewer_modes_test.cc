@@ -1,0 +1,132 @@
+// The bundled viewer's ways of drawing: substituted where the nodes can play the part, and otherwise the
+// viewer's own picture, bit for bit, with the reason.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/understudy/picture.h"
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+using understudy::launcher::Picture;
+using understudy::launcher::read_picture;
+
+constexpr int frames = 2;
+
+struct Way {
+  const char* name;
+  const char* mode;
+  Words options;
+  int runs;            ///< of slices in a frame that are substituted
+  const char* reason;  ///< why it is left; null: it is not
+};
+
+Words view(const Words& options) {
+  return Words{"--azimuth", "40",  "--elevation", "30",       "--background",
+               "0.9",       "0.8", "0.7",         "--frames", std::to_string(frames),
+               "--orbit",   "50"} +
+         options;
+}
+
+class ViewerModes : public Stage, public testing::WithParamInterface<Way> {};
+
+TEST_P(ViewerModes, AreSubstitutedOrLeft) {
+  if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
+  const Way& way = GetParam();
+  const auto viewer = [&](const std::string& pictures) {
+    return engine_viewer(way.mode, view(way.options) + Words{"--screenshot-frames", file(pictures)});
+  };
+  run_well(viewer("bare"));
+  const Outcome outcome = run_well(under({"--report", file("report.json")}) + viewer("under"));
+  const nlohmann::json report = json("report.json");
+  EXPECT_EQ(substituted(report), way.reason == nullptr ? frames * way.runs : 0) << outcome.err;
+  if (way.reason != nullptr) {
+    EXPECT_NE(outcome.err.find(way.reason), std::string::npos) << outcome.err;
+  }
+  for (int number = 0; number < frames; ++number) {
+    const std::string name = fmt::format("frame_{:04}.png", number);
+    const auto bare = png("bare/" + name), under_understudy = png("under/" + name);
+    if (way.reason != nullptr) {
+      EXPECT_EQ(bare.rgb, under_understudy.rgb) << name;
+    } else {
+      EXPECT_GE(told(fmt::format("{}, {}", way.name, name), bare, under_understudy).psnr, 44);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, ViewerModes,
+    testing::Values(
+        Way{"Time", "time", {}, 1, nullptr}, Way{"Bricks", "bricks", {}, 50, nullptr},
+        Way{"BricksFrontToBack", "bricks", {"--operator", "under"}, 50, nullptr},
+        Way{"Under", "table", {"--operator", "under", "--opaque"}, 1, nullptr},
+        Way{"UnderInOneBatch", "core", {"--operator", "under"}, 1, nullptr},
+        Way{"Maximum", "table", {"--operator", "max", "--opaque"}, 1, nullptr},
+        Way{"MaximumOfColours", "rgba", {"--operator", "max"}, 1, nullptr},
+        Way{"Minimum", "core", {"--operator", "min", "--opaque"}, 1, nullptr},
+        Way{"Sum", "core", {"--operator", "add", "--preset", "sparse", "--opaque"}, 1, nullptr},
+        Way{"Ball", "core", {"--opaque"}, 1, nullptr},
+        Way{"BallInParallel", "table", {"--opaque", "--ortho"}, 1, nullptr},
+        Way{"Two", "table", {"--second", "--opaque"}, 2, nullptr},
+        Way{"TwoFrontToBack", "core", {"--second", "--operator", "under"}, 2, nullptr},
+        Way{"Lit", "lit", {}, 0, "the colour depends on the field around the sample (gradient, lighting)"},
+        Way{"Preintegrated",
+            "preint",
+            {},
+            0,
+            "the colour depends on more than the sample (position, lighting)"},
+        Way{"Stacks", "stacks", {}, 0, "0 volumes seen"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class OperatorsOnRanks : public Stage, public testing::WithParamInterface<const char*> {};
+
+TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
+  if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  // No voxel is 0: a minimum has something to tell.
+  std::string voxels;
+  constexpr int edge = 50;
+  for (int z = 0; z < edge; ++z)
+    for (int y = 0; y < edge; ++y)
+      for (int x = 0; x < edge; ++x)
+        voxels.push_back(static_cast<char>(90 + x / 2 + y / 3 + 40 * (z / 10 % 2)));
+  const Words viewer = Words{(programs / "understudy-viewer").string(),
+                             folder_.write("fog.50x50x50", voxels),
+                             "--preset",
+                             "dense",
+                             "--offscreen",
+                             "--window-size",
+                             "200",
+                             "200"} +
+                       view({"--operator", GetParam(), "--opaque"});
+  for (const char* ranks : {"0", "2"}) {
+    const Outcome outcome = run_well(under({"-n", ranks, "--save-frames", file(std::string("frames") + ranks),
+                                            "--report", file("report.json")}) +
+                                     viewer);
+    ASSERT_EQ(json("report.json").at("frames_substituted"), frames) << outcome.err;
+  }
+  double largest = 0, brightest = 0;
+  for (int number = 0; number < frames; ++number) {
+    const std::string name = fmt::format("frame_{:04}.pfm", number);
+    const Picture one = read_picture(file("frames0") / name), two = read_picture(file("frames2") / name);
+    ASSERT_EQ(one.rgba.size(), two.rgba.size());
+    for (std::size_t i = 0; i < one.rgba.size(); ++i) {
+      // Where a minimum has no sample it is larger than any float framebuffer's colour.
+      const double a = std::min(one.rgba[i], 1e3F), b = std::min(two.rgba[i], 1e3F);
+      largest = std::max(largest, std::abs(a - b));
+      if (a < 1e3) brightest = std::max(brightest, a);
+    }
+  }
+  fmt::print("{}: at most {:.2e} apart, largest value {:.2f}\n", GetParam(), largest, brightest);
+  EXPECT_GT(brightest, 0.3) << "there is something to see";
+  EXPECT_LE(largest, 1e-5 * std::max(1.0, brightest));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, OperatorsOnRanks, testing::Values("over", "under", "max", "min", "add"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace clients

@@ -198,6 +198,7 @@ struct VolumeUnit::Substitution {
   KnownVolume& volume;
   std::uint64_t texture_version = 0;
   ObservedPolygons polygons{};
+  std::optional<Capture> capture{};  ///< where a vertex shader was observed; its polygons are in `polygons`
   std::optional<CameraFit> fit{};
   FragmentInputs fragment{};
   SliceSet slices{};
@@ -330,8 +331,10 @@ void VolumeUnit::observe(Substitution& s) {
       s.polygons = std::move(capture.polygons);
       s.fit = capture.fit;
       s.fragment.coordinate = capture.coordinate;
-      s.fragment.first = std::move(capture.first);
-      s.fragment.last = std::move(capture.last);
+      s.fragment.first = capture.first;
+      s.fragment.last = capture.last;
+      s.fragment.range = capture.range;
+      s.capture = std::move(capture);
       return;
     }
   } else {
@@ -359,6 +362,7 @@ void VolumeUnit::observe(Substitution& s) {
     }
   }
   s.fragment.last = s.fragment.first;
+  s.fragment.range = {s.fragment.first, s.fragment.first};
 }
 
 void VolumeUnit::find_geometry(Substitution& s) {
@@ -441,18 +445,28 @@ void VolumeUnit::classify(Substitution& s) {
     if (chain_.group().is_rendered_to(table.texture))
       key.push_back(std::nanf(""));  // never equal: probed every time
   }
-  for (std::size_t i = 0; i < s.fragment.inputs.size(); ++i) {
-    if (s.fragment.inputs[i].name == s.fragment.coordinate) continue;
-    key.insert(key.end(), s.fragment.first[i].begin(), s.fragment.first[i].end());
-    key.insert(key.end(), s.fragment.last[i].begin(), s.fragment.last[i].end());
-  }
-  if (!known.classification || key != known.classification_inputs) {
+  if (!known.probed || key != known.probed_under || !known.probed->range.covers(s.fragment.range)) {
     ProbeFinding finding = probe_classification(context(), s.pipeline, known.texture, s.fragment, known.range);
     if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
-    known.classification = std::get<volume::Classification>(std::move(finding));
-    known.classification_inputs = std::move(key);
+    known.probed = std::get<Probed>(std::move(finding));
+    known.probed_under = std::move(key);
   }
-  s.request.classification = *known.classification;
+  s.request.classification = known.probed->classification;
+  if (known.probed->fog) place_fog(s, *known.probed->fog);
+}
+
+void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
+  // The number, observed at every vertex, as a map of the position: a camera that sees one coordinate.
+  std::vector<ObservedVertex> vertices = s.polygons.vertices;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    vertices[v].clip = {s.capture->value(v, measured.input, measured.component), 0, 0, 0};
+  const auto fit = fit_camera(vertices);
+  if (!fit || fit->residual > max_fit_residual) throw Doubt{"fog is not an affine map of the position"};
+  const double scale = 1.0 / (double(measured.high) - measured.low);
+  volume::Fog& fog = s.request.fog.emplace();
+  for (std::size_t k = 0; k < 3; ++k) fog.normal[k] = fit->texture_to_clip[k] * scale;
+  fog.offset = (fit->texture_to_clip[3] - measured.low) * scale;
+  fog.entries = measured.entries;
 }
 
 void VolumeUnit::compose_request(Substitution& s) {
@@ -507,7 +521,7 @@ void VolumeUnit::explain(const Substitution& s) {
   put(s.volume.counters->explanation,
       fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, "
                   "fit to {:.1e}, "
-                  "{} clip planes, {}",
+                  "{} clip planes, {}{}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
                   name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count,
                   std::abs(planes.spacing), s.request.filter == volume::Filter::linear ? "linear" : "nearest",
@@ -516,7 +530,8 @@ void VolumeUnit::explain(const Substitution& s) {
                       : (s.pipeline.program != 0 ? "table probed from the program"
                                                  : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
-                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));
+                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
+                  s.request.fog ? ", fading in fog" : ""));
 }
 
 void VolumeUnit::substitute(const Run& run) {
@@ -553,6 +568,7 @@ void VolumeUnit::substitute(const Run& run) {
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
   if (s.pipeline.alpha == AlphaResult::squared_sum) {
     s.request.classification = squared_alpha(s.request.classification);
+    s.request.fog.reset();
     const compositor::Rendered squares = service.render(s.request);
     counts += squares.counts;
     presenter_->present(shown, s.pipeline.alpha, &squares.image);

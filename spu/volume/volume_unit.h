@@ -29,12 +29,12 @@ struct KnownVolume {
   std::uint64_t generation = 0;           ///< of the service that has it; 0: none
   TextureDescription texture;
   std::array<float, 2> range{0, 1};
-  std::optional<volume::Classification> classification;
-  std::vector<float> classification_inputs;  ///< what the classification was probed under
-  bool depth_looked_at = false;              ///< somebody used the depth that its slices write
-  std::string given_back;   ///< why the volume is left to the application for good; empty: it is not
-  std::string last_reason;  ///< the last reason for leaving it that was said
-  int refusals = 0;         ///< in a row
+  std::optional<Probed> probed;
+  std::vector<float> probed_under;  ///< the state that decides what probing finds
+  bool depth_looked_at = false;     ///< somebody used the depth that its slices write
+  std::string given_back;           ///< why the volume is left to the application for good; empty: it is not
+  std::string last_reason;          ///< the last reason for leaving it that was said
+  int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VolumeCounters* counters = nullptr;
@@ -79,6 +79,7 @@ class VolumeUnit final : public Unit {
   void find_geometry(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
   void classify(Substitution& s);
+  void place_fog(Substitution& s, const MeasuredFog& measured);
   void compose_request(Substitution& s);
   void verify(Substitution& s, const volume::ImageView& image);
   void explain(const Substitution& s);

@@ -60,6 +60,16 @@ void validate_classification(const VolumeDescription& volume, const Classificati
   }
 }
 
+void validate_fog(const Fog& fog, Operator op) {
+  if (op == Operator::min) refuse("there is no fog under the operator min");
+  if (fog.entries.size() < 2 || fog.entries.size() > max_table_entries)
+    refuse("the fog has {} entries (2 to {} are possible)", fog.entries.size(), max_table_entries);
+  for (const Rgba& entry : fog.entries)
+    if (!all_finite(entry)) refuse("the fog holds a value that is not finite");
+  if (!all_finite(fog.normal) || !std::isfinite(fog.offset))
+    refuse("the direction of the fog holds a value that is not finite");
+}
+
 /// Whether a block of colours can show anything: bounds of the mapped components over the block's ranges.
 bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels) {
   std::array<float, 4> highest{};
@@ -111,6 +121,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
            request.depth->rect.width, request.depth->rect.height);
   validate_classification(volume, request.classification);
+  if (request.fog) validate_fog(*request.fog, request.op);
 }
 
 /// What depends on the classification alone (and on whether the operator is `min`, to which clear samples
@@ -181,6 +192,9 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.skip = &prepared_->skip;
   scene.table = prepared_->table ? &*prepared_->table : nullptr;
   scene.map = std::get_if<LinearMap>(&prepared_->classification);
+  std::optional<FogTable> fog;
+  if (request.fog) fog.emplace(*request.fog, store);
+  scene.fog = fog ? &*fog : nullptr;
   scene.op = request.op;
   scene.filter = request.filter;
   scene.termination = request.termination;

@@ -127,7 +127,8 @@ std::optional<std::string> read_alpha_result(const DispatchTable& gl, Pipeline& 
   const GLint destination = integer(gl, GL_BLEND_DST_ALPHA);
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
-  if (!mask[3] || (source == GL_ZERO && destination == GL_ONE) || alpha_bits(gl) == 0) {
+  pipeline.alpha_bits = alpha_bits(gl);
+  if (!mask[3] || (source == GL_ZERO && destination == GL_ONE) || pipeline.alpha_bits == 0) {
     pipeline.alpha = AlphaResult::untouched;
   } else if (destination == GL_ONE_MINUS_SRC_ALPHA && source == GL_ONE) {
     pipeline.alpha = AlphaResult::coverage;

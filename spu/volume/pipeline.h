@@ -38,6 +38,7 @@ struct Pipeline {
   std::vector<SampledTexture> others;  ///< look-up tables of the program
   bool premultiplied = false;          ///< source factor ONE instead of SRC_ALPHA
   AlphaResult alpha = AlphaResult::coverage;
+  int alpha_bits = 0;  ///< of the framebuffer
   bool depth_test = false;
   bool depth_or_equal = false;
   bool depth_write = false;

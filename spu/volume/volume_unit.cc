@@ -206,11 +206,11 @@ struct VolumeUnit::Substitution {
 };
 
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
-    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {
-  frame_.error_rms = -1;
-}
+    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {}
 
-VolumeUnit::~VolumeUnit() = default;
+VolumeUnit::~VolumeUnit() {
+  session_->ledger().forget(this);
+}
 
 const GlContext& VolumeUnit::context() {
   if (!context_) context_ = describe_context(chain_.below(*this, Phase::plain));
@@ -238,7 +238,7 @@ KnownVolume& VolumeUnit::known(GLuint texture) {
 
 void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
   KnownVolume& volume = known(texture);
-  ++frame_.left;
+  note([](FrameRecord& frame) { ++frame.left; });
   volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
   const bool new_reason = volume.last_reason != reason;
   count_reason(*volume.counters, reason);
@@ -265,8 +265,9 @@ bool VolumeUnit::opens_run() {
   }
   if (!reason.empty()) {
     // Slices drawn one by one are still one run: it is counted once a frame.
-    if (known(texture).left_in_frame != frames_) leave(texture, reason);
-    known(texture).left_in_frame = frames_;
+    const std::uint64_t frame = session_->ledger().frames();
+    if (known(texture).left_in_frame != frame) leave(texture, reason);
+    known(texture).left_in_frame = frame;
     return false;
   }
   run_ = std::make_unique<Run>(std::get<Pipeline>(finding), calls_);
@@ -450,6 +451,7 @@ void VolumeUnit::classify(Substitution& s) {
     if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
     known.probed = std::get<Probed>(std::move(finding));
     known.probed_under = std::move(key);
+    known.counters->probes.fetch_add(1, std::memory_order_relaxed);
   }
   s.request.classification = known.probed->classification;
   if (known.probed->fog) place_fog(s, *known.probed->fog);
@@ -505,7 +507,7 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   counters.verify_max = std::max(counters.verify_max, difference->max);
   counters.verify_sum_sq += difference->mean_square;
   counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
-  frame_.error_rms = std::sqrt(difference->mean_square);
+  note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference->mean_square); });
   if (difference->psnr() < options.verify_psnr) {
     s.volume.given_back =
         fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
@@ -521,7 +523,7 @@ void VolumeUnit::explain(const Substitution& s) {
   put(s.volume.counters->explanation,
       fmt::format("{}x{}x{} {} texels ({}), {} slices {:.5f} of the texture apart, {} filter, {}, {} camera, "
                   "fit to {:.1e}, "
-                  "{} clip planes, {}{}",
+                  "blended over as {} colours, {} clip planes, {}{}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
                   name_of(s.volume.texture.type), s.volume.texture.format_name, planes.count,
                   std::abs(planes.spacing), s.request.filter == volume::Filter::linear ? "linear" : "nearest",
@@ -529,12 +531,18 @@ void VolumeUnit::explain(const Substitution& s) {
                       ? "colours in the texels"
                       : (s.pipeline.program != 0 ? "table probed from the program"
                                                  : "table probed from fixed function"),
-                  perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
+                  perspective ? "perspective" : "parallel", s.fit->residual,
+                  s.pipeline.premultiplied ? "premultiplied" : "plain", s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
                   s.request.fog ? ", fading in fog" : ""));
 }
 
 void VolumeUnit::substitute(const Run& run) {
+  // Frames may end in other contexts than the one that draws.
+  if (const std::uint64_t frame = session_->ledger().frames(); frame != tidied_in_frame_) {
+    forget_deleted_volumes();
+    tidied_in_frame_ = frame;
+  }
   Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.pipeline().volume.texture)};
   s.texture_version = chain_.group().texture_version(s.pipeline.volume.texture);
   observe(s);
@@ -548,7 +556,8 @@ void VolumeUnit::substitute(const Run& run) {
   compose_request(s);
   const Clock::time_point asked = Clock::now();
   const compositor::Rendered rendered = service.render(s.request);
-  frame_.render_ms += milliseconds_since(asked);
+  const double render_ms = milliseconds_since(asked);
+  note([&](FrameRecord& frame) { frame.render_ms += render_ms; });
   verify(s, rendered.image);
 
   // The service's picture is gone with its next answer.
@@ -569,7 +578,12 @@ void VolumeUnit::substitute(const Run& run) {
   if (s.pipeline.alpha == AlphaResult::squared_sum) {
     s.request.classification = squared_alpha(s.request.classification);
     s.request.fog.reset();
+    // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
+    if (s.pipeline.alpha_bits <= 8) s.request.termination = 1e-3F;
+    const Clock::time_point asked_again = Clock::now();
     const compositor::Rendered squares = service.render(s.request);
+    const double squares_ms = milliseconds_since(asked_again);
+    note([&](FrameRecord& frame) { frame.render_ms += squares_ms; });
     counts += squares.counts;
     presenter_->present(shown, s.pipeline.alpha, &squares.image);
   } else {
@@ -579,9 +593,11 @@ void VolumeUnit::substitute(const Run& run) {
   if (s.volume.frames == 0 || options.explain) explain(s);
   ++s.volume.frames;
   s.volume.refusals = 0;
-  ++frame_.substituted;
   s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
-  frame_.counts += counts;
+  note([&](FrameRecord& frame) {
+    ++frame.substituted;
+    frame.counts += counts;
+  });
 }
 
 void VolumeUnit::settle_depth(const Substitution& s) {
@@ -606,11 +622,9 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   // After a swap the depth buffer's contents are undefined.
   if (kind == FrameEnd::swap && depth_watched_ != 0) depth_cleared();
-  ++frames_;
-  frame_.time_ms = milliseconds_since(frame_started_);
-  count_frame(frame_);
-  frame_ = {};
-  frame_.error_rms = -1;
+  FrameRecord frame = session_->ledger().close(this);
+  frame.time_ms = milliseconds_since(frame_started_);
+  count_frame(frame);
   frame_started_ = Clock::now();
   forget_deleted_volumes();
 }

@@ -88,6 +88,11 @@ class VolumeUnit final : public Unit {
   void settle_depth(const Substitution& s);
   void leave(GLuint texture, const std::string& reason, bool say = true);
   void forget_deleted_volumes();
+  /// To what this context did since the last frame end, `change` is made.
+  template <class Change>
+  void note(Change change) {
+    session_->ledger().note(this, change);
+  }
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
 
   Chain& chain_;
@@ -101,9 +106,8 @@ class VolumeUnit final : public Unit {
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
       stages_;                ///< by program, with the link they stem from
   GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none
-  FrameRecord frame_{};
-  std::uint64_t frames_ = 0;
   std::uint64_t saved_ = 0;
+  std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_{};
 };
 

@@ -35,6 +35,10 @@ SliceScene client_arrays_table();
 SliceScene vertex_shader_varying();
 /// Core profile, vertex buffer, one batched draw of triangles with uniforms.
 SliceScene core_batched();
+/// Polygons computed anew for every frame, a float texture that was defined in another format before, scale and
+/// bias before a table of floats, fog towards a background colour, a mask sampler without texture, varyings
+/// that nobody writes or reads, an alpha blend function of its own: what PyMOL does.
+SliceScene fogged_polygons();
 
 std::vector<SliceScene> all_slice_scenes();
 

@@ -177,11 +177,16 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   if (store.empty()) return;
 
   const bool keeps_clear_samples = request.op == Operator::min;
-  if (!prepared_ || prepared_->keeps_clear_samples != keeps_clear_samples ||
-      prepared_->classification != request.classification)
-    prepared_ = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+  const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
+    return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
+           prepared->classification == request.classification;
+  };
+  if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
+  if (!fits(prepared_[0]))
+    prepared_[0] = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+  const Prepared& prepared = *prepared_[0];
   counts.blocks += store.blocks();
-  counts.blocks_empty += prepared_->skip.empty_blocks();
+  counts.blocks_empty += prepared.skip.empty_blocks();
 
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
   if (pixels.empty() || request.planes.count == 0) return;
@@ -189,9 +194,9 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   const RaySetup setup(request, store);
   Scene scene;
   scene.store = &store;
-  scene.skip = &prepared_->skip;
-  scene.table = prepared_->table ? &*prepared_->table : nullptr;
-  scene.map = std::get_if<LinearMap>(&prepared_->classification);
+  scene.skip = &prepared.skip;
+  scene.table = prepared.table ? &*prepared.table : nullptr;
+  scene.map = std::get_if<LinearMap>(&prepared.classification);
   std::optional<FogTable> fog;
   if (request.fog) fog.emplace(*request.fog, store);
   scene.fog = fog ? &*fog : nullptr;

@@ -2,6 +2,7 @@
 // they do so in the same way for all samples: every colour is faded by a weight, and one colour is added.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -26,9 +27,11 @@ struct MeasuredFog {
 using ColoursAlongNumber = std::function<std::vector<volume::Rgba>(std::size_t entry)>;
 
 /// `table` holds the colours of the entries at any one value of the number, and tells by their opacity which
-/// entries count. `number` are the values behind ColoursAlongNumber. `premultiplied`: colours hold opacity
-/// already. Null when the colours are no fog, or opacity depends on the number.
+/// entries count. `number` are the values behind ColoursAlongNumber, of which those in `needed` must be covered
+/// and others are where possible. `premultiplied`: colours hold opacity already. Null when the colours are no
+/// fog, or opacity depends on the number.
 std::optional<MeasuredFog> measure_fog(const std::vector<volume::Rgba>& table, bool premultiplied,
-                                       const std::vector<float>& number, const ColoursAlongNumber& colours);
+                                       const std::vector<float>& number, const std::array<float, 2>& needed,
+                                       const ColoursAlongNumber& colours);
 
 }  // namespace understudy::spu

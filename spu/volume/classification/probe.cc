@@ -252,13 +252,14 @@ class TableProbe {
 
 /// The fog in the one number that colours depend on; null when there is no such thing. Leaves in `table` the
 /// colours where the fog is thinnest.
-std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, const InputRange& range,
-                                     bool premultiplied, Picture& table) {
+std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, const InputRange& needed,
+                                     const InputRange& range, bool premultiplied, Picture& table) {
   const float low = range.low[number.input][number.component];
   const float high = range.high[number.input][number.component];
   std::vector<float> values(pixels);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = low + (high - low) * float(i) / float(pixels - 1);
-  auto fog = measure_fog(table, premultiplied, values,
+  const auto bound = [&](const InputValues& end) { return end[number.input][number.component]; };
+  auto fog = measure_fog(table, premultiplied, values, {bound(needed.low), bound(needed.high)},
                          [&](std::size_t entry) { return probe.along(entry, number, low, high); });
   if (!fog) return std::nullopt;
   fog->input = number.input;
@@ -307,8 +308,12 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
       }
     }
     if (telling.size() == 1 && !fragment.inputs[telling.front().input].integer)
-      probed.fog = probe_fog(probe, telling.front(), tried, pipeline.premultiplied, table);
-    if (probed.fog) elsewhere[probed.fog->input][probed.fog->component] = probed.fog->reference;
+      probed.fog = probe_fog(probe, telling.front(), fragment.range, tried, pipeline.premultiplied, table);
+    if (probed.fog) {
+      elsewhere[probed.fog->input][probed.fog->component] = probed.fog->reference;
+      probed.range.low[probed.fog->input][probed.fog->component] = probed.fog->low;
+      probed.range.high[probed.fog->input][probed.fog->component] = probed.fog->high;
+    }
     explained = telling.empty() || probed.fog;
     if (explained) break;
   }

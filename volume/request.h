@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "volume/classification.h"
+#include "volume/fog.h"
 #include "volume/image.h"
 
 namespace understudy::volume {
@@ -109,6 +110,7 @@ struct RenderRequest {
   Box region;  ///< where slices exist: samples outside this box of texture space do not; rays enter it
   std::vector<HalfSpace> clip_planes;
   Classification classification;
+  std::optional<Fog> fog;  ///< under any operator but `min`
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   std::optional<DepthImage> depth;

@@ -102,6 +102,24 @@ std::optional<RaySteps> read_steps(Reader& in) {
   return steps;
 }
 
+void write(Writer& out, const std::optional<Fog>& fog) {
+  out.integer(fog.has_value());
+  if (!fog) return;
+  write(out, fog->normal);
+  out.real(fog->offset);
+  write_run(out, fog->entries);
+}
+
+std::optional<Fog> read_fog(Reader& in) {
+  if (!in.flag("fog")) return std::nullopt;
+  Fog fog;
+  read(in, "fog.normal", fog.normal);
+  fog.offset = in.real("fog.offset");
+  fog.entries = in.values<Rgba>("fog.entries", limits::max_table_entries);
+  if (fog.entries.size() < 2) in.fail("fog.entries", "holds fewer than two entries");
+  return fog;
+}
+
 void write(Writer& out, const std::optional<DepthImage>& depth) {
   out.integer(depth.has_value());
   if (!depth) return;
@@ -222,6 +240,7 @@ std::vector<std::byte> encode(const RenderRequest& request) {
     out.real(plane.offset);
   }
   write(out, request.classification);
+  write(out, request.fog);
   out.real(request.termination);
   write(out, request.depth);
   return out.bytes();
@@ -251,6 +270,7 @@ RenderRequest decode_request(std::span<const std::byte> payload) {
     plane.offset = in.real("clip_planes.offset");
   }
   request.classification = read_classification(in);
+  request.fog = read_fog(in);
   request.termination = in.real32("termination");
   request.depth = read_depth(in);
   in.end();

@@ -30,6 +30,7 @@ struct VolumeCounters {
   char texture_format[32];
   std::atomic<std::uint64_t> draws_substituted;
   std::atomic<std::uint64_t> draws_left;
+  std::atomic<std::uint64_t> probes;  ///< how often its colours were found out
   ReasonCount left_because[max_counted_reasons];
   std::atomic<std::uint64_t> verified_frames;
   double verify_max;      ///< worst over the verified frames

@@ -49,6 +49,7 @@ constexpr const char* substituted = "substituted";
 constexpr const char* left = "left";
 constexpr const char* left_because = "left_because";  ///< {reason: count}
 constexpr const char* explanation = "explanation";
+constexpr const char* probes = "probes";
 constexpr const char* verify = "verify";
 constexpr const char* max = "max";
 constexpr const char* rms = "rms";

@@ -140,6 +140,7 @@ Json report_of(const VolumeCounters& volume, std::int32_t pid) {
           {report_key::draws,
            {{report_key::substituted, volume.draws_substituted.load()},
             {report_key::left, volume.draws_left.load()}}},
+          {report_key::probes, volume.probes.load()},
           {report_key::left_because, because},
           {report_key::verify, verified(volume)},
           {report_key::explanation, text_in(volume.explanation)}};

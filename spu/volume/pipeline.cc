@@ -61,7 +61,8 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     gl.GetUniformiv(pipeline.program, sampler.location, &unit);
     if (target == 0) continue;
     SampledTexture sampled{target, unit, bound_texture(gl, target, unit), sampler.location};
-    if (target == GL_TEXTURE_3D) {
+    // A 3-D sampler without a texture (a mask that is not in use) gives the same everywhere: PyMOL has one.
+    if (target == GL_TEXTURE_3D && sampled.texture != 0) {
       ++volumes;
       pipeline.volume = sampled;
     } else {

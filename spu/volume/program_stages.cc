@@ -139,6 +139,12 @@ bool linked(const DispatchTable& gl, GLuint program) {
   return status != 0;
 }
 
+std::string link_log(const DispatchTable& gl, GLuint program) {
+  std::array<char, 200> log{};
+  gl.GetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
+  return log.data();
+}
+
 /// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once
 /// lowered, as gl_in_TexCoord0.
 std::string written_name(const std::string& read) {
@@ -224,14 +230,11 @@ const char* glsl_type(const StageInput& input) {
   }
 }
 
-}  // namespace
-
-ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
+/// The application's vertex stage, linked to capture gl_Position and the inputs of `names`; 0 and the driver's
+/// words where that does not link.
+GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLuint application,
+                     const std::vector<const char*>& names, std::string& trouble) {
   const DispatchTable& gl = *context.gl;
-  ProgramStages stages;
-  describe_fragment_stage(context, record, stages);
-  if (!record.vertex_shader) return stages;
-
   const GLuint program = compile(gl, GL_VERTEX_SHADER, record.vertex_sources, gl.CreateProgram());
   GLint attributes = 0;
   gl.GetProgramiv(application, GL_ACTIVE_ATTRIBUTES, &attributes);
@@ -244,14 +247,38 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
     if (location >= 0) gl.BindAttribLocation(program, GLuint(location), name.data());
   }
   std::vector<const char*> captured{"gl_Position"};
-  for (const StageInput& input : stages.inputs) captured.push_back(input.name.c_str());
+  captured.insert(captured.end(), names.begin(), names.end());
   gl.TransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
-  if (linked(gl, program)) {
-    stages.observer = program;
-  } else {
-    if (stages.trouble.empty()) stages.trouble = "the vertex shader does not link for capture";
-    gl.DeleteProgram(program);
+  if (linked(gl, program)) return program;
+  trouble = link_log(gl, program);
+  gl.DeleteProgram(program);
+  return 0;
+}
+
+}  // namespace
+
+ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
+  ProgramStages stages;
+  describe_fragment_stage(context, record, stages);
+  if (!record.vertex_shader) return stages;
+
+  std::string trouble;
+  std::vector<const char*> names;
+  for (const StageInput& input : stages.inputs) names.push_back(input.name.c_str());
+  stages.observer = link_observer(context, record, application, names, trouble);
+  if (stages.observer == 0) {
+    // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
+    names.clear();
+    for (StageInput& input : stages.inputs) {
+      const GLuint alone = link_observer(context, record, application, {input.name.c_str()}, trouble);
+      input.written = alone != 0;
+      if (input.written) names.push_back(input.name.c_str());
+      context.gl->DeleteProgram(alone);
+    }
+    stages.observer = link_observer(context, record, application, names, trouble);
   }
+  if (stages.observer == 0 && stages.trouble.empty())
+    stages.trouble = "the vertex shader does not link for capture: " + trouble;
   return stages;
 }
 
@@ -271,12 +298,18 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
           "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
     } else {
       static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
-      body += "  " + input.name + " = " + type + "(understudy_value[" + std::to_string(others) + "]" +
+      const std::string k = "[" + std::to_string(others) + "]";
+      const std::string slope =
+          input.integer ? "" : " + unit.x * understudy_across" + k + " + unit.y * understudy_up" + k;
+      body += "  " + input.name + " = " + type + "((understudy_value" + k + slope + ")" +
               swizzle[std::size_t(input.components)] + ");\n";
       ++others;
     }
   }
-  if (others > 0) declarations += "uniform vec4 understudy_value[" + std::to_string(others) + "];\n";
+  if (others > 0) {
+    for (const char* name : {"value", "across", "up"})
+      declarations += std::string("uniform vec4 understudy_") + name + "[" + std::to_string(others) + "];\n";
+  }
   const std::string source =
       declarations +
       "void main() {\n"
@@ -288,9 +321,7 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
   compile(gl, GL_VERTEX_SHADER, {source}, program);
   if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
   if (linked(gl, program)) return program;
-  std::array<char, 200> log{};
-  gl.GetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
-  trouble = std::string("the fragment shader does not link with a probe: ") + log.data();
+  trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
   gl.DeleteProgram(program);
   return 0;
 }

@@ -18,6 +18,7 @@ struct StageInput {
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
+  bool written = true;  ///< false: the vertex stage declares it at most, and no colour can depend on it
 };
 
 /// A uniform by name; array elements stand alone.
@@ -31,8 +32,8 @@ struct ProgramStages {
   std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
   std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
   bool uniform_blocks = false;         ///< the fragment stage reads uniform buffers
-  GLuint observer =
-      0;  ///< vertex stage; captures gl_Position, then every input, interleaved as floats; 0: none
+  GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
+                        ///< as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
 };
 
@@ -41,8 +42,9 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
 
 /// The application's fragment stage (or fixed-function fragments when `record` is null) under a vertex stage
 /// that covers the viewport with one triangle. The input named `coordinate` (gl_TexCoord[0] for fixed function)
-/// runs over [0,1]^2 with third component 1/2; the k-th other input has the constant value of uniform
-/// understudy_value[k]. Returns 0 and sets `trouble` when it does not link.
+/// runs over [0,1]^2 with third component 1/2; the k-th other input has the value understudy_value[k] +
+/// x understudy_across[k] + y understudy_up[k] at (x, y) of the same square (integers: the first alone).
+/// Returns 0 and sets `trouble` when it does not link.
 GLuint probe_program(const GlContext& context, const ProgramRecord* record,
                      const std::vector<StageInput>& inputs, const std::string& coordinate,
                      std::string& trouble);

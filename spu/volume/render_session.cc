@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "spu/volume/last_picture.h"
 #include "spu/volume/own_nodes.h"
 
 namespace understudy::spu {
@@ -27,7 +28,7 @@ compositor::RenderService& RenderSession::service() {
     throw compositor::ServiceLost("waiting for a new group of render nodes");
   }
   try {
-    service_ = connect();
+    service_ = with_last_picture(connect(), [this] { return ledger_.frames(); });
   } catch (const compositor::ServiceLost& unreachable) {
     if (!connected_once_ && !launcher_tells()) {
       fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());

@@ -11,6 +11,7 @@
 
 #include "compositor/service.h"
 #include "spu/options.h"
+#include "spu/volume/frame_ledger.h"
 
 namespace understudy::spu {
 
@@ -19,6 +20,8 @@ class RenderSession {
   explicit RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
 
   const Options& options() const { return options_; }
+
+  FrameLedger& ledger() { return ledger_; }
 
   /// Whoever talks to the service holds this for as long as it looks at what the service returned.
   std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
@@ -49,6 +52,7 @@ class RenderSession {
   std::unique_ptr<compositor::RenderService> connect();
 
   const Options options_;
+  FrameLedger ledger_;
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;

@@ -23,6 +23,7 @@ struct VolumeUnit::Substitution {
   std::uint64_t texture_version = 0;
   bool proxy = false;  ///< one draw of a box, whose fragment shader marches
   ObservedPolygons polygons{};
+  std::optional<Capture> capture{};  ///< where a vertex shader was observed; its polygons are in `polygons`
   std::optional<CameraFit> fit{};
   FragmentInputs fragment{};
   SliceSet slices{};

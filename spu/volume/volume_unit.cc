@@ -173,6 +173,21 @@ std::string_view name_of(volume::TexelType type) {
   }
 }
 
+const char* name_of(const Blending& blending) {
+  if (blending.front_to_back != FrontToBack::no) return "under";
+  switch (blending.op) {
+    case volume::Operator::over:
+      return "over";
+    case volume::Operator::max:
+      return "maximum";
+    case volume::Operator::min:
+      return "minimum";
+    case volume::Operator::add:
+      return "sum";
+  }
+  return "";
+}
+
 /// Where the samples lie, in words.
 std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size) {
   if (!request.steps) {
@@ -209,11 +224,11 @@ void count_reason(VolumeCounters& counters, const std::string& reason) {
 }  // namespace
 
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
-    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {
-  frame_.error_rms = -1;
-}
+    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {}
 
-VolumeUnit::~VolumeUnit() = default;
+VolumeUnit::~VolumeUnit() {
+  session_->ledger().forget(this);
+}
 
 const GlContext& VolumeUnit::context() {
   if (!context_) context_ = describe_context(chain_.below(*this, Phase::plain));
@@ -242,7 +257,7 @@ KnownVolume& VolumeUnit::known(GLuint texture) {
 
 void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
   KnownVolume& volume = known(texture);
-  ++frame_.left;
+  note([](FrameRecord& frame) { ++frame.left; });
   volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
   const bool new_reason = volume.last_reason != reason;
   count_reason(*volume.counters, reason);
@@ -270,8 +285,9 @@ bool VolumeUnit::opens_run() {
   }
   if (!reason.empty()) {
     // Slices drawn one by one are still one run: it is counted once a frame.
-    if (known(texture).left_in_frame != frames_) leave(texture, reason);
-    known(texture).left_in_frame = frames_;
+    const std::uint64_t frame = session_->ledger().frames();
+    if (known(texture).left_in_frame != frame) leave(texture, reason);
+    known(texture).left_in_frame = frame;
     return false;
   }
   run_ = std::make_unique<Run>(std::get<Pipeline>(finding), calls_);
@@ -340,8 +356,10 @@ void VolumeUnit::observe(Substitution& s) {
       s.polygons = std::move(capture.polygons);
       s.fit = capture.fit;
       s.fragment.coordinate = capture.coordinate;
-      s.fragment.first = std::move(capture.first);
-      s.fragment.last = std::move(capture.last);
+      s.fragment.first = capture.first;
+      s.fragment.last = capture.last;
+      s.fragment.range = capture.range;
+      s.capture = std::move(capture);
       return;
     }
   } else {
@@ -373,6 +391,7 @@ void VolumeUnit::observe(Substitution& s) {
   }
   s.fragment.last = s.fragment.first;
   if (s.pipeline.assembly) std::fill(s.fragment.last.begin() + 2, s.fragment.last.end(), untold_value);
+  s.fragment.range = {s.fragment.first, s.fragment.first};
 }
 
 void VolumeUnit::find_geometry(Substitution& s) {
@@ -468,18 +487,29 @@ void VolumeUnit::classify(Substitution& s) {
     if (chain_.group().is_rendered_to(table.texture))
       key.push_back(std::nanf(""));  // never equal: probed every time
   }
-  for (std::size_t i = 0; i < s.fragment.inputs.size(); ++i) {
-    if (s.fragment.inputs[i].name == s.fragment.coordinate) continue;
-    key.insert(key.end(), s.fragment.first[i].begin(), s.fragment.first[i].end());
-    key.insert(key.end(), s.fragment.last[i].begin(), s.fragment.last[i].end());
-  }
-  if (!known.classification || key != known.classification_inputs) {
+  if (!known.probed || key != known.probed_under || !known.probed->range.covers(s.fragment.range)) {
     ProbeFinding finding = probe_classification(context(), s.pipeline, known.texture, s.fragment, known.range);
     if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
-    known.classification = std::get<volume::Classification>(std::move(finding));
-    known.classification_inputs = std::move(key);
+    known.probed = std::get<Probed>(std::move(finding));
+    known.probed_under = std::move(key);
+    known.counters->probes.fetch_add(1, std::memory_order_relaxed);
   }
-  s.request.classification = *known.classification;
+  s.request.classification = known.probed->classification;
+  if (known.probed->fog) place_fog(s, *known.probed->fog);
+}
+
+void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
+  // The number, observed at every vertex, as a map of the position: a camera that sees one coordinate.
+  std::vector<ObservedVertex> vertices = s.polygons.vertices;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    vertices[v].clip = {s.capture->value(v, measured.input, measured.component), 0, 0, 0};
+  const auto fit = fit_camera(vertices);
+  if (!fit || fit->residual > max_fit_residual) throw Doubt{"fog is not an affine map of the position"};
+  const double scale = 1.0 / (double(measured.high) - measured.low);
+  volume::Fog& fog = s.request.fog.emplace();
+  for (std::size_t k = 0; k < 3; ++k) fog.normal[k] = fit->texture_to_clip[k] * scale;
+  fog.offset = (fit->texture_to_clip[3] - measured.low) * scale;
+  fog.entries = measured.entries;
 }
 
 void VolumeUnit::compose_request(Substitution& s) {
@@ -519,7 +549,7 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   counters.verify_max = std::max(counters.verify_max, difference->max);
   counters.verify_sum_sq += difference->mean_square;
   counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
-  frame_.error_rms = std::sqrt(difference->mean_square);
+  note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference->mean_square); });
   if (difference->psnr() < options.verify_psnr) {
     s.volume.given_back =
         fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
@@ -534,7 +564,7 @@ void VolumeUnit::explain(const Substitution& s) {
   put(s.volume.counters->explanation,
       fmt::format("{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, "
                   "fit to {:.1e}, "
-                  "{} clip planes, {}",
+                  "{} of {} colours, {} clip planes, {}{}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
                   name_of(s.volume.texture.type), s.volume.texture.format_name,
                   sampling_of(s.request, s.volume.texture.size),
@@ -544,11 +574,18 @@ void VolumeUnit::explain(const Substitution& s) {
                       : (s.pipeline.program != 0 ? "table probed from the program"
                          : s.pipeline.assembly   ? "table probed from the assembly program"
                                                  : "table probed from fixed function"),
-                  perspective ? "perspective" : "parallel", s.fit->residual, s.request.clip_planes.size(),
-                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it"));
+                  perspective ? "perspective" : "parallel", s.fit->residual, name_of(s.pipeline.blending),
+                  s.pipeline.blending.premultiplied ? "premultiplied" : "plain", s.request.clip_planes.size(),
+                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
+                  s.request.fog ? ", fading in fog" : ""));
 }
 
 void VolumeUnit::substitute(const Run& run) {
+  // Frames may end in other contexts than the one that draws.
+  if (const std::uint64_t frame = session_->ledger().frames(); frame != tidied_in_frame_) {
+    forget_deleted_volumes();
+    tidied_in_frame_ = frame;
+  }
   Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.pipeline().volume.texture)};
   s.texture_version = chain_.group().texture_version(s.pipeline.volume.texture);
   observe(s);
@@ -566,7 +603,8 @@ void VolumeUnit::substitute(const Run& run) {
   }
   const Clock::time_point asked = Clock::now();
   const compositor::Rendered rendered = service.render(s.request);
-  frame_.render_ms += milliseconds_since(asked);
+  const double render_ms = milliseconds_since(asked);
+  note([&](FrameRecord& frame) { frame.render_ms += render_ms; });
 
   // The service's picture is gone with its next answer.
   const Blending& blending = s.pipeline.blending;
@@ -600,7 +638,13 @@ void VolumeUnit::substitute(const Run& run) {
   } else if (blending.alpha_stands_apart()) {
     s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
     s.request.op = blending.alpha.op;
+    s.request.fog.reset();
+    // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
+    if (s.pipeline.target.alpha_bits <= 8) s.request.termination = 1e-3F;
+    const Clock::time_point asked_again = Clock::now();
     const compositor::Rendered alpha = service.render(s.request);
+    const double alpha_ms = milliseconds_since(asked_again);
+    note([&](FrameRecord& frame) { frame.render_ms += alpha_ms; });
     counts += alpha.counts;
     presenter_->present(shown, blending, &alpha.image);
   } else {
@@ -610,9 +654,11 @@ void VolumeUnit::substitute(const Run& run) {
   if (s.volume.frames == 0 || options.explain) explain(s);
   ++s.volume.frames;
   s.volume.refusals = 0;
-  ++frame_.substituted;
   s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
-  frame_.counts += counts;
+  note([&](FrameRecord& frame) {
+    ++frame.substituted;
+    frame.counts += counts;
+  });
 }
 
 void VolumeUnit::settle_depth(const Substitution& s) {
@@ -637,11 +683,9 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   // After a swap the depth buffer's contents are undefined.
   if (kind == FrameEnd::swap && depth_watched_ != 0) depth_cleared();
-  ++frames_;
-  frame_.time_ms = milliseconds_since(frame_started_);
-  count_frame(frame_);
-  frame_ = {};
-  frame_.error_rms = -1;
+  FrameRecord frame = session_->ledger().close(this);
+  frame.time_ms = milliseconds_since(frame_started_);
+  count_frame(frame);
   frame_started_ = Clock::now();
   forget_deleted_volumes();
 }

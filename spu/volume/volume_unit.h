@@ -30,14 +30,14 @@ struct KnownVolume {
   std::uint64_t generation = 0;           ///< of the service that has it; 0: none
   TextureDescription texture;
   std::array<float, 2> range{0, 1};
-  std::optional<volume::Classification> classification;
-  std::vector<float> classification_inputs;  ///< what the classification was probed under
-  std::optional<March> march;                ///< how its ray caster marches, where it is drawn by one
-  MarchInputs march_inputs;                  ///< what the march was measured under
-  bool depth_looked_at = false;              ///< somebody used the depth that its slices write
-  std::string given_back;   ///< why the volume is left to the application for good; empty: it is not
-  std::string last_reason;  ///< the last reason for leaving it that was said
-  int refusals = 0;         ///< in a row
+  std::optional<Probed> probed;
+  std::vector<float> probed_under;  ///< the state that decides what probing finds
+  std::optional<March> march;       ///< how its ray caster marches, where it is drawn by one
+  MarchInputs march_inputs;         ///< what the march was measured under
+  bool depth_looked_at = false;     ///< somebody used the depth that its slices write
+  std::string given_back;           ///< why the volume is left to the application for good; empty: it is not
+  std::string last_reason;          ///< the last reason for leaving it that was said
+  int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VolumeCounters* counters = nullptr;
@@ -85,6 +85,7 @@ class VolumeUnit final : public Unit {
   void describe_volume(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
   void classify(Substitution& s);
+  void place_fog(Substitution& s, const MeasuredFog& measured);
   void compose_request(Substitution& s);
   void compose_proxy_request(Substitution& s, compositor::RenderService& service);
   /// The march whose picture is most like the application's.
@@ -96,6 +97,11 @@ class VolumeUnit final : public Unit {
   void settle_depth(const Substitution& s);
   void leave(GLuint texture, const std::string& reason, bool say = true);
   void forget_deleted_volumes();
+  /// To what this context did since the last frame end, `change` is made.
+  template <class Change>
+  void note(Change change) {
+    session_->ledger().note(this, change);
+  }
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
 
   Chain& chain_;
@@ -109,9 +115,8 @@ class VolumeUnit final : public Unit {
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
       stages_;                ///< by program, with the link they stem from
   GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none
-  FrameRecord frame_{};
-  std::uint64_t frames_ = 0;
   std::uint64_t saved_ = 0;
+  std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_{};
 };
 

@@ -51,6 +51,7 @@ RenderRequest some_request(bool colours, bool depth) {
   } else {
     r.classification = TransferFunction{-0.5F, 2.5F, {{0, 0, 0, 0}, {0.1F, 0.2F, 0.3F, 0.4F}, {9, 9, 9, 1}}};
   }
+  if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.termination = 1e-5F;
   if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
   return r;
@@ -126,6 +127,10 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.clip_planes[1].offset, sent.clip_planes[1].offset);
   EXPECT_EQ(got.classification, sent.classification);
   EXPECT_EQ(got.termination, sent.termination);
+  ASSERT_TRUE(got.fog.has_value());
+  EXPECT_EQ(got.fog->normal, sent.fog->normal);
+  EXPECT_EQ(got.fog->offset, sent.fog->offset);
+  EXPECT_EQ(got.fog->entries, sent.fog->entries);
   ASSERT_TRUE(got.depth.has_value());
   EXPECT_EQ(got.depth->rect, sent.depth->rect);
   EXPECT_EQ(got.depth->depth, sent.depth->depth);

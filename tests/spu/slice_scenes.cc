@@ -456,9 +456,80 @@ SliceScene core_batched() {
   return scene;
 }
 
+SliceScene fogged_polygons() {
+  SliceScene scene{"polygons in fog, GLSL 1.20, a float texture defined twice, scale and bias, an idle mask"};
+  auto name = std::make_shared<GLuint>(0);
+  scene.set_up = [name](GlApplication& app) {
+    const Blob blob;
+    std::vector<float> values;
+    for (const std::uint8_t s : blob.texels()) values.push_back(float(s) - 40);
+    GLuint texture = 0;
+    app.gl().GenTextures(1, &texture);
+    app.gl().BindTexture(GL_TEXTURE_3D, texture);
+    filter(app.gl(), GL_TEXTURE_3D, GL_LINEAR);
+    for (const GLint format : {GL_R16F, GL_R32F})
+      app.gl().TexImage3D(GL_TEXTURE_3D, 0, format, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, values.data());
+    table_texture(app.gl());
+    *name = program(app.gl(),
+                    "#version 120\n"
+                    "varying float fog; varying vec3 unwritten; varying vec2 backdrop;\n"
+                    "void main() {\n"
+                    "  vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
+                    "  gl_TexCoord[0] = gl_MultiTexCoord0;\n"
+                    "  gl_Position = gl_ProjectionMatrix * eye;\n"
+                    "  fog = (4.0 + eye.z) * 0.6;\n"
+                    "  backdrop = gl_Position.xy / gl_Position.w;\n"
+                    "}\n",
+                    "#version 120\n"
+                    "uniform sampler3D field; uniform sampler1D table; uniform sampler3D mask;\n"
+                    "uniform bool masked; uniform float scale; uniform float bias; uniform vec3 background;\n"
+                    "varying float fog; varying vec3 unwritten; varying vec2 backdrop;\n"
+                    "void main() {\n"
+                    "  if (masked && texture3D(mask, gl_TexCoord[0].xyz).r > 0.5) discard;\n"
+                    "  float v = texture3D(field, gl_TexCoord[0].xyz).r * scale + bias;\n"
+                    "  if (v < 0.0 || v > 1.0) discard;\n"
+                    "  vec4 colour = texture1D(table, v);\n"
+                    "  if (colour.a == 0.0) discard;\n"
+                    "  gl_FragColor = fog >= 1.0 ? colour : vec4(mix(background, colour.rgb, fog), colour.a);\n"
+                    "}\n");
+    app.gl().UseProgram(*name);
+    const auto location = [&](const char* uniform) { return app.gl().GetUniformLocation(*name, uniform); };
+    app.gl().Uniform1i(location("field"), 0);
+    app.gl().Uniform1i(location("table"), 1);
+    app.gl().Uniform1i(location("mask"), 5);
+    app.gl().Uniform1i(location("masked"), 0);
+    app.gl().Uniform1f(location("scale"), 1.0F / 255);
+    app.gl().Uniform1f(location("bias"), 40.0F / 255);
+    app.gl().Uniform3f(location("background"), 0.9F, 0.7F, 0.1F);
+    app.gl().UseProgram(0);
+  };
+  scene.slices = [name](GlApplication& app, double angle) {
+    fixed_function_camera(app.gl(), angle);
+    app.gl().Enable(GL_BLEND);
+    app.gl().BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    app.gl().DepthMask(GL_FALSE);
+    app.gl().UseProgram(*name);
+    for (int i = 0; i < slices; ++i) {
+      app.gl().Begin(GL_POLYGON);
+      for (const auto& [x, y] : {std::pair{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 1.0F}}) {
+        const std::array<GLfloat, 3> place{x, y, GLfloat(slice_z(i))};
+        app.gl().TexCoord3fv(place.data());
+        app.gl().Vertex3fv(place.data());
+      }
+      app.gl().End();
+    }
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    app.gl().UseProgram(0);
+    app.gl().DepthMask(GL_TRUE);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
 std::vector<SliceScene> all_slice_scenes() {
   return {immediate_rgba(),        display_list_texgen(),  client_arrays_table(), vertex_shader_varying(),
-          assembly_program(false), assembly_program(true), core_batched()};
+          assembly_program(false), assembly_program(true), core_batched(),        fogged_polygons()};
 }
 
 }  // namespace understudy::spu::testing

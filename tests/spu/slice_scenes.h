@@ -48,6 +48,10 @@ SliceScene vertex_shader_varying();
 SliceScene assembly_program(bool two_dimensional_table);
 /// Core profile, vertex buffer, one batched draw of triangles with uniforms.
 SliceScene core_batched();
+/// Polygons computed anew for every frame, a float texture that was defined in another format before, scale and
+/// bias before a table of floats, fog towards a background colour, a mask sampler without texture, varyings
+/// that nobody writes or reads, an alpha blend function of its own: what PyMOL does.
+SliceScene fogged_polygons();
 
 std::vector<SliceScene> all_slice_scenes();
 

@@ -58,6 +58,8 @@ TEST(InstructionSets, AllDrawTheSamePicture) {
         TransferFunction table = smooth_table();
         for (int i = 0; i < 40; ++i) table.entries[std::size_t(i)] = {};
         if (type != TexelType::rgba8) request.classification = table;
+        if (op == Operator::over && filter == Filter::linear)
+          request.fog = Fog{{1, 0.5, 0}, -0.2, {{0, 0, 0, 1}, {0, 0.2F, 0.4F, 0.6F}, {0.5F, 0.5F, 0.5F, 0}}};
         const BrickStore store = filled(texture);
         const auto all = draw_on_all(store, request);
         for (const Drawn& drawn : all) {

@@ -89,6 +89,8 @@ TEST(Partition, GivesTheSamePictureForAnyNumberOfRanks) {
           noise(describe({37, 29, 41}, type, ranks % 3 == 0 ? Wrap::repeat : Wrap::border), 31);
       RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 80);
       request.termination = 1e-6F;
+      if (ranks % 2 == 0)
+        request.fog = Fog{{1, 0.5, 0}, -0.2, {{0, 0, 0, 1}, {0, 0.2F, 0.4F, 0.6F}, {0.5F, 0.5F, 0.5F, 0}}};
       const Whole one = render_whole(texture, request), many = render_parts(texture, request, ranks);
       const double d = difference(one.image, many.image).max;
       worst = std::max(worst, d);

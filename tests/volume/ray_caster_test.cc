@@ -70,6 +70,48 @@ TEST(RayCaster, EqualsTheSlicesForEveryOperator) {
     }
 }
 
+/// A red haze from one corner to the other, with a kink.
+Fog red_haze() {
+  Fog fog{.normal = {0.5, 0.6, -0.4}, .offset = 0.3, .entries = {}};
+  for (int i = 0; i < 65; ++i) {
+    const float weight = std::max(0.0F, 1 - float(i) / 50);
+    fog.entries.push_back({0.7F * (1 - weight), 0.1F * (1 - weight), 0, weight});
+  }
+  return fog;
+}
+
+TEST(RayCaster, EqualsTheSlicesInFog) {
+  for (const TexelType type : all_types) {
+    const Texture texture = noise(describe({19, 23, 13}, type), 15);
+    for (const Operator op : {Operator::over, Operator::max, Operator::add}) {
+      RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 30);
+      request.op = op;
+      const Image clear = render(texture, request);
+      request.fog = red_haze();
+      const auto what = std::string(name(type)) + " " + name(op);
+      expect_like_reference(texture, request, 2e-4, what.c_str());
+      EXPECT_GT(difference(render(texture, request), clear).max, 0.05) << what << ": the fog is not to be seen";
+    }
+  }
+}
+
+TEST(RayCaster, KnowsTheClassificationsOfTheLastTwoRequests) {
+  const Texture texture = noise(describe({19, 23, 13}, TexelType::u8), 16);
+  const BrickStore store = filled(texture);
+  RayCaster caster(store);
+  std::array<RenderRequest, 3> requests;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    requests[i] = request_for(texture, usual_camera(41, 37), 41, 37, 30);
+    requests[i].classification = smooth_table(256, 0.1F * float(i + 1));
+  }
+  for (const std::size_t i : {0, 1, 0, 1, 2, 0, 2, 1, 1}) {
+    Image image(requests[i].window);
+    FrameCounts counts;
+    caster.render(requests[i], image, counts);
+    EXPECT_EQ(image.rgba, render(texture, requests[i]).rgba) << "classification " << i;
+  }
+}
+
 TEST(RayCaster, EqualsTheSlicesWithTheNearestFilter) {
   for (const TexelType type : all_types) {
     const Texture texture = noise(describe({19, 23, 13}, type), 13);
@@ -325,6 +367,22 @@ TEST(RayCaster, FollowsAChangedClassification) {
       caster.render(request, image, counts);
       EXPECT_LE(difference(image, reference(texture, request)).max, 1e-4) << opacity;
     }
+}
+
+TEST(RayCaster, RefusesFogThatCannotBe) {
+  const Texture texture = noise(describe({5, 5, 5}, TexelType::u8), 24);
+  const auto refused = [&](Operator op, auto change) {
+    RenderRequest request = request_for(texture, usual_camera(8, 8), 8, 8, 4);
+    request.op = op;
+    request.fog = red_haze();
+    change(*request.fog);
+    EXPECT_THROW(render(texture, request), std::invalid_argument);
+  };
+  refused(Operator::min, [](Fog&) {});
+  refused(Operator::over, [](Fog& fog) { fog.entries.resize(1); });
+  refused(Operator::over, [](Fog& fog) { fog.entries[3][1] = NAN; });
+  refused(Operator::over, [](Fog& fog) { fog.normal[2] = INFINITY; });
+  refused(Operator::over, [](Fog& fog) { fog.offset = NAN; });
 }
 
 TEST(RayCaster, DiscardsFragmentsByAlpha) {

@@ -65,6 +65,17 @@ bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   return true;
 }
 
+/// What the fog at lattice position p leaves of a colour.
+void lay_in_fog(const FogTable& fog, const std::array<float, 3>& p, Rgba& colour) {
+  const std::array<float, 3>& gradient = fog.gradient();
+  const float free = gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2] + fog.offset();
+  const float place = std::clamp(free, 0.0F, fog.last());
+  const auto entry = std::size_t(place);
+  const float* row = fog.rows() + 8 * entry;
+  const auto at = [&](std::size_t k) { return row[k] + (place - float(entry)) * row[4 + k]; };
+  for (std::size_t k = 0; k < 3; ++k) colour[k] = at(3) * colour[k] + colour[3] * at(k);
+}
+
 void compose(Operator op, const Rgba& colour, Rgba& pixel) {
   switch (op) {
     case Operator::over: {
@@ -110,6 +121,8 @@ class RayWalk {
       texel_stride *= BrickStore::block_row;
     }
   }
+
+  const std::array<float, 3>& position() const { return position_; }
 
   /// How many samples from here on lie in empty blocks for sure; 0 in a block that shows something.
   int empty_ahead() const {
@@ -172,7 +185,10 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
       }
       ++counts.samples_taken;
       Rgba colour;
-      if (classify(scene, walk.sample(), colour)) compose(scene.op, colour, pixel);
+      if (classify(scene, walk.sample(), colour)) {
+        if (scene.fog != nullptr) lay_in_fog(*scene.fog, walk.position(), colour);
+        compose(scene.op, colour, pixel);
+      }
       ++k;
       if (--until_test == 0) {
         until_test = samples_between_tests;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "volume/brick/brick_store.h"
+#include "volume/raycast/fog_table.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
@@ -19,6 +20,7 @@ struct Scene {
   const SkipMap* skip = nullptr;
   const TransferTable* table = nullptr;
   const LinearMap* map = nullptr;
+  const FogTable* fog = nullptr;  ///< null: the air is clear
   Operator op = Operator::over;
   Filter filter = Filter::linear;
   float termination = 0;

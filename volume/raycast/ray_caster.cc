@@ -81,6 +81,16 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
 }
 
+void validate_fog(const Fog& fog, Operator op) {
+  if (op == Operator::min) refuse("there is no fog under the operator min");
+  if (fog.entries.size() < 2 || fog.entries.size() > max_table_entries)
+    refuse("the fog has {} entries (2 to {} are possible)", fog.entries.size(), max_table_entries);
+  for (const Rgba& entry : fog.entries)
+    if (!all_finite(entry)) refuse("the fog holds a value that is not finite");
+  if (!all_finite(fog.normal) || !std::isfinite(fog.offset))
+    refuse("the direction of the fog holds a value that is not finite");
+}
+
 /// Whether a block of colours can show anything: bounds of the mapped components over the block's ranges.
 bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels) {
   std::array<float, 4> highest{};
@@ -135,6 +145,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
            request.depth->rect.width, request.depth->rect.height);
   validate_classification(volume, request.classification);
+  if (request.fog) validate_fog(*request.fog, request.op);
 }
 
 /// What depends on the classification alone (and on whether the operator is `min`, to which clear samples
@@ -190,11 +201,16 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   if (store.empty()) return;
 
   const bool keeps_clear_samples = request.op == Operator::min;
-  if (!prepared_ || prepared_->keeps_clear_samples != keeps_clear_samples ||
-      prepared_->classification != request.classification)
-    prepared_ = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+  const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
+    return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
+           prepared->classification == request.classification;
+  };
+  if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
+  if (!fits(prepared_[0]))
+    prepared_[0] = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+  const Prepared& prepared = *prepared_[0];
   counts.blocks += store.blocks();
-  counts.blocks_empty += prepared_->skip.empty_blocks();
+  counts.blocks_empty += prepared.skip.empty_blocks();
 
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
   if (pixels.empty() || (!request.steps && request.planes.count == 0)) return;
@@ -202,9 +218,12 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   const RaySetup setup(request, store);
   Scene scene;
   scene.store = &store;
-  scene.skip = &prepared_->skip;
-  scene.table = prepared_->table ? &*prepared_->table : nullptr;
-  scene.map = std::get_if<LinearMap>(&prepared_->classification);
+  scene.skip = &prepared.skip;
+  scene.table = prepared.table ? &*prepared.table : nullptr;
+  scene.map = std::get_if<LinearMap>(&prepared.classification);
+  std::optional<FogTable> fog;
+  if (request.fog) fog.emplace(*request.fog, store);
+  scene.fog = fog ? &*fog : nullptr;
   scene.op = request.op;
   scene.filter = request.filter;
   scene.termination = request.termination;

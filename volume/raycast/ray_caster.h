@@ -7,6 +7,7 @@
 // float composition and the termination threshold).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -39,7 +40,8 @@ class RayCaster {
   RayCaster& operator=(RayCaster&&) noexcept;
 
   /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral. Runs on
-  /// all cores of the calling TBB arena. What depends on the classification alone is kept for the next call.
+  /// all cores of the calling TBB arena. What depends on the classification alone is kept for the next two
+  /// calls.
   ///
   /// Adds to `counts`: rays with at least one sample in the owned cells, of these the rays that became
   /// opaque, the samples in the owned cells (had nothing been left out) and those taken, the blocks held and
@@ -52,7 +54,8 @@ class RayCaster {
   struct Prepared;
 
   const BrickStore* store_;
-  std::unique_ptr<Prepared> prepared_;
+  /// The latest first: a viewer whose framebuffer keeps alpha asks for two pictures of every frame.
+  std::array<std::unique_ptr<Prepared>, 2> prepared_;
 };
 
 /// One picture without keeping anything.

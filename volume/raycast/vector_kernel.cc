@@ -156,6 +156,12 @@ struct Constants {
 
     Rgba border_texel = scene.store->border();
     for (float& v : border_texel) v = Source::factor * (v - Source::zero);
+    if (scene.fog != nullptr) {
+      fog_rows = scene.fog->rows();
+      for (std::size_t axis = 0; axis < 3; ++axis) fog_gradient[axis] = hn::Set(f, scene.fog->gradient()[axis]);
+      fog_offset = hn::Set(f, scene.fog->offset());
+      fog_last = hn::Set(f, scene.fog->last());
+    }
     if constexpr (Source::scalar) {
       const TransferTable& table = *scene.table;
       entries = table.rows();
@@ -194,6 +200,10 @@ struct Constants {
 
   std::array<Floats, 4> map_columns;  // of the map of colours; components side by side
   Floats scaled_by_alpha, alpha_above;
+
+  const float* fog_rows = nullptr;  // null: the air is clear
+  std::array<Floats, 3> fog_gradient;
+  Floats fog_offset, fog_last;
 };
 
 /// A packet's rays, and the next sample of each (a whole number).
@@ -484,19 +494,56 @@ HWY_INLINE void classify(const Located& at, const Packet& rays, const Constants&
   out[3] = colour_of_column<3>(corners, at, present, constants);
 }
 
+/// The rows, of eight floats, at which column q's rays stand in a table.
 template <std::size_t q>
-HWY_INLINE Floats colour_at(const TablePlace& at, const Constants& constants) {
+HWY_INLINE Floats interpolated_row(const TablePlace& at, const float* table) {
   const FloatTag f;
   std::array<const float*, lanes> entries;
 #pragma GCC unroll 4
-  for (std::size_t row = 0; row < rows; ++row) entries[q + 4 * row] = constants.entries + at.entry[q + 4 * row];
+  for (std::size_t row = 0; row < rows; ++row) entries[q + 4 * row] = table + at.entry[q + 4 * row];
   const Floats entry = load_column<q>(f, entries.data(), 0), slope = load_column<q>(f, entries.data(), 4);
   return hn::MulAdd(slope, hn::Broadcast<q>(at.between), entry);
 }
 
 template <std::size_t q>
+HWY_INLINE Floats colour_at(const TablePlace& at, const Constants& constants) {
+  return interpolated_row<q>(at, constants.entries);
+}
+
+template <std::size_t q>
 HWY_INLINE Floats colour_at(const Colours& at, const Constants&) {
   return at[q];
+}
+
+/// `colour` after the row of fog (added colour, weight): components side by side.
+HWY_INLINE Floats fogged(Floats colour, Floats row) {
+  const FloatTag f;
+  alignas(16) static constexpr float colour_lanes[4] = {1, 1, 1, 0};
+  const Floats of_colour = hn::LoadDup128(f, colour_lanes), one = hn::Set(f, 1.0F);
+  const Floats weight = hn::MulAdd(of_colour, hn::Sub(hn::Broadcast<3>(row), one), one);
+  return hn::MulAdd(hn::Mul(of_colour, row), hn::Broadcast<3>(colour), hn::Mul(weight, colour));
+}
+
+/// What fog leaves of the colours of the samples at which `rays` stand.
+template <typename Classified>
+HWY_INLINE void lay_in_fog(const Packet& rays, const Constants& constants, const Classified& classified,
+                           Colours& out) {
+  const FloatTag f;
+  const Position p = position_of(rays, constants);
+  Floats free = constants.fog_offset;
+#pragma GCC unroll 3
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    free = hn::MulAdd(constants.fog_gradient[axis], p.free[axis], free);
+  const Floats place = hn::Min(hn::Max(free, hn::Zero(f)), constants.fog_last);
+  const Ints entry = truncated(place);
+  const hn::RebindToUnsigned<IntTag> u;
+  TablePlace at;
+  at.between = hn::Sub(place, hn::ConvertTo(f, entry));
+  hn::Store(hn::BitCast(u, hn::ShiftLeft<3>(entry)), u, at.entry.data());
+  out[0] = fogged(colour_at<0>(classified, constants), interpolated_row<0>(at, constants.fog_rows));
+  out[1] = fogged(colour_at<1>(classified, constants), interpolated_row<1>(at, constants.fog_rows));
+  out[2] = fogged(colour_at<2>(classified, constants), interpolated_row<2>(at, constants.fog_rows));
+  out[3] = fogged(colour_at<3>(classified, constants), interpolated_row<3>(at, constants.fog_rows));
 }
 
 template <Operator op>
@@ -527,6 +574,21 @@ HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& sam
   pixels = mine;
 }
 
+template <typename Classified>
+HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& samples,
+                        const Constants& constants, Colours& pixels) {
+  switch (constants.op) {
+    case Operator::over:
+      return compose<Operator::over>(samples, constants, pixels);
+    case Operator::add:
+      return compose<Operator::add>(samples, constants, pixels);
+    case Operator::max:
+      return compose<Operator::max>(samples, constants, pixels);
+    case Operator::min:
+      return compose<Operator::min>(samples, constants, pixels);
+  }
+}
+
 /// Eight samples of every ray. Three passes: within each, samples do not wait for one another, and the
 /// processor's window holds several of them; one after the other, a sample's chain of some hundred cycles
 /// would be all it sees.
@@ -536,6 +598,7 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
   const Floats one = hn::Set(FloatTag(), 1.0F);
   std::array<Located, samples_between_tests> located;
   std::array<Classified, samples_between_tests> classified;
+  const Packet before = rays;
   Packet ahead = rays;
   for (Located& at : located) {
     locate(ahead, constants, at);
@@ -545,16 +608,14 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
     classify(located[i], rays, constants, source, classified[i]);
     rays.k = hn::Add(rays.k, one);
   }
-  switch (constants.op) {
-    case Operator::over:
-      return compose<Operator::over>(classified, constants, pixels);
-    case Operator::add:
-      return compose<Operator::add>(classified, constants, pixels);
-    case Operator::max:
-      return compose<Operator::max>(classified, constants, pixels);
-    case Operator::min:
-      return compose<Operator::min>(classified, constants, pixels);
+  if (constants.fog_rows == nullptr) return compose(classified, constants, pixels);
+  std::array<Colours, samples_between_tests> seen;
+  Packet behind = before;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    lay_in_fog(behind, constants, classified[i], seen[i]);
+    behind.k = hn::Add(behind.k, one);
   }
+  compose(seen, constants, pixels);
 }
 
 /// Alpha of every ray, from the blended layout to one lane per ray.

@@ -148,6 +148,18 @@ bool fragment(const Classification& classification, const Sample& sample, Sample
   return true;
 }
 
+void lay_in_fog(const Fog& fog, const Vec3& t, Sample& colour) {
+  const double last = double(fog.entries.size() - 1);
+  const double place = std::clamp((dot(fog.normal, t) + fog.offset) * last, 0.0, last);
+  const auto below = std::size_t(std::floor(place));
+  const std::size_t above = std::min(below + 1, fog.entries.size() - 1);
+  const double s = place - double(below);
+  const auto entry = [&](std::size_t k) {
+    return (1 - s) * double(fog.entries[below][k]) + s * double(fog.entries[above][k]);
+  };
+  for (std::size_t k = 0; k < 3; ++k) colour[k] = entry(3) * colour[k] + colour[3] * entry(k);
+}
+
 /// GL_LESS or GL_LEQUAL against the depth image; pixels without depth pass.
 bool nearer(const std::optional<DepthImage>& image, int x, int y, double depth) {
   if (!image) return true;
@@ -270,6 +282,7 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
       const auto sample_at = [&](const Vec3& t) {
         Sample colour;
         if (!fragment(request.classification, field(t), colour)) return;
+        if (request.fog) lay_in_fog(*request.fog, t, colour);
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {
             case Operator::over:

@@ -17,6 +17,8 @@ constexpr int pixels = edge * edge;
 static_assert(probed_entries <= pixels);
 /// Two probes of one sample agree to this; interpolation of our own inputs is exact, so only rounding remains.
 constexpr float same_colour = 2e-4F;
+/// Fog is interpolated between values of its number.
+constexpr float same_fogged_colour = 4e-3F;
 
 using Picture = std::vector<volume::Rgba>;
 
@@ -73,15 +75,17 @@ class Bench {
                    texels.data());
   }
 
-  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`.
-  Picture draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {}) {
+  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`. `across` and `up`: by how
+  /// much inputs grow over the picture's edges; empty where they are constant.
+  Picture draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
+               const InputValues& across = {}, const InputValues& up = {}) {
     gl_.ClearBufferfv(GL_COLOR, 0, background.data());
     if (with_alpha_test && alpha_test_) gl_.Enable(GL_ALPHA_TEST);
     gl_.UseProgram(program_);
-    const GLint location = gl_.GetUniformLocation(program_, "understudy_value");
-    if (location >= 0 && !values.empty()) {
-      gl_.Uniform4fv(location, GLsizei(values.size()), values.front().data());
-    }
+    const InputValues level(values.size());
+    give("understudy_value", values);
+    give("understudy_across", across.empty() ? level : across);
+    give("understudy_up", up.empty() ? level : up);
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
     if (alpha_test_) gl_.Disable(GL_ALPHA_TEST);
     Picture picture(pixels);
@@ -92,6 +96,12 @@ class Bench {
   bool alpha_test_enabled() const { return alpha_test_; }
 
  private:
+  void give(const char* name, const InputValues& values) {
+    const GLint location = gl_.GetUniformLocation(program_, name);
+    if (location >= 0 && !values.empty())
+      gl_.Uniform4fv(location, GLsizei(values.size()), values.front().data());
+  }
+
   const DispatchTable& gl_;
   bool alpha_test_;  ///< asked before SavedState switches it off
   SavedState saved_;
@@ -175,40 +185,187 @@ bool leaves_unit_interval(const std::array<float, 16>& matrix) {
   return false;
 }
 
+/// One component of one input.
+struct Number {
+  std::size_t input = 0;  ///< in the order of FragmentInputs::inputs
+  std::size_t component = 0;
+};
+
+/// The numbers that vary over the run, the coordinate left out.
+std::vector<Number> varying_numbers(const FragmentInputs& fragment) {
+  std::vector<Number> numbers;
+  for (std::size_t i = 0; i < fragment.inputs.size(); ++i) {
+    if (fragment.inputs[i].name == fragment.coordinate) continue;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!(fragment.range.low[i][c] == fragment.range.high[i][c])) numbers.push_back({i, c});
+    }
+  }
+  return numbers;
+}
+
+/// The range, and as much again on both sides where it is one: a view that turns does not ask for another
+/// probe.
+InputRange widened(InputRange range, const std::vector<Number>& numbers) {
+  for (const Number& number : numbers) {
+    float& low = range.low[number.input][number.component];
+    float& high = range.high[number.input][number.component];
+    const float extent = high - low;
+    low -= extent;
+    high += extent;
+  }
+  return range;
+}
+
+float largest_difference(const Picture& a, const Picture& b) {
+  float largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const float difference = largest_difference(a[i], b[i]);
+    if (!(difference <= largest)) largest = difference;
+  }
+  return largest;
+}
+
+/// Shows the probe program a table's samples under other inputs than the run's first vertex has.
+class TableProbe {
+ public:
+  TableProbe(Bench& bench, const GlContext& context, const TextureDescription& texture,
+             const FragmentInputs& fragment, const std::array<float, 2>& range)
+      : bench_(bench), context_(context), texture_(texture), fragment_(fragment), ramp_(pixels) {
+    for (int i = 0; i < pixels; ++i) {
+      const double place = double(std::min(i, probed_entries - 1)) / (probed_entries - 1);
+      ramp_[std::size_t(i)] = float(range[0] + place * (double(range[1]) - range[0]));
+    }
+  }
+
+  /// All entries of the table, with the inputs given.
+  Picture table(const InputValues& inputs) {
+    show(edge, ramp_);
+    return bench_.draw(without_coordinate(fragment_, inputs), true);
+  }
+  /// One entry, at coordinates all over the volume.
+  Picture everywhere(std::size_t entry, const InputValues& inputs) {
+    show(1, {ramp_[entry]});
+    return bench_.draw(without_coordinate(fragment_, inputs), true);
+  }
+  /// One entry, while one number runs from `low` in the first pixel to `high` in the last.
+  Picture along(std::size_t entry, const Number& number, float low, float high) {
+    show(1, {ramp_[entry]});
+    const float step = (high - low) / float(pixels - 1);
+    InputValues values = fragment_.first;
+    InputValues across(values.size());
+    InputValues up(values.size());
+    values[number.input][number.component] = low - step * 0.5F * float(edge + 1);
+    across[number.input][number.component] = step * float(edge);
+    up[number.input][number.component] = step * float(edge * edge);
+    return bench_.draw(without_coordinate(fragment_, values), true, {}, without_coordinate(fragment_, across),
+                       without_coordinate(fragment_, up));
+  }
+  InputValues first_but(const Number& number, float value) const {
+    InputValues values = fragment_.first;
+    values[number.input][number.component] = value;
+    return values;
+  }
+
+ private:
+  void show(int extent, const std::vector<float>& texels) {
+    bench_.show(probe_format(texture_.base), upload_format(texture_.base), extent, extent, texels,
+                texture_.swizzle, context_.version >= 330);
+  }
+
+  Bench& bench_;
+  const GlContext& context_;
+  const TextureDescription& texture_;
+  const FragmentInputs& fragment_;
+  std::vector<float> ramp_;
+};
+
+/// The fog in the one number that colours depend on; null when there is no such thing. Leaves in `table` the
+/// colours where the fog is thinnest.
+std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, const InputRange& needed,
+                                     const InputRange& range, bool premultiplied, Picture& table) {
+  const float low = range.low[number.input][number.component];
+  const float high = range.high[number.input][number.component];
+  std::vector<float> values(pixels);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = low + (high - low) * float(i) / float(pixels - 1);
+  const auto bound = [&](const InputValues& end) { return end[number.input][number.component]; };
+  auto fog = measure_fog(table, premultiplied, values, {bound(needed.low), bound(needed.high)},
+                         [&](std::size_t entry) { return probe.along(entry, number, low, high); });
+  if (!fog) return std::nullopt;
+  fog->input = number.input;
+  fog->component = number.component;
+  table = probe.table(probe.first_but(number, fog->reference));
+  // It was found with a few samples, and must hold for all.
+  for (const std::size_t k : {std::size_t(0), fog->entries.size() / 2, fog->entries.size() - 1}) {
+    const volume::Rgba& entry = fog->entries[k];
+    const float value = fog->low + (fog->high - fog->low) * float(k) / float(fog->entries.size() - 1);
+    const Picture seen = probe.table(probe.first_but(number, value));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!(std::abs(seen[i][3] - table[i][3]) <= same_colour)) return std::nullopt;
+      for (std::size_t c = 0; seen[i][3] > 0 && c < 3; ++c) {
+        const float added = premultiplied ? seen[i][3] * entry[c] : entry[c];
+        const float expected = entry[3] * std::clamp(table[i][c], 0.0F, 1.0F) + added;
+        if (!(std::abs(expected - std::clamp(seen[i][c], 0.0F, 1.0F)) <= same_fogged_colour))
+          return std::nullopt;
+      }
+    }
+  }
+  return fog;
+}
+
 ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                          const TextureDescription& texture, const FragmentInputs& fragment,
                          const std::array<float, 2>& range) {
-  const GLenum internal_format = probe_format(texture.base);
-  const GLenum format = upload_format(texture.base);
-  const bool with_swizzle = context.version >= 330;
-  std::vector<float> ramp(pixels);
-  for (int i = 0; i < pixels; ++i) {
-    const double place = double(std::min(i, probed_entries - 1)) / (probed_entries - 1);
-    ramp[std::size_t(i)] = float(range[0] + place * (double(range[1]) - range[0]));
-  }
-  const InputValues first = without_coordinate(fragment, fragment.first);
-  const InputValues last = without_coordinate(fragment, fragment.last);
-  bench.show(internal_format, format, edge, edge, ramp, texture.swizzle, with_swizzle);
-  const Picture table = bench.draw(first, true);
+  constexpr const char* more_than_the_sample =
+      "the colour depends on more than the sample (position, lighting)";
+  TableProbe probe(bench, context, texture, fragment, range);
+  Picture table = probe.table(fragment.first);
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
   // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
   if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
-    if (bench.draw(first, true, {1, 1, 1, 1}) != table) return "fragments are discarded under a minimum";
+    if (bench.draw(without_coordinate(fragment, fragment.first), true, {1, 1, 1, 1}) != table)
+      return "fragments are discarded under a minimum";
   }
+
+  const std::vector<Number> varying = varying_numbers(fragment);
+  Probed probed;
+  InputValues elsewhere = fragment.last;
+  bool explained = false;
+  for (const InputRange& tried : {widened(fragment.range, varying), fragment.range}) {
+    probed.range = tried;
+    std::vector<Number> telling;  // on which the colour depends
+    for (const Number& number : varying) {
+      for (const InputValues* end : {&tried.low, &tried.high}) {
+        const float value = (*end)[number.input][number.component];
+        if (largest_difference(probe.table(probe.first_but(number, value)), table) <= same_colour) continue;
+        telling.push_back(number);
+        break;
+      }
+    }
+    if (telling.size() == 1 && !fragment.inputs[telling.front().input].integer)
+      probed.fog =
+          probe_fog(probe, telling.front(), fragment.range, tried, pipeline.blending.premultiplied, table);
+    if (probed.fog) {
+      elsewhere[probed.fog->input][probed.fog->component] = probed.fog->reference;
+      probed.range.low[probed.fog->input][probed.fog->component] = probed.fog->low;
+      probed.range.high[probed.fog->input][probed.fog->component] = probed.fog->high;
+    }
+    explained = telling.empty() || probed.fog;
+    if (explained) break;
+  }
+  if (!explained) return more_than_the_sample;
 
   // The same samples with other coordinates and other inputs: a single texel, spread over the whole picture.
   for (const int entry :
        {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
-    bench.show(internal_format, format, 1, 1, {ramp[std::size_t(entry)]}, texture.swizzle, with_swizzle);
-    for (const volume::Rgba& colour : bench.draw(last, true)) {
-      if (!(largest_difference(colour, table[std::size_t(entry)]) <= same_colour)) {
-        return "the colour depends on more than the sample (position, lighting)";
-      }
+    for (const volume::Rgba& colour : probe.everywhere(std::size_t(entry), elsewhere)) {
+      if (!(largest_difference(colour, table[std::size_t(entry)]) <= same_colour)) return more_than_the_sample;
     }
   }
 
-  if (sees_neighbours(bench, context, texture, range, first, table))
+  InputValues tabled = fragment.first;
+  if (probed.fog) tabled[probed.fog->input][probed.fog->component] = probed.fog->reference;
+  if (sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table))
     return "the colour depends on the field around the sample (gradient, lighting)";
 
   volume::TransferFunction function;
@@ -226,7 +383,8 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
     if (pipeline.blending.premultiplied) continue;
     for (std::size_t c = 0; c < 3; ++c) entry[c] *= entry[3];
   }
-  return volume::Classification{std::move(function)};
+  probed.classification = std::move(function);
+  return probed;
 }
 
 ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& pipeline,
@@ -280,7 +438,7 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
       }
     }
   }
-  return volume::Classification{map};
+  return Probed{map, std::nullopt, fragment.range};
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "spu/volume/classification/fog.h"
 #include "spu/volume/context.h"
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/pipeline.h"
@@ -25,6 +27,7 @@ struct FragmentInputs {
   std::string coordinate;
   InputValues first;  ///< values of all inputs at one vertex, in the order of `inputs`
   InputValues last;   ///< and at another: a colour that differs between them depends on more than the sample
+  InputRange range;   ///< of all inputs over the run
 };
 
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
@@ -34,7 +37,14 @@ constexpr int probed_entries = 16 * 255 + 1;
 GLenum probe_format(BaseFormat base);
 GLenum upload_format(BaseFormat base);
 
-using ProbeFinding = std::variant<volume::Classification, std::string>;
+/// What was found, for all runs whose inputs keep within a range.
+struct Probed {
+  volume::Classification classification;
+  std::optional<MeasuredFog> fog;
+  InputRange range;
+};
+
+using ProbeFinding = std::variant<Probed, std::string>;
 
 /// `range` is the interval of texel values that the table covers. Uses the current context's fragment state
 /// (texture environment, alpha test, uniforms) and leaves it untouched.

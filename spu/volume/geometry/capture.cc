@@ -69,30 +69,22 @@ class CaptureState {
   std::array<GLuint, 2> queries_{};
 };
 
-/// Floats of one captured vertex.
-std::size_t captured_floats(const ProgramStages& stages) {
-  std::size_t floats = 4;
-  for (const StageInput& input : stages.inputs) floats += std::size_t(input.components);
-  return floats;
+float component_of(const StageInput& input, const float* captured) {
+  if (!input.integer) return *captured;
+  std::int32_t whole;
+  std::memcpy(&whole, captured, sizeof whole);
+  return float(whole);
 }
 
-InputValues values_at(std::span<const float> vertex, const ProgramStages& stages) {
-  InputValues values;
-  std::size_t at = 4;
-  for (const StageInput& input : stages.inputs) {
-    std::array<float, 4> value{};
-    for (int c = 0; c < input.components; ++c) {
-      const float* component = &vertex[at + std::size_t(c)];
-      if (input.integer) {
-        std::int32_t whole;
-        std::memcpy(&whole, component, sizeof whole);
-        value[std::size_t(c)] = float(whole);
-      } else {
-        value[std::size_t(c)] = *component;
-      }
-    }
-    at += std::size_t(input.components);
-    values.push_back(value);
+/// All inputs at the vertex that begins at `vertex`; zeros for those that are not written.
+InputValues values_at(const float* vertex, const ProgramStages& stages,
+                      const std::vector<std::size_t>& offsets) {
+  InputValues values(stages.inputs.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const StageInput& input = stages.inputs[i];
+    if (!input.written) continue;
+    for (std::size_t c = 0; c < std::size_t(input.components); ++c)
+      values[i][c] = component_of(input, vertex + offsets[i] + c);
   }
   return values;
 }
@@ -105,14 +97,48 @@ bool within_texture(std::span<const ObservedVertex> vertices) {
   });
 }
 
+/// Bounds of all inputs but the coordinate, which has none.
+InputRange range_of(const Capture& capture, const ProgramStages& stages) {
+  InputRange range{capture.first, capture.first};
+  for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
+    const StageInput& input = stages.inputs[i];
+    if (input.name == capture.coordinate) range.low[i] = range.high[i] = {};
+    if (input.name == capture.coordinate || !input.written) continue;
+    for (std::size_t c = 0; c < std::size_t(input.components); ++c) {
+      for (std::size_t at = capture.offsets[i] + c; at < capture.data.size(); at += capture.stride) {
+        const float value = component_of(input, &capture.data[at]);
+        // A NaN becomes a bound, and nothing covers it.
+        if (!(value >= range.low[i][c])) range.low[i][c] = value;
+        if (!(value <= range.high[i][c])) range.high[i][c] = value;
+      }
+    }
+  }
+  return range;
+}
+
 }  // namespace
+
+bool InputRange::covers(const InputRange& inner) const {
+  if (inner.low.size() != low.size()) return false;
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!(inner.low[i][c] >= low[i][c] && inner.high[i][c] <= high[i][c])) return false;
+    }
+  }
+  return true;
+}
 
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
                          const std::string& coordinate) {
   const DispatchTable& gl = *context.gl;
   Capture capture;
-  const std::size_t stride = captured_floats(stages);
-  std::vector<float> data;
+  std::size_t stride = 4;
+  for (const StageInput& input : stages.inputs) {
+    capture.offsets.push_back(stride);
+    if (input.written) stride += std::size_t(input.components);
+  }
+  capture.stride = stride;
+  std::vector<float>& data = capture.data;
   {
     CaptureState state(gl, stages.observer);
     copy_uniforms(context, run.pipeline().program, stages.observer);
@@ -131,8 +157,8 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
 
   const std::size_t vertices = data.size() / stride;
   const auto vertex = [&](std::size_t v) { return std::span<const float>(data).subspan(v * stride, stride); };
-  capture.first = values_at(vertex(0), stages);
-  capture.last = values_at(vertex(vertices - 1), stages);
+  capture.first = values_at(vertex(0).data(), stages, capture.offsets);
+  capture.last = values_at(vertex(vertices - 1).data(), stages, capture.offsets);
   ObservedPolygons& polygons = capture.polygons;
   polygons.vertices.resize(vertices);
   for (std::size_t v = 0; v < vertices; ++v) {
@@ -148,24 +174,24 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
     }
   };
   std::size_t chosen = 0;
-  std::size_t at = 4;
-  for (const StageInput& input : stages.inputs) {
-    const std::size_t here = at;
-    at += std::size_t(input.components);
-    if (input.integer || input.components < 3) continue;
+  for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
+    const StageInput& input = stages.inputs[i];
+    if (input.integer || !input.written || input.components < 3) continue;
     if (!coordinate.empty() && input.name != coordinate) continue;
-    take_coordinates(here);
+    take_coordinates(capture.offsets[i]);
     const auto fit = fit_camera(polygons.vertices);
     if (!fit || fit->residual > max_fit_residual) continue;
     const bool inside = within_texture(polygons.vertices);
     if (!capture.fit || inside) {
       capture.coordinate = input.name;
       capture.fit = fit;
-      chosen = here;
+      chosen = capture.offsets[i];
     }
-    if (inside) return capture;
+    if (inside) break;
   }
-  if (capture.fit) take_coordinates(chosen);
+  if (!capture.fit) return capture;
+  take_coordinates(chosen);
+  capture.range = range_of(capture, stages);
   return capture;
 }
 

@@ -13,12 +13,30 @@ namespace understudy::spu {
 /// Values of one vertex, in the order of ProgramStages::inputs, four floats an input.
 using InputValues = std::vector<std::array<float, 4>>;
 
+/// Bounds of every input over all vertices of a run, component by component.
+struct InputRange {
+  InputValues low;
+  InputValues high;
+
+  /// Whether `inner` lies within.
+  bool covers(const InputRange& inner) const;
+};
+
 struct Capture {
   ObservedPolygons polygons;  ///< triangles; `texture` holds the input named by `coordinate`
   std::string coordinate;  ///< the input that addresses the volume: the one whose fit to the positions closes
   std::optional<CameraFit> fit;
   InputValues first;  ///< all inputs at the first vertex
   InputValues last;   ///< and at the last
+  InputRange range;
+  std::vector<float> data;  ///< vertex by vertex, `stride` floats each
+  std::size_t stride = 0;
+  std::vector<std::size_t> offsets;  ///< of each input in a vertex; those that are not written have none
+
+  /// Of input `input`, no integer, at vertex `v`.
+  float value(std::size_t v, std::size_t input, std::size_t component) const {
+    return data[v * stride + offsets[input] + component];
+  }
 };
 
 /// Draws `run` with `stages.observer`; uniforms are copied from the run's program. An empty capture when

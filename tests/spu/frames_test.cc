@@ -1,0 +1,127 @@
+// What belongs to a frame: whoever draws, whoever swaps, and however often the same is drawn.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "slice_scenes.h"
+#include "spu/report/counters.h"
+#include "spu/volume/frame_ledger.h"
+#include "spu/volume/last_picture.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+const int one = 1;
+const int two = 2;
+
+TEST(FrameLedger, GivesWhatAContextWithoutFramesDrewToWhoeverEndsOne) {
+  FrameLedger ledger;
+  ledger.note(&one, [](FrameRecord& frame) { ++frame.substituted; });
+  EXPECT_EQ(ledger.close(&two).substituted, 1U);
+  EXPECT_EQ(ledger.close(&two).substituted, 0U);
+  EXPECT_EQ(ledger.frames(), 2U);
+}
+
+TEST(FrameLedger, KeepsContextsApartThatEndFramesThemselves) {
+  FrameLedger ledger;
+  ledger.close(&one);
+  ledger.close(&two);
+  ledger.note(&one, [](FrameRecord& frame) { ++frame.left; });
+  EXPECT_EQ(ledger.close(&two).left, 0U);
+  EXPECT_EQ(ledger.close(&one).left, 1U);
+}
+
+TEST(FrameLedger, KeepsWhatAContextDrewThatIsGone) {
+  FrameLedger ledger;
+  ledger.close(&one);
+  ledger.note(&one, [](FrameRecord& frame) { frame.error_rms = 0.5; });
+  ledger.forget(&one);
+  EXPECT_EQ(ledger.close(&two).error_rms, 0.5);
+  EXPECT_LT(ledger.close(&two).error_rms, 0) << "not measured";
+}
+
+/// Qt's way: slices in one context, the swap in another one.
+TEST(Frames, AreCountedAsSubstitutedWhereAnotherContextEndsThem) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  const ProcessCounters& counters = process_counters();
+  const auto frames = counters.frames.load();
+  const auto substituted = counters.frames_substituted.load();
+  for (int i = 0; i < 3; ++i) {
+    scene.draw(*app, 10 * i);
+    std::thread([&] {
+      const auto shower = app->start_companion();
+      ASSERT_TRUE(shower);
+      shower->end_frame();
+    }).join();
+  }
+  EXPECT_EQ(app->substituted(), 3U) << app->last_reason();
+  EXPECT_EQ(counters.frames - frames, 3U);
+  EXPECT_EQ(counters.frames_substituted - substituted, 3U);
+}
+
+class CountingService final : public compositor::RenderService {
+ public:
+  explicit CountingService(int& pictures) : pictures_(pictures) {}
+  void begin_volume(const volume::VolumeDescription&) override {}
+  void add_slices(volume::VolumeId, int, int, std::span<const std::byte>) override {}
+  void end_volume(volume::VolumeId) override {}
+  void forget_volume(volume::VolumeId) override {}
+  compositor::Rendered render(const volume::RenderRequest&) override {
+    ++pictures_;
+    return {};
+  }
+  int nodes() const override { return 0; }
+
+ private:
+  int& pictures_;
+};
+
+TEST(LastPicture, AnswersTheSameRequestOnceAFrame) {
+  int pictures = 0;
+  std::uint64_t frame = 0;
+  const auto service = with_last_picture(std::make_unique<CountingService>(pictures), [&] { return frame; });
+  volume::RenderRequest request;
+  service->render(request);
+  service->render(request);
+  EXPECT_EQ(pictures, 1);
+  request.planes.first = 0.25;
+  service->render(request);
+  EXPECT_EQ(pictures, 2) << "another request";
+  ++frame;
+  service->render(request);
+  EXPECT_EQ(pictures, 3) << "another frame";
+  service->forget_volume(7);
+  service->render(request);
+  EXPECT_EQ(pictures, 4) << "the picture may have gone with the service's next answer";
+}
+
+TEST(Frames, ThatDrawTheSameTwiceAskForOnePicture) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
+  const SliceScene scene = fogged_polygons();
+  scene.set_up(*app);
+  const auto rays = [] { return process_counters().total.rays; };
+  scene.draw(*app, 10);
+  app->end_frame();
+  const auto after_one = rays();
+  scene.draw(*app, 20);
+  scene.draw(*app, 20);
+  app->end_frame();
+  const auto under = app->read_pixels();
+  const auto of_both = rays() - after_one;
+  scene.draw(*app, 20);
+  app->end_frame();
+  EXPECT_EQ(of_both, rays() - after_one - of_both);
+  EXPECT_EQ(app->substituted(), 4U) << app->last_reason();
+  app->use_chain(false);
+  scene.draw(*app, 20);
+  EXPECT_GE(psnr(under, app->read_pixels()), 40);
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

@@ -1,0 +1,33 @@
+// Fog made ready for sampling: a place in its table as a function of lattice coordinates, and the slope to the
+// next entry beside every entry.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "volume/brick/brick_store.h"
+#include "volume/fog.h"
+
+namespace understudy::volume {
+
+class FogTable {
+ public:
+  FogTable(const Fog& fog, const BrickStore& store);
+
+  /// Place in the table of a sample at lattice position p: clamp(gradient() . p + offset(), 0, last()).
+  const std::array<float, 3>& gradient() const { return gradient_; }
+  float offset() const { return offset_; }
+  float last() const { return float(rows_.size() / 8 - 1); }
+
+  /// Per entry eight floats: added colour and weight, and their difference to the next entry (0 after the
+  /// last).
+  const float* rows() const { return rows_.data(); }
+
+ private:
+  std::array<float, 3> gradient_{};
+  float offset_ = 0;
+  std::vector<float> rows_;
+};
+
+}  // namespace understudy::volume

@@ -1,6 +1,6 @@
-// What each context of the process did since its last frame end. A context that ends no frames draws for those
-// that do (Qt's widgets are drawn into a framebuffer object in a context of their own, and shown by another):
-// its figures go to the next frame that ends anywhere.
+// What each context of the process did since its last frame end. A context that draws into framebuffer objects
+// and ends no frames draws for those that do (Qt's widgets have a context of their own, and are shown by
+// another): its figures go to the next frame that ends anywhere.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,13 @@ class FrameLedger {
   /// Stands for one context; a pointer to compare, never followed.
   using Context = const void*;
 
-  /// Calls `change` on what `context` did so far.
+  /// Calls `change` on what `context` did so far. What it draws into its window it will show itself.
   template <class Change>
-  void note(Context context, Change change) {
+  void note(Context context, bool into_window, Change change) {
     const std::scoped_lock lock(mutex_);
-    change(pages_[context].record);
+    Page& page = pages_[context];
+    page.ends_frames |= into_window;
+    change(page.record);
   }
   /// `context` ends a frame: what belongs to it, everything but its time.
   FrameRecord close(Context context);

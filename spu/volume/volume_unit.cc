@@ -227,7 +227,7 @@ VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
     : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {}
 
 VolumeUnit::~VolumeUnit() {
-  session_->ledger().forget(this);
+  if (session_) session_->ledger().forget(this);
 }
 
 const GlContext& VolumeUnit::context() {

@@ -100,7 +100,9 @@ class VolumeUnit final : public Unit {
   /// To what this context did since the last frame end, `change` is made.
   template <class Change>
   void note(Change change) {
-    session_->ledger().note(this, change);
+    GLint framebuffer = 0;
+    context().gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+    session_->ledger().note(this, framebuffer == 0, change);
   }
   const ProgramStages& stages(GLuint program, const ProgramRecord& record);
 

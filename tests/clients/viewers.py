@@ -7,8 +7,8 @@ set) knows is run four ways, which follow each other in every round: bare, under
 
     [WITH="command…"] viewer NAME PICTURE.png FRAMES
 
-and prints a line "FRAME ms median X" where the viewer measures itself; elsewhere frame times are Understudy's own, for the
-bare viewer those of `understudy run --chain 'perf driver'`, which watches nothing but frames.
+and prints a line "FRAME ms median X" where the viewer measures itself. Elsewhere frame times are Understudy's own; for the
+bare viewer those of a run whose volume is handed back to it after the first frame, because no picture is good enough.
 
 Pictures, reports and the viewers' words are kept in out/viewers, and with them table.json and table.md.
 """
@@ -129,21 +129,21 @@ class Run:
     def __init__(self, script, name, way, frames, seconds, watched=False):
         stem = f"{name}.{way.replace(' ', '_')}{'.watched' if watched else ''}"
         self.picture = OUT / f"{stem}.png"
-        report, perf, saved = OUT / f"{stem}.json", OUT / f"{stem}.perf.json", OUT / f"{stem}.frames"
-        for old in (self.picture, report, perf):
+        report, saved = OUT / f"{stem}.json", OUT / f"{stem}.frames"
+        for old in (self.picture, report):
             old.unlink(missing_ok=True)
         shutil.rmtree(saved, ignore_errors=True)
         environment = dict(os.environ)
         environment["PATH"] = f"{UNDERSTUDY.parent}:{environment['PATH']}"
         environment["WITH"] = {
-            "bare": f"{UNDERSTUDY} run --" if watched else "",
+            "bare": f"{UNDERSTUDY} run --report {report} --" if watched else "",
             "embedded": f"{UNDERSTUDY} run --report {report} --",
             "2 ranks": f"{UNDERSTUDY} run -n 2 --report {report} --",
             # Nobody writes a report here; a picture is saved for every run of slices that is substituted.
             "preload": f"env LD_PRELOAD={LIBRARY} UNDERSTUDY_SAVE_FRAMES={saved}",
         }[way]
-        if watched:  # the script splits WITH at blanks, which the chain holds
-            environment["UNDERSTUDY_CHAIN"] = f"perf(file={perf}) driver"
+        if watched:
+            environment["UNDERSTUDY_VERIFY_PSNR"] = "200"
         if way == "preload":
             saved.mkdir(parents=True)
         log = OUT / f"{stem}.log"
@@ -161,11 +161,9 @@ class Run:
         self.own_time = measured is not None
         self.frame_ms = float(measured.group(1)) if measured else None
         if self.frame_ms is None and self.report:
-            self.frame_ms = self.report["time_ms"]["frame_median"]
-        if self.frame_ms is None and perf.exists():
-            figures = json.loads(perf.read_text(encoding="utf-8"))
-            if figures.get("frames"):
-                self.frame_ms = figures["frame_ms"]
+            times = self.report["time_ms"]
+            kind = "application_median" if watched or not self.substituted() else "substituted_median"
+            self.frame_ms = times[kind] or times["frame_median"]
 
     def substituted(self):
         if self.report is None:

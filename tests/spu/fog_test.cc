@@ -43,8 +43,9 @@ TEST(MeasureFog, FindsWeightAndColourAtEveryDistance) {
   const auto table = some_table();
   const auto numbers = some_numbers();
   const auto fog = measure_fog(table, false, numbers, {2, 5}, [&](std::size_t entry) {
-    std::vector<Rgba> seen;
-    for (const float number : numbers) seen.push_back(behind_fog(table[entry], number, 0.8F));
+    std::vector<Rgba> seen(numbers.size());
+    std::ranges::transform(numbers, seen.begin(),
+                           [&](float number) { return behind_fog(table[entry], number, 0.8F); });
     return seen;
   });
   ASSERT_TRUE(fog);

@@ -18,17 +18,24 @@ const int two = 2;
 
 TEST(FrameLedger, GivesWhatAContextWithoutFramesDrewToWhoeverEndsOne) {
   FrameLedger ledger;
-  ledger.note(&one, [](FrameRecord& frame) { ++frame.substituted; });
+  ledger.note(&one, false, [](FrameRecord& frame) { ++frame.substituted; });
   EXPECT_EQ(ledger.close(&two).substituted, 1U);
   EXPECT_EQ(ledger.close(&two).substituted, 0U);
   EXPECT_EQ(ledger.frames(), 2U);
+}
+
+TEST(FrameLedger, KeepsContextsApartThatDrawIntoTheirWindows) {
+  FrameLedger ledger;
+  ledger.note(&one, true, [](FrameRecord& frame) { ++frame.substituted; });
+  EXPECT_EQ(ledger.close(&two).substituted, 0U);
+  EXPECT_EQ(ledger.close(&one).substituted, 1U);
 }
 
 TEST(FrameLedger, KeepsContextsApartThatEndFramesThemselves) {
   FrameLedger ledger;
   ledger.close(&one);
   ledger.close(&two);
-  ledger.note(&one, [](FrameRecord& frame) { ++frame.left; });
+  ledger.note(&one, false, [](FrameRecord& frame) { ++frame.left; });
   EXPECT_EQ(ledger.close(&two).left, 0U);
   EXPECT_EQ(ledger.close(&one).left, 1U);
 }
@@ -36,23 +43,32 @@ TEST(FrameLedger, KeepsContextsApartThatEndFramesThemselves) {
 TEST(FrameLedger, KeepsWhatAContextDrewThatIsGone) {
   FrameLedger ledger;
   ledger.close(&one);
-  ledger.note(&one, [](FrameRecord& frame) { frame.error_rms = 0.5; });
+  ledger.note(&one, false, [](FrameRecord& frame) { frame.error_rms = 0.5; });
   ledger.forget(&one);
   EXPECT_EQ(ledger.close(&two).error_rms, 0.5);
   EXPECT_LT(ledger.close(&two).error_rms, 0) << "not measured";
 }
 
-/// Qt's way: slices in one context, the swap in another one.
+/// Qt's way: slices into a framebuffer object in one context, the swap in another one.
 TEST(Frames, AreCountedAsSubstitutedWhereAnotherContextEndsThem) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   const SliceScene scene = immediate_rgba();
   scene.set_up(*app);
+  GLuint framebuffer = 0;
+  GLuint colour = 0;
+  app->gl().GenRenderbuffers(1, &colour);
+  app->gl().BindRenderbuffer(GL_RENDERBUFFER, colour);
+  app->gl().RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, GlApplication::size, GlApplication::size);
+  app->gl().GenFramebuffers(1, &framebuffer);
+  app->gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  app->gl().FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour);
   const ProcessCounters& counters = process_counters();
   const auto frames = counters.frames.load();
   const auto substituted = counters.frames_substituted.load();
   for (int i = 0; i < 3; ++i) {
     scene.draw(*app, 10 * i);
+    Chain::current()->settle();
     std::thread([&] {
       const auto shower = app->start_companion();
       ASSERT_TRUE(shower);

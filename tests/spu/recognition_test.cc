@@ -104,6 +104,33 @@ TEST(RecognitionOfChanges, ATextureUploadedAgainByAnotherContextIsSeen) {
   EXPECT_EQ(app->substituted(), 2U) << app->last_reason();
 }
 
+TEST(RecognitionOfChanges, ATextureDefinedInOtherFormatsIsSeen) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = client_arrays_table();
+  scene.set_up(*app);
+  scene.draw(*app, 10);
+  const auto before = app->read_pixels();
+  const Blob blob;
+  float share = 1;
+  for (const GLint format : {GL_R16F, GL_R32F, GL_R16, GL_R8}) {
+    share *= 0.8F;
+    std::vector<float> values;
+    for (const std::uint8_t s : blob.texels()) values.push_back(share * float(s) / 255);
+    app->use_chain(true);
+    app->gl().TexImage3D(GL_TEXTURE_3D, 0, format, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, values.data());
+    scene.draw(*app, 10);
+    app->end_frame();
+    const auto under = app->read_pixels();
+    app->use_chain(false);
+    scene.draw(*app, 10);
+    EXPECT_LT(psnr(before, under), 35) << "the new definition changes nothing: the test tests nothing";
+    EXPECT_GE(psnr(under, app->read_pixels()), 40) << format;
+  }
+  EXPECT_EQ(app->left(), 0U) << app->last_reason();
+  EXPECT_EQ(app->substituted(), 5U);
+}
+
 TEST(RecognitionOfChanges, ATableUploadedAgainIsSeen) {
   auto app = GlApplication::start(Profile::core);
   if (!app) GTEST_SKIP() << "no EGL context here";

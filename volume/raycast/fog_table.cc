@@ -6,7 +6,8 @@ namespace understudy::volume {
 
 FogTable::FogTable(const Fog& fog, const BrickStore& store) {
   const std::size_t entries = fog.entries.size();
-  const double scale = double(entries - 1);
+  last_ = entries - 1;
+  const double scale = double(last_);
   double offset = fog.offset * scale;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double per_texel = fog.normal[axis] * scale / store.description().size[axis];
@@ -17,7 +18,7 @@ FogTable::FogTable(const Fog& fog, const BrickStore& store) {
 
   rows_.resize(8 * entries);
   for (std::size_t i = 0; i < entries; ++i) {
-    const Rgba& next = fog.entries[std::min(i + 1, entries - 1)];
+    const Rgba& next = fog.entries[std::min(i + 1, last_)];
     for (std::size_t k = 0; k < 4; ++k) {
       rows_[8 * i + k] = fog.entries[i][k];
       rows_[8 * i + 4 + k] = next[k] - fog.entries[i][k];

@@ -18,7 +18,7 @@ class FogTable {
   /// Place in the table of a sample at lattice position p: clamp(gradient() . p + offset(), 0, last()).
   const std::array<float, 3>& gradient() const { return gradient_; }
   float offset() const { return offset_; }
-  float last() const { return float(rows_.size() / 8 - 1); }
+  float last() const { return float(last_); }
 
   /// Per entry eight floats: added colour and weight, and their difference to the next entry (0 after the
   /// last).
@@ -27,6 +27,7 @@ class FogTable {
  private:
   std::array<float, 3> gradient_{};
   float offset_ = 0;
+  std::size_t last_ = 0;  ///< index of the last entry
   std::vector<float> rows_;
 };
 

@@ -396,6 +396,30 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   return marches;
 }
 
+std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  March changed = march;
+  changed.table.low = measured.range[0];
+  changed.table.high = measured.range[1];
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  {
+    FieldProbe probe(measured.context, measured.run, measured.texture);
+    if (!probe.complete() || measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+  }
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  if (!way) return std::nullopt;
+  float nearest = 0.48F;
+  const auto& table = changed.table;
+  for (std::size_t i = 0; i < table.entries.size() && !march.maximum; ++i) {
+    const float through = ray_of(table.entries[i], steps_of_way(march.steps, *way))[3];
+    if (std::abs(through - 0.5F) >= nearest) continue;
+    nearest = std::abs(through - 0.5F);
+    changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
+  }
+  if ((nearest == 0.48F && !march.maximum) || !still_marches(measured, changed, box)) return std::nullopt;
+  return changed;
+}
+
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr float same_colour = 5e-3F;
   FieldProbe probe(measured.context, measured.run, measured.texture);

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "volume/matrix.h"
+#include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/skip_map.h"
@@ -144,6 +145,7 @@ struct RayCaster::Prepared {
   bool keeps_clear_samples = false;
   std::optional<TransferTable> table;
   SkipMap skip;
+  std::optional<std::vector<float>> bounds;  ///< made for the first maximum
 
   static SkipMap skip_map(const BrickStore& store, const Classification& classification,
                           bool keeps_clear_samples, const std::optional<TransferTable>& table) {
@@ -204,6 +206,10 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.store = &store;
   scene.skip = &prepared_->skip;
   scene.table = prepared_->table ? &*prepared_->table : nullptr;
+  if (request.op == Operator::max && prepared_->table) {
+    if (!prepared_->bounds) prepared_->bounds = block_bounds(store, *prepared_->table);
+    if (!prepared_->bounds->empty()) scene.bounds = prepared_->bounds->data();
+  }
   scene.map = std::get_if<LinearMap>(&prepared_->classification);
   scene.op = request.op;
   scene.filter = request.filter;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/step_fit.h"
@@ -15,6 +16,7 @@ using volume::Vec3;
 
 /// Multiples of 1/255 fall on entries.
 constexpr int table_entries = 4 * 255 + 1;
+constexpr float never_equal = std::numeric_limits<float>::quiet_NaN();
 constexpr int bands = 24;  ///< of two rows each, on which samples are counted
 
 float value_at(const std::array<float, 2>& range, double place) {
@@ -242,6 +244,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
                   float(measured.texture.base)};
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
+  if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
@@ -253,7 +256,10 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
     to.insert(to.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
   }
   for (const SampledTexture& other : pipeline.others) {
-    if (group.is_rendered_to(other.texture)) continue;  // the opaque geometry's depth
+    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
+      inputs.varying.push_back(never_equal);
+      continue;
+    }
     inputs.fixed.push_back(float(other.texture));
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
   }

@@ -1,7 +1,4 @@
 // The volume unit's way for ray casters: from the draw of a box to a request.
-#include <fmt/format.h>
-
-#include "spu/volume/depth.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/verify.h"
@@ -53,16 +50,23 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   const bool holds = same || (known.march && inputs.fixed == known.march_inputs.fixed &&
                               still_marches(measured, *known.march, box));
   if (!holds) {
-    known.march.reset();
-    spaces = coordinate_spaces(measured);
-    if (spaces.empty())
-      throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
-    box = box_in(measured, spaces.front());
-    use(box);
-    MarchFinding finding = measure_march(measured, spaces, box);
-    if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
-    known.march = choose_march(s, service, std::get<std::vector<March>>(finding));
-    known.frames = 0;  // looked at again, as a new volume is
+    // Another table is usual while somebody edits one; where samples lie is not tried again for that.
+    std::optional<March> again;
+    if (known.march) again = with_new_table(measured, *known.march, box);
+    known.march = again;
+    if (!again) {
+      if (known.refusals >= patient_refusals && frames_ % refused_retry_frames != 0)
+        throw Doubt{known.last_reason};
+      spaces = coordinate_spaces(measured);
+      if (spaces.empty())
+        throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
+      box = box_in(measured, spaces.front());
+      use(box);
+      MarchFinding finding = measure_march(measured, spaces, box);
+      if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+      known.march = choose_march(s, service, std::get<std::vector<March>>(finding));
+      known.frames = 0;  // looked at again, as a new volume is
+    }
   }
   known.march_inputs = std::move(inputs);
   use(box_in(measured, known.march->space));
@@ -78,7 +82,6 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
   std::optional<std::vector<float>> drawn;
   volume::Rect rect;
   const March* best = nullptr;
-  double least = 0;
   for (const March& march : marches) {
     const auto box = proxy_box(measured, march.space);
     if (!box) continue;
@@ -96,10 +99,10 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     picture.rect = rendered.image.rect;
     picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
     if (march.maximum) classify_maxima(march, picture);
-    const double square = difference_between(s.pipeline, rect, *drawn, picture.view()).mean_square;
-    if (best == nullptr || square < least) {
+    const Difference difference = difference_between(s.pipeline, rect, *drawn, picture.view());
+    if (best == nullptr || difference.mean_square < s.difference->mean_square) {
       best = &march;
-      least = square;
+      s.difference = difference;
     }
   }
   if (best == nullptr) throw Doubt{"the driver offers no float framebuffer to compare pictures in"};

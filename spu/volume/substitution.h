@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "spu/volume/verify.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
@@ -15,6 +16,10 @@ struct Doubt {
 
 /// Nothing of the run is visible: the application may draw it, it costs nothing and means nothing.
 struct NothingVisible {};
+
+/// After this many refusals in a row a ray caster is measured only in one frame of so many.
+constexpr int patient_refusals = 8;
+constexpr std::uint64_t refused_retry_frames = 64;
 
 struct VolumeUnit::Substitution {
   const Run& run;
@@ -28,6 +33,7 @@ struct VolumeUnit::Substitution {
   FragmentInputs fragment{};
   SliceSet slices{};
   volume::RenderRequest request{};
+  std::optional<Difference> difference{};  ///< from the application's picture, where that was drawn already
 };
 
 }  // namespace understudy::spu

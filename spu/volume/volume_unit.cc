@@ -28,10 +28,6 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// After this many refusals in a row a volume is looked at only in one frame of so many.
-constexpr int patient_refusals = 8;
-constexpr std::uint64_t refused_retry_frames = 64;
-
 volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   std::array<GLdouble, 16> column_major{};
   gl.GetDoublev(GL_PROJECTION_MATRIX, column_major.data());
@@ -543,7 +539,8 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   const bool first = s.volume.frames == 0 && options.verify >= 0;
   const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
   if (!first && !due) return;
-  const auto difference = compare_with_application(context(), s.run, s.request, image);
+  const auto difference =
+      s.difference ? s.difference : compare_with_application(context(), s.run, s.request, image);
   if (!difference) return;
   VolumeCounters& counters = *s.volume.counters;
   counters.verify_max = std::max(counters.verify_max, difference->max);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
 
+#include "box_ray_caster.h"
 #include "slice_scenes.h"
 
 namespace understudy::spu::testing {
@@ -176,8 +178,19 @@ State dump(const DispatchTable& gl, Profile profile) {
   return state;
 }
 
+SliceScene box_of_a_ray_caster() {
+  SliceScene scene{"the box of a ray caster that reads depth", Profile::core};
+  auto caster = std::make_shared<BoxRayCaster>(MarchStyle{.reads_depth = true});
+  scene.set_up = [caster](GlApplication& app) { caster->set_up(app); };
+  scene.slices = [caster](GlApplication& app, double angle) { caster->draw(app, angle); };
+  scene.tidy_up = [](GlApplication&) {};
+  return scene;
+}
+
 TEST(StateNeutrality, ASubstitutedDrawLeavesWhatTheApplicationsOwnLeaves) {
-  for (const SliceScene& scene : all_slice_scenes()) {
+  std::vector<SliceScene> scenes = all_slice_scenes();
+  scenes.push_back(box_of_a_ray_caster());
+  for (const SliceScene& scene : scenes) {
     auto app = GlApplication::start(scene.profile);
     if (!app) GTEST_SKIP() << "no EGL context here";
     scene.set_up(*app);

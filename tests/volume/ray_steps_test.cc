@@ -142,6 +142,31 @@ TEST(RaySteps, GiveTheSamePictureForAnyPartition) {
   std::printf("2 to 9 ranks against 1: largest difference %.2e\n", worst);
 }
 
+/// What a maximum leaves out changes nothing.
+TEST(RaySteps, UnderARisingTableAMaximumPassesByWhatAddsNothing) {
+  for (const float lowest : {0.0F, 1.0F}) {
+    Texture texture = noise(describe({64, 64, 64}, TexelType::u8, Wrap::edge), 9);
+    // Brighter towards one corner, so that whole blocks are darker than others.
+    for (std::size_t i = 0; i < texture.texels.size(); ++i) {
+      const std::size_t x = i % 64, y = i / 64 % 64, z = i / 4096;
+      texture.texels[i] = std::byte(std::to_integer<std::size_t>(texture.texels[i]) * (x + y + z) / 192);
+    }
+    RenderRequest request = request_of(texture, cases().front());
+    request.op = Operator::max;
+    request.classification = TransferFunction{0, 1, {{0, 0, 0, lowest}, {1, 0, 0, 1}}};
+    Image image(request.window);
+    FrameCounts counts;
+    raycast(filled(texture), request, image, counts);
+    const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+    const Difference d = difference(image, slice_sum(field, request, request.window), 1e-3);
+    EXPECT_LE(d.pixels_over, pixels_at_the_end);
+    EXPECT_LE(d.rms, 3e-4);
+    std::printf("%llu of %llu samples taken\n", static_cast<unsigned long long>(counts.samples_taken),
+                static_cast<unsigned long long>(counts.samples));
+    EXPECT_LT(counts.samples_taken, counts.samples * 3 / 4);
+  }
+}
+
 TEST(RaySteps, WithoutSenseAreRefused) {
   const Texture texture = noise(describe({9, 9, 9}, TexelType::u8, Wrap::edge), 1);
   const RenderRequest good = request_of(texture, cases().front());

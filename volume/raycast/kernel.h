@@ -19,6 +19,7 @@ struct Scene {
   const BrickStore* store = nullptr;
   const SkipMap* skip = nullptr;
   const TransferTable* table = nullptr;
+  const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds); null: not known
   const LinearMap* map = nullptr;
   const FogTable* fog = nullptr;  ///< null: the air is clear
   Operator op = Operator::over;

@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "volume/matrix.h"
+#include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/skip_map.h"
@@ -155,6 +156,7 @@ struct RayCaster::Prepared {
   bool keeps_clear_samples = false;
   std::optional<TransferTable> table;
   SkipMap skip;
+  std::optional<std::vector<float>> bounds;  ///< made for the first maximum
 
   static SkipMap skip_map(const BrickStore& store, const Classification& classification,
                           bool keeps_clear_samples, const std::optional<TransferTable>& table) {
@@ -224,6 +226,10 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::optional<FogTable> fog;
   if (request.fog) fog.emplace(*request.fog, store);
   scene.fog = fog ? &*fog : nullptr;
+  if (request.op == Operator::max && prepared.table && !request.fog) {
+    if (!prepared_[0]->bounds) prepared_[0]->bounds = block_bounds(store, *prepared.table);
+    if (!prepared.bounds->empty()) scene.bounds = prepared.bounds->data();
+  }
   scene.op = request.op;
   scene.filter = request.filter;
   scene.termination = request.termination;

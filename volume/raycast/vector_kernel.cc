@@ -130,6 +130,7 @@ struct Constants {
   Constants(const Scene& scene, Source)
       : blocks(scene.store->block_data().data()),
         distances(reinterpret_cast<const std::int32_t*>(scene.skip->distances())),
+        bounds(scene.bounds),
         skips(scene.skip->empty_blocks() > 0),
         nearest(scene.filter == Filter::nearest),
         with_border(scene.has_border[0] || scene.has_border[1] || scene.has_border[2]),
@@ -187,6 +188,7 @@ struct Constants {
 
   const std::byte* const* blocks;
   const std::int32_t* distances;  // a byte each; four are gathered
+  const float* bounds;            // of blocks, under a maximum; may be null
   bool skips, nearest, with_border;
   Operator op;
   std::array<Floats, 3> top, border_weight;
@@ -245,8 +247,10 @@ HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Constants& constants) 
   return hn::Add(hn::Mul(row, constants.blocks_x), hn::Sub(x, constants.first_block));
 }
 
-/// Lets the rays that are in an empty block leap; false when there were none.
-HWY_INLINE bool leap(Packet& rays, const Constants& constants) {
+/// Lets the rays that are in an empty block leap, and with `bounded` those in a block that can show no more
+/// than `shown`; false when there were none.
+template <bool bounded>
+HWY_INLINE bool leap(Packet& rays, const Constants& constants, Floats shown) {
   const FloatTag f;
   const IntTag d;
   const Floats half = hn::Set(f, 0.5F);
@@ -263,8 +267,11 @@ HWY_INLINE bool leap(Packet& rays, const Constants& constants) {
     steps_to_face[axis] = hn::Mul(room, rays.steps_per_block[axis]);
   }
   const Ints index = block_index(block[0], block[1], block[2], constants);
-  const Floats distance =
-      hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
+  Floats distance = hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
+  if constexpr (bounded) {
+    const auto exhausted = hn::Le(hn::GatherIndex(f, constants.bounds, index), shown);
+    distance = hn::Max(distance, hn::IfThenElseZero(exhausted, hn::Set(f, 1.0F)));
+  }
   const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Le(rays.k, rays.last));
   // All blocks fewer than `distance` steps away are empty.
   Floats steps = hn::Set(f, 1e9F);
@@ -282,7 +289,17 @@ HWY_INLINE void skip_empty(Group& packets, const Constants& constants) {
   for (bool again = true; again;) {
     again = false;
 #pragma GCC unroll 2
-    for (Packet& rays : packets) again |= leap(rays, constants);
+    for (Packet& rays : packets) again |= leap<false>(rays, constants, hn::Zero(FloatTag()));
+  }
+}
+
+/// The same under a maximum whose blocks have bounds; `shown` is what each ray has seen.
+HWY_INLINE void skip_exhausted(Group& packets, const std::array<Floats, group>& shown,
+                               const Constants& constants) {
+  for (bool again = true; again;) {
+    again = false;
+#pragma GCC unroll 2
+    for (std::size_t g = 0; g < group; ++g) again |= leap<true>(packets[g], constants, shown[g]);
   }
 }
 
@@ -627,6 +644,16 @@ HWY_INLINE Floats alphas(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveUpper(wide, pair01, pair23));
 }
 
+/// The first component of what every ray has seen of a maximum, less than any where it has seen nothing.
+HWY_INLINE Floats largest_seen(const std::array<Floats, 4>& pixels) {
+  const FloatTag f;
+  const hn::Repartition<double, FloatTag> wide;
+  const auto pair01 = hn::BitCast(wide, hn::InterleaveLower(f, pixels[0], pixels[1]));
+  const auto pair23 = hn::BitCast(wide, hn::InterleaveLower(f, pixels[2], pixels[3]));
+  const Floats first = hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
+  return hn::IfThenElse(hn::Gt(alphas(pixels), hn::Zero(f)), first, hn::Set(f, -1.0F));
+}
+
 /// The packet whose lowest left pixel is (x, y) of the strip.
 HWY_INLINE Packet packet_of(const RayStrip& strip, std::size_t x, std::size_t y) {
   const FloatTag f;
@@ -668,7 +695,13 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
         done = done && packets[g].done();
       }
       while (!done) {
-        if (constants.skips) skip_empty(packets, constants);
+        if (constants.bounds != nullptr) {
+          std::array<Floats, group> shown;
+          for (std::size_t g = 0; g < group; ++g) shown[g] = largest_seen(pixels[g]);
+          skip_exhausted(packets, shown, constants);
+        } else if (constants.skips) {
+          skip_empty(packets, constants);
+        }
         done = true;
         for (std::size_t g = 0; g < group; ++g) {
           Packet& rays = packets[g];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/step_fit.h"
@@ -15,6 +16,7 @@ using volume::Vec3;
 
 /// Multiples of 1/255 fall on entries.
 constexpr int table_entries = 4 * 255 + 1;
+constexpr float never_equal = std::numeric_limits<float>::quiet_NaN();
 constexpr int bands = 24;  ///< of two rows each, on which samples are counted
 
 float value_at(const std::array<float, 2>& range, double place) {
@@ -242,6 +244,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
                   float(measured.texture.base)};
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
+  if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
@@ -253,7 +256,10 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
     to.insert(to.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
   }
   for (const SampledTexture& other : pipeline.others) {
-    if (group.is_rendered_to(other.texture)) continue;  // the opaque geometry's depth
+    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
+      inputs.varying.push_back(never_equal);
+      continue;
+    }
     inputs.fixed.push_back(float(other.texture));
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
   }
@@ -394,6 +400,30 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
     }
   }
   return marches;
+}
+
+std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  March changed = march;
+  changed.table.low = measured.range[0];
+  changed.table.high = measured.range[1];
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  {
+    FieldProbe probe(measured.context, measured.run, measured.texture);
+    if (!probe.complete() || measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+  }
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  if (!way) return std::nullopt;
+  float nearest = 0.48F;
+  const auto& table = changed.table;
+  for (std::size_t i = 0; i < table.entries.size() && !march.maximum; ++i) {
+    const float through = ray_of(table.entries[i], steps_of_way(march.steps, *way))[3];
+    if (std::abs(through - 0.5F) >= nearest) continue;
+    nearest = std::abs(through - 0.5F);
+    changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
+  }
+  if ((nearest == 0.48F && !march.maximum) || !still_marches(measured, changed, box)) return std::nullopt;
+  return changed;
 }
 
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {

@@ -78,6 +78,9 @@ using MarchFinding = std::variant<std::vector<March>, std::string>;
 MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
                            const ProxyBox& box);
 
+/// The march with the transfer function that the program has now; null when more than that has changed.
+std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
+
 /// Whether a few rays still are as `march` says.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);
 

@@ -24,8 +24,11 @@ using Picture = std::vector<volume::Rgba>;
 class Bench {
  public:
   Bench(const GlContext& context, const Pipeline& pipeline)
-      : gl_(*context.gl), alpha_test_(!context.core && gl_.IsEnabled(GL_ALPHA_TEST)), saved_(context) {
-    saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
+      : gl_(*context.gl),
+        target_(pipeline.volume.target),
+        alpha_test_(!context.core && gl_.IsEnabled(GL_ALPHA_TEST)),
+        saved_(context) {
+    saved_.borrow_texture(target_, pipeline.volume.unit);
     gl_.GenTextures(1, &texture_);
     gl_.GenRenderbuffers(1, &colour_);
     gl_.GenFramebuffers(1, &framebuffer_);
@@ -62,15 +65,19 @@ class Bench {
   void show(GLenum internal_format, GLenum format, const std::array<int, 3>& size,
             const std::vector<float>& texels, GLenum filter, const std::array<GLint, 4>& swizzle,
             bool with_swizzle) {
-    gl_.BindTexture(GL_TEXTURE_3D, texture_);
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GLint(filter));
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GLint(filter));
+    gl_.BindTexture(target_, texture_);
+    gl_.TexParameteri(target_, GL_TEXTURE_MIN_FILTER, GLint(filter));
+    gl_.TexParameteri(target_, GL_TEXTURE_MAG_FILTER, GLint(filter));
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-      gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+      gl_.TexParameteri(target_, axis, GL_CLAMP_TO_EDGE);
     }
-    if (with_swizzle) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), size[0], size[1], size[2], 0, format, GL_FLOAT,
-                   texels.data());
+    if (with_swizzle) gl_.TexParameteriv(target_, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
+    if (target_ == GL_TEXTURE_2D) {
+      gl_.TexImage2D(target_, 0, GLint(internal_format), size[0], size[1], 0, format, GL_FLOAT, texels.data());
+    } else {
+      gl_.TexImage3D(target_, 0, GLint(internal_format), size[0], size[1], size[2], 0, format, GL_FLOAT,
+                     texels.data());
+    }
   }
 
   /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`.
@@ -93,6 +100,7 @@ class Bench {
 
  private:
   const DispatchTable& gl_;
+  GLenum target_;
   bool alpha_test_;  ///< asked before SavedState switches it off
   SavedState saved_;
   GLuint texture_ = 0;
@@ -236,7 +244,8 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
     }
   }
 
-  if (sees_neighbours(bench, context, texture, range, first, table))
+  // The fixed function of a stack's slices looks at one place only.
+  if (!pipeline.stack && sees_neighbours(bench, context, texture, range, first, table))
     return "the colour depends on the field around the sample (gradient, lighting)";
 
   volume::TransferFunction function;

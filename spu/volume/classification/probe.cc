@@ -181,7 +181,7 @@ bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescri
       const double place =
           slope[0] * ((x + 0.5) / edge * 2 - 0.5) + slope[1] * ((y + 0.5) / edge * 2 - 0.5) + slope[2] * 0.5;
       const int entry = int(std::lround(place * (probed_entries - 1)));
-      const volume::Rgba& colour = picture[std::size_t(y * edge + x)];
+      const volume::Rgba& colour = picture[std::size_t(y) * edge + std::size_t(x)];
       for (std::size_t c = 0; c < 4; ++c) {
         float low = std::numeric_limits<float>::max();
         float high = std::numeric_limits<float>::lowest();

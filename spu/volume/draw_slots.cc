@@ -165,6 +165,18 @@ void APIENTRY draw_range_elements(GLenum mode, GLuint start, GLuint stop, GLsize
   unit.next().DrawRangeElements(mode, start, stop, count, type, indices);
 }
 
+/// More textures in a row than this are no stack.
+constexpr std::size_t most_slices = 4096;
+
+void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
+  VolumeUnit& unit = here();
+  const bool slice = unit.run().pipeline().stack && target == GL_TEXTURE_2D && texture != 0 &&
+                     !unit.run().inside_begin && unit.run().draws < most_slices;
+  if (slice) return unit.run().bind_slice(texture);
+  unit.close_run();
+  unit.next().BindTexture(target, texture);
+}
+
 void fill_draws(DispatchTable& table) {
   table.Begin = begin;
   table.CallList = call_list;
@@ -195,6 +207,8 @@ void fill_deferring_slots(DispatchTable& table) {
     if (const AnyFunction append = slot(appending, CallId(i))) set_slot(table, CallId(i), append);
   }
   table.End = end_in_run;
+  table.BindTexture = bind_texture_in_run;
+  table.BindTextureEXT = bind_texture_in_run;
   fill_draws(table);
   fill_array_calls(table);
 }

@@ -126,7 +126,8 @@ std::optional<std::string> read_vertex_assembly(const GlContext& context) {
   return std::nullopt;
 }
 
-std::optional<std::string> read_fixed_function_textures(const GlContext& context, Pipeline& pipeline) {
+std::optional<std::string> read_fixed_function_textures(const GlContext& context, bool stacks,
+                                                        Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   if (context.fragment_assembly && gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB)) {
     auto reason = read_assembly_textures(context, pipeline);
@@ -146,6 +147,13 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
     }
   }
   gl.ActiveTexture(GLenum(active));
+  if (stacks && pipeline.volume.texture == 0 && enabled_units == 1) {
+    const auto slice = GLuint(integer(gl, GL_TEXTURE_BINDING_2D));
+    if (active == GL_TEXTURE0 && slice != 0 && gl.IsEnabled(GL_TEXTURE_2D)) {
+      pipeline.stack = true;
+      pipeline.volume = {GL_TEXTURE_2D, 0, slice, -1};
+    }
+  }
   if (pipeline.volume.texture == 0) return std::nullopt;
   if (enabled_units > 1) return "more than one texture unit takes part in fixed function";
   if (pipeline.volume.unit != 0) return "the volume is not on texture unit 0 in fixed function";
@@ -228,7 +236,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
 
 }  // namespace
 
-PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers) {
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
+                              bool stacks) {
   const DispatchTable& gl = *context.gl;
   if (!gl.IsEnabled(GL_BLEND)) return NotAVolume{};
   Pipeline pipeline;
@@ -237,10 +246,12 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
   if (pipeline.program != 0) {
     reason = read_program_textures(context, group, samplers, pipeline);
   } else if (!context.core) {
-    reason = read_fixed_function_textures(context, pipeline);
+    reason = read_fixed_function_textures(context, stacks, pipeline);
   }
   if (pipeline.volume.texture == 0) return NotAVolume{};
   if (!reason) reason = read_surroundings(context, pipeline);
+  // One textured quad is no sign of a volume: nothing is said of it.
+  if (reason && pipeline.stack) return NotAVolume{};
   if (reason) return LeftAlone{pipeline.volume.texture, *reason};
   return pipeline;
 }

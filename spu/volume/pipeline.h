@@ -31,6 +31,7 @@ struct Pipeline {
   bool assembly = false;       ///< fragments are an ARB assembly program's; `program` is 0
   bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
   SampledTexture volume;
+  bool stack = false;                  ///< `volume` is the first of a stack of 2-D textures, perhaps
   std::vector<SampledTexture> others;  ///< look-up tables of the program
   Blending blending;
   Target target;
@@ -49,7 +50,9 @@ struct LeftAlone {
 
 using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;
 
-/// Reads the current state. Outside glBegin/glEnd only.
-PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers);
+/// Reads the current state. Outside glBegin/glEnd only. With `stacks`, fixed function through a 2-D texture may
+/// be a slice, too.
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
+                              bool stacks);
 
 }  // namespace understudy::spu

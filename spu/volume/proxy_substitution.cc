@@ -55,7 +55,7 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
     if (known.march) again = with_new_table(measured, *known.march, box);
     known.march = again;
     if (!again) {
-      if (known.refusals >= patient_refusals && frames_ % refused_retry_frames != 0)
+      if (known.refusals >= patient_refusals && session_->ledger().frames() % refused_retry_frames != 0)
         throw Doubt{known.last_reason};
       spaces = coordinate_spaces(measured);
       if (spaces.empty())

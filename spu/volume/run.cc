@@ -1,5 +1,6 @@
 #include "spu/volume/run.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -46,6 +47,26 @@ class CurrentAttributes {
 };
 
 }  // namespace
+
+void Run::bind_slice(GLuint texture) {
+  append_call(calls_, &DispatchTable::BindTexture, GL_TEXTURE_2D, texture);
+  append_call(calls_, &DispatchTable::PassThrough, GLfloat(slices_.size()));
+  slices_.push_back({texture, draws});
+}
+
+std::vector<GLuint> Run::slices() const {
+  std::vector<GLuint> textures;
+  for (const StackSlice& slice : slices_) {
+    if (slice.draws_before < draws) textures.push_back(slice.texture);
+  }
+  return textures;
+}
+
+GLuint Run::volume_texture() const {
+  if (!pipeline_.stack) return pipeline_.volume.texture;
+  const std::vector<GLuint> textures = slices();
+  return textures.empty() ? pipeline_.volume.texture : std::min(textures.front(), textures.back());
+}
 
 void Run::replay(const DispatchTable& gl) const {
   std::optional<CurrentAttributes> current;

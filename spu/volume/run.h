@@ -12,9 +12,20 @@ namespace understudy::spu {
 class Run {
  public:
   /// `calls` are cleared, and last longer than the run: their memory serves the next one.
-  Run(Pipeline pipeline, Records& calls) : pipeline_(std::move(pipeline)), calls_(calls) { calls_.clear(); }
+  Run(Pipeline pipeline, Records& calls) : pipeline_(std::move(pipeline)), calls_(calls) {
+    calls_.clear();
+    // Bound already, but every replay ends with the last one.
+    if (pipeline_.stack) bind_slice(pipeline_.volume.texture);
+  }
 
   const Pipeline& pipeline() const { return pipeline_; }
+
+  /// A stack's next slice: the texture is bound, and feedback told its number.
+  void bind_slice(GLuint texture);
+  /// The stack's textures in the order of drawing; without those that nothing was drawn with in the end.
+  std::vector<GLuint> slices() const;
+  /// The texture that the volume is known by: of a stack one of its ends, whichever is drawn first.
+  GLuint volume_texture() const;
 
   /// Where deferred calls go; all of them are plain.
   Records& calls() { return calls_; }
@@ -42,8 +53,14 @@ class Run {
     const void* offset;
   };
 
+  struct StackSlice {
+    GLuint texture;
+    std::size_t draws_before;
+  };
+
   Pipeline pipeline_;
   Records& calls_;
+  std::vector<StackSlice> slices_;
   std::vector<ElementDraw> elements_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "spu/volume/verify.h"
 #include "spu/volume/volume_unit.h"
@@ -31,6 +32,7 @@ struct VolumeUnit::Substitution {
   std::optional<Capture> capture{};  ///< where a vertex shader was observed; its polygons are in `polygons`
   std::optional<CameraFit> fit{};
   FragmentInputs fragment{};
+  std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end
   SliceSet slices{};
   volume::RenderRequest request{};
   std::optional<Difference> difference{};  ///< from the application's picture, where that was drawn already

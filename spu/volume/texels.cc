@@ -11,18 +11,18 @@ namespace {
 
 constexpr std::size_t slab_bytes = std::size_t(4) << 20;
 
-GLint level_parameter(const DispatchTable& gl, GLenum name) {
+GLint level_parameter(const DispatchTable& gl, GLenum target, GLenum name) {
   GLint value = 0;
-  gl.GetTexLevelParameteriv(GL_TEXTURE_3D, 0, name, &value);
+  gl.GetTexLevelParameteriv(target, 0, name, &value);
   return value;
 }
 
-GLint texture_parameter(const DispatchTable& gl, GLint sampler, GLenum name) {
+GLint texture_parameter(const DispatchTable& gl, GLenum target, GLint sampler, GLenum name) {
   GLint value = 0;
   if (sampler != 0) {
     gl.GetSamplerParameteriv(GLuint(sampler), name, &value);
   } else {
-    gl.GetTexParameteriv(GL_TEXTURE_3D, name, &value);
+    gl.GetTexParameteriv(target, name, &value);
   }
   return value;
 }
@@ -74,7 +74,8 @@ struct Component {
 };
 
 /// The component that the base format stores, and its size in bits.
-std::optional<std::string> describe_components(const GlContext& context, TextureDescription& description) {
+std::optional<std::string> describe_components(const GlContext& context, GLenum target,
+                                               TextureDescription& description) {
   const DispatchTable& gl = *context.gl;
   std::vector<Component> asked;
   if (!context.core) {
@@ -83,13 +84,13 @@ std::optional<std::string> describe_components(const GlContext& context, Texture
   }
   asked.push_back({BaseFormat::red, GL_TEXTURE_RED_SIZE, GL_TEXTURE_RED_TYPE});
   asked.push_back({BaseFormat::alpha, GL_TEXTURE_ALPHA_SIZE, GL_TEXTURE_ALPHA_TYPE});
-  const GLint red = level_parameter(gl, GL_TEXTURE_RED_SIZE);
-  const GLint green = level_parameter(gl, GL_TEXTURE_GREEN_SIZE);
-  const GLint alpha = level_parameter(gl, GL_TEXTURE_ALPHA_SIZE);
+  const GLint red = level_parameter(gl, target, GL_TEXTURE_RED_SIZE);
+  const GLint green = level_parameter(gl, target, GL_TEXTURE_GREEN_SIZE);
+  const GLint alpha = level_parameter(gl, target, GL_TEXTURE_ALPHA_SIZE);
   for (const Component& component : asked) {
-    const GLint bits = level_parameter(gl, component.size);
+    const GLint bits = level_parameter(gl, target, component.size);
     if (bits == 0) continue;
-    const auto type = GLenum(level_parameter(gl, component.type));
+    const auto type = GLenum(level_parameter(gl, target, component.type));
     description.base = component.base;
     if (component.base == BaseFormat::luminance && alpha > 0) return "the texture has luminance and alpha";
     if (red > 0 && green > 0) {
@@ -160,21 +161,22 @@ void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
 
 }  // namespace
 
-std::optional<std::string> describe_texture(const GlContext& context, int unit,
+std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
                                             TextureDescription& description) {
   const DispatchTable& gl = *context.gl;
-  description.size = {level_parameter(gl, GL_TEXTURE_WIDTH), level_parameter(gl, GL_TEXTURE_HEIGHT),
-                      level_parameter(gl, GL_TEXTURE_DEPTH)};
+  description.size = {level_parameter(gl, target, GL_TEXTURE_WIDTH),
+                      level_parameter(gl, target, GL_TEXTURE_HEIGHT),
+                      level_parameter(gl, target, GL_TEXTURE_DEPTH)};
   for (const int n : description.size) {
     if (n <= 0) return "the texture is empty";
   }
-  if (!context.core && level_parameter(gl, GL_TEXTURE_BORDER) != 0) return "the texture has a border";
-  if (level_parameter(gl, GL_TEXTURE_COMPRESSED) != 0) return "the texture is compressed";
+  if (!context.core && level_parameter(gl, target, GL_TEXTURE_BORDER) != 0) return "the texture has a border";
+  if (level_parameter(gl, target, GL_TEXTURE_COMPRESSED) != 0) return "the texture is compressed";
   GLint base_level = 0;
-  gl.GetTexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_BASE_LEVEL, &base_level);
+  gl.GetTexParameteriv(target, GL_TEXTURE_BASE_LEVEL, &base_level);
   if (base_level != 0) return "the texture's base level is not 0";
-  description.format_name = name_of_format(level_parameter(gl, GL_TEXTURE_INTERNAL_FORMAT));
-  if (auto reason = describe_components(context, description)) return reason;
+  description.format_name = name_of_format(level_parameter(gl, target, GL_TEXTURE_INTERNAL_FORMAT));
+  if (auto reason = describe_components(context, target, description)) return reason;
 
   GLint sampler = 0;
   if (context.version >= 330) {
@@ -183,20 +185,20 @@ std::optional<std::string> describe_texture(const GlContext& context, int unit,
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
     gl.GetIntegerv(GL_SAMPLER_BINDING, &sampler);
     gl.ActiveTexture(GLenum(active));
-    gl.GetTexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, description.swizzle.data());
+    gl.GetTexParameteriv(target, GL_TEXTURE_SWIZZLE_RGBA, description.swizzle.data());
   }
-  const GLint minify = texture_parameter(gl, sampler, GL_TEXTURE_MIN_FILTER);
-  const GLint magnify = texture_parameter(gl, sampler, GL_TEXTURE_MAG_FILTER);
+  const GLint minify = texture_parameter(gl, target, sampler, GL_TEXTURE_MIN_FILTER);
+  const GLint magnify = texture_parameter(gl, target, sampler, GL_TEXTURE_MAG_FILTER);
   if (minify != magnify) return "the texture is mip-mapped or filtered differently when minified";
   description.filter = magnify == GL_NEAREST ? volume::Filter::nearest : volume::Filter::linear;
   constexpr std::array<GLenum, 3> axes = {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};
   for (std::size_t i = 0; i < 3; ++i) {
-    description.wrap[i] = wrap_of(texture_parameter(gl, sampler, axes[i]), description.filter);
+    description.wrap[i] = wrap_of(texture_parameter(gl, target, sampler, axes[i]), description.filter);
   }
   if (sampler != 0) {
     gl.GetSamplerParameterfv(GLuint(sampler), GL_TEXTURE_BORDER_COLOR, description.border.data());
   } else {
-    gl.GetTexParameterfv(GL_TEXTURE_3D, GL_TEXTURE_BORDER_COLOR, description.border.data());
+    gl.GetTexParameterfv(target, GL_TEXTURE_BORDER_COLOR, description.border.data());
   }
   if (description.base == BaseFormat::alpha) description.border[0] = description.border[3];
   if (!context.core) {
@@ -261,6 +263,33 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
   // A constant field has no range to spread a table over: any room above it will do.
   if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
   return range;
+}
+
+std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
+                                      const TextureDescription& description, const volume::TexelBox& box,
+                                      const std::function<void(int, int, std::span<const std::byte>)>& slab) {
+  const DispatchTable& gl = *context.gl;
+  const std::size_t texel = volume::bytes_per_texel(description.type);
+  const auto width = std::size_t(box.high[0] - box.low[0]) * texel;
+  const auto row = std::size_t(description.size[0]) * texel;
+  std::vector<std::byte> whole(row * std::size_t(description.size[1]));
+  std::vector<std::byte> part(width * std::size_t(box.high[1] - box.low[1]));
+  for (int z = box.low[2]; z < box.high[2]; ++z) {
+    gl.BindTexture(GL_TEXTURE_2D, textures[std::size_t(z)]);
+    TextureDescription slice;
+    if (auto reason = describe_texture(context, GL_TEXTURE_2D, 0, slice)) return reason;
+    slice.size[2] = description.size[2];
+    if (slice.size != description.size || slice.type != description.type || slice.base != description.base)
+      return "the stack's textures differ in size or format";
+    gl.GetTexImage(GL_TEXTURE_2D, 0, pixel_format(description.base), pixel_type(description.type),
+                   whole.data());
+    for (int y = box.low[1]; y < box.high[1]; ++y) {
+      std::memcpy(part.data() + std::size_t(y - box.low[1]) * width,
+                  whole.data() + std::size_t(y) * row + std::size_t(box.low[0]) * texel, width);
+    }
+    slab(z, 1, part);
+  }
+  return std::nullopt;
 }
 
 }  // namespace understudy::spu

@@ -28,8 +28,9 @@ struct TextureDescription {
   std::string format_name;  ///< for the report: "INTENSITY8", "R16F"
 };
 
-/// Describes the 3-D texture bound to the active unit. A reason where it is not a volume that we can hold.
-std::optional<std::string> describe_texture(const GlContext& context, int unit,
+/// Describes the texture bound to `target` of the active unit. A reason where it is not a volume that we can
+/// hold.
+std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
                                             TextureDescription& description);
 
 /// Reads the texels of `box` from the 3-D texture bound to the active unit and hands them on in slabs of whole
@@ -38,5 +39,11 @@ std::optional<std::string> describe_texture(const GlContext& context, int unit,
 std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
                                  const TextureDescription& description, const volume::TexelBox& box,
                                  const std::function<void(int, int, std::span<const std::byte>)>& slab);
+
+/// The same from a stack of 2-D textures, slice by slice; binds them to the active unit. A reason where they
+/// are not alike, or hold floats.
+std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
+                                      const TextureDescription& description, const volume::TexelBox& box,
+                                      const std::function<void(int, int, std::span<const std::byte>)>& slab);
 
 }  // namespace understudy::spu

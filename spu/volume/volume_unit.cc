@@ -28,6 +28,9 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// Fewer textures in a row are no stack worth looking at.
+constexpr std::size_t fewest_stack_slices = 8;
+
 volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   std::array<GLdouble, 16> column_major{};
   gl.GetDoublev(GL_PROJECTION_MATRIX, column_major.data());
@@ -75,6 +78,20 @@ bool clips_in_shader(const DispatchTable& gl) {
     if (gl.IsEnabled(GLenum(GL_CLIP_DISTANCE0 + i))) return true;
   }
   return false;
+}
+
+/// Gives the observed slices of a stack their third coordinate. The end whose texture has the lower name is the
+/// low one, from whichever side the stack is drawn.
+std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
+  std::vector<GLuint> textures = run.slices();
+  const bool downwards = textures.front() > textures.back();
+  const auto n = double(textures.size());
+  for (ObservedVertex& vertex : polygons.vertices) {
+    const double place = (vertex.texture[2] + 0.5) / n;
+    vertex.texture[2] = downwards ? 1 - place : place;
+  }
+  if (downwards) std::reverse(textures.begin(), textures.end());
+  return textures;
 }
 
 /// Everything that fixed-function fragments depend on, as numbers to compare.
@@ -232,7 +249,10 @@ const GlContext& VolumeUnit::context() {
 }
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
-  if (phase == Phase::plain) fill_conditional_render_slots(table);
+  if (phase == Phase::plain) {
+    fill_conditional_render_slots(table);
+    fill_stack_detection_slots(table);
+  }
   if (phase == Phase::watching) fill_watching_slots(table);
   if (phase == Phase::owing) fill_owing_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
@@ -265,13 +285,15 @@ void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
 
 bool VolumeUnit::opens_run() {
   if (inside_begin || !context().sufficient()) return false;
-  const PipelineFinding finding = read_pipeline(context(), chain_.group(), samplers_);
+  const PipelineFinding finding = read_pipeline(context(), chain_.group(), samplers_, stacks_possible_);
   if (std::holds_alternative<NotAVolume>(finding)) return false;
   std::string reason;
   GLuint texture = 0;
   if (const auto* left = std::get_if<LeftAlone>(&finding)) {
     reason = left->reason;
     texture = left->texture;
+  } else if (std::get<Pipeline>(finding).stack) {
+    if (conditional_render) return false;
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
     reason = known(texture).given_back;
@@ -295,30 +317,64 @@ void VolumeUnit::close_run() {
   if (!run_) return;
   const std::unique_ptr<Run> run = std::move(run_);
   chain_.set_phase(resting_phase());
+  if (run->pipeline().stack && !is_a_stack(*run)) {
+    inside_begin = run->inside_begin;
+    run->replay(*context().gl);
+    return;
+  }
+  const GLuint texture = run->volume_texture();
   if (run->inside_begin) {
-    leave(run->pipeline().volume.texture, "calls other than vertices between glBegin and glEnd");
+    leave(texture, "calls other than vertices between glBegin and glEnd");
     inside_begin = true;
     run->replay(*context().gl);
     return;
   }
   try {
+    if (const std::string& reason = known(texture).given_back; !reason.empty()) throw Doubt{reason};
     substitute(*run);
     return;
   } catch (const Doubt& doubt) {
-    ++known(run->pipeline().volume.texture).refusals;
-    leave(run->pipeline().volume.texture, doubt.reason);
+    ++known(texture).refusals;
+    leave(texture, doubt.reason);
   } catch (const NothingVisible&) {
   } catch (const compositor::RequestRefused& refused) {
-    leave(run->pipeline().volume.texture, refused.what());
+    leave(texture, refused.what());
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
     session_->lost(lost.what());
     // Said once by whoever started the nodes, or by the session.
-    leave(run->pipeline().volume.texture, "the render nodes did not answer", false);
+    leave(texture, "the render nodes did not answer", false);
   } catch (const std::exception& error) {
-    leave(run->pipeline().volume.texture, error.what());
+    leave(texture, error.what());
   }
   run->replay(*context().gl);
+}
+
+void VolumeUnit::stack_defined() {
+  stacks_possible_ = true;
+  chain_.group().volume_defined();
+  if (chain_.phase() == Phase::plain) chain_.set_phase(Phase::watching);
+}
+
+/// Textured quads in a row are no volume until their geometry says so.
+bool VolumeUnit::is_a_stack(const Run& run) {
+  const std::vector<GLuint> textures = run.slices();
+  if (run.inside_begin || textures.size() < fewest_stack_slices) return false;
+  if (known_.contains(run.volume_texture())) return true;
+  KnownVolume unknown;
+  Substitution trial{.run = run, .pipeline = run.pipeline(), .volume = unknown};
+  try {
+    observe(trial);
+    find_geometry(trial);
+    other_stacks_ = 0;
+    return true;
+  } catch (const Doubt&) {
+    // Each look costs a drawing in feedback mode: whoever draws other things from many textures is soon left
+    // alone.
+    if (++other_stacks_ >= patient_refusals) stacks_possible_ = false;
+  } catch (const NothingVisible&) {
+  }
+  return false;
 }
 
 const ProgramStages& VolumeUnit::stages(GLuint program, const ProgramRecord& record) {
@@ -371,6 +427,7 @@ void VolumeUnit::observe(Substitution& s) {
   }
   s.polygons = observe_by_feedback(context(), s.run);
   if (s.polygons.count() == 0) throw NothingVisible{};
+  if (s.pipeline.stack) s.stack = place_slices(s.run, s.polygons);
   if (!s.polygons.constant_colour)
     throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
   s.fragment.coordinate = "gl_TexCoord[0]";
@@ -409,9 +466,14 @@ void VolumeUnit::describe_volume(Substitution& s) {
   gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
   TextureDescription texture;
-  const auto reason = describe_texture(context(), s.pipeline.volume.unit, texture);
+  auto reason = describe_texture(context(), s.pipeline.volume.target, s.pipeline.volume.unit, texture);
   gl.ActiveTexture(GLenum(active));
   if (reason) throw Doubt{*reason};
+  if (s.pipeline.stack) {
+    if (texture.type == volume::TexelType::f32) throw Doubt{"the stack's textures hold floats"};
+    texture.size[2] = int(s.stack.size());
+    texture.wrap[2] = volume::Wrap::edge;
+  }
   known.texture = texture;
   for (int k = 0; k < 3; ++k) known.counters->size[k] = texture.size[std::size_t(k)];
   put(known.counters->texture_format, texture.format_name);
@@ -441,15 +503,23 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   if (wanted.id == 0) wanted.id = session_->new_volume_id();
 
   known.generation = 0;
+  std::optional<std::string> reason;
   service.begin_volume(wanted);
   {
     SavedState saved(context());
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
-    known.range = read_texels(context(), s.pipeline.volume.texture, texture, wanted.stored,
-                              [&](int first, int slices, std::span<const std::byte> texels) {
-                                service.add_slices(wanted.id, first, slices, texels);
-                              });
+    const auto add = [&](int first, int slices, std::span<const std::byte> texels) {
+      service.add_slices(wanted.id, first, slices, texels);
+    };
+    if (s.pipeline.stack) {
+      saved.borrow_texture(GL_TEXTURE_2D, 0);
+      known.range = {0, 1};
+      reason = read_stack(context(), s.stack, texture, wanted.stored, add);
+    } else {
+      known.range = read_texels(context(), s.pipeline.volume.texture, texture, wanted.stored, add);
+    }
   }
+  if (reason) throw Doubt{*reason};
   service.end_volume(wanted.id);
   known.description = wanted;
   known.generation = session_->generation();
@@ -583,10 +653,17 @@ void VolumeUnit::substitute(const Run& run) {
     forget_deleted_volumes();
     tidied_in_frame_ = frame;
   }
-  Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.pipeline().volume.texture)};
+  Substitution s{.run = run, .pipeline = run.pipeline(), .volume = known(run.volume_texture())};
   s.texture_version = chain_.group().texture_version(s.pipeline.volume.texture);
   observe(s);
   if (!s.proxy) find_geometry(s);
+  for (const GLuint texture : s.stack) {
+    if (chain_.group().is_rendered_to(texture)) throw Doubt{"a texture of the stack is rendered into"};
+    // Any two stacks, and any two states of one, differ in the mixture.
+    constexpr std::uint64_t prime = 0x100000001b3;
+    s.texture_version = (s.texture_version * prime) ^ texture;
+    s.texture_version = (s.texture_version * prime) ^ chain_.group().texture_version(texture);
+  }
   const Options& options = session_->options();
   const auto lock = session_->lock();
   compositor::RenderService& service = session_->service();
@@ -662,7 +739,7 @@ void VolumeUnit::settle_depth(const Substitution& s) {
   if (!s.pipeline.depth_test || !s.pipeline.depth_write) return;
   if (s.volume.frames == 0 || s.volume.depth_looked_at) pay_depth(*context().gl, s.run);
   if (s.volume.depth_looked_at) return;
-  depth_watched_ = s.pipeline.volume.texture;
+  depth_watched_ = s.run.volume_texture();
   chain_.set_phase(Phase::owing);
 }
 

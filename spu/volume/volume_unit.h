@@ -21,6 +21,7 @@
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
+#include "spu/volume/stack_detection.h"
 
 namespace understudy::spu {
 
@@ -66,6 +67,9 @@ class VolumeUnit final : public Unit {
   bool inside_begin = false;
   /// Between glBeginConditionalRender and glEndConditionalRender, where our own drawing may do nothing.
   bool conditional_render = false;
+  /// Many 2-D textures of one size: what is drawn with them may be a stack of slices.
+  void stack_defined();
+  StackDetection stack_detection;
 
   /// The depth that the last substituted slices would have written is being used; or is gone, unused.
   void depth_looked_at();
@@ -81,6 +85,7 @@ class VolumeUnit final : public Unit {
   void substitute(const Run& run);
   KnownVolume& known(GLuint texture);
   void observe(Substitution& s);
+  bool is_a_stack(const Run& run);
   void find_geometry(Substitution& s);
   void describe_volume(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
@@ -113,6 +118,8 @@ class VolumeUnit final : public Unit {
   Records calls_;  ///< of the open run; kept between runs for its memory
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
+  bool stacks_possible_ = false;
+  int other_stacks_ = 0;  ///< runs through many 2-D textures that were no volume, since the last that was
   ProgramSamplers samplers_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
       stages_;                ///< by program, with the link they stem from

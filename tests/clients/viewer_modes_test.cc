@@ -79,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
             {},
             0,
             "the colour depends on more than the sample (position, lighting)"},
-        Way{"Stacks", "stacks", {}, 0, "0 volumes seen"}),
+        Way{"Stacks", "stacks", {}, 1, nullptr},
+        Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });
 
 class OperatorsOnRanks : public Stage, public testing::WithParamInterface<const char*> {};

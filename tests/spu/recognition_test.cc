@@ -49,7 +49,7 @@ TEST_P(Recognition, TurnedOffItIsBitIdentical) {
   EXPECT_EQ(first, second);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Recognition, ::testing::Range<std::size_t>(0, 8));
+INSTANTIATE_TEST_SUITE_P(Scenes, Recognition, ::testing::Range<std::size_t>(0, 9));
 
 TEST(RecognitionOfChanges, ATextureUploadedAgainIsSeen) {
   auto app = GlApplication::start(Profile::compatibility);

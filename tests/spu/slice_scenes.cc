@@ -333,6 +333,52 @@ SliceScene vertex_shader_varying() {
   return scene;
 }
 
+SliceScene texture_stack() {
+  SliceScene scene{"a stack of 2-D textures, one quad each"};
+  auto stack = std::make_shared<std::vector<GLuint>>();
+  scene.set_up = [stack](GlApplication& app) {
+    const Blob blob;
+    const auto texels = blob.texels();
+    stack->resize(std::size_t(blob.z));
+    app.gl().GenTextures(blob.z, stack->data());
+    for (int z = 0; z < blob.z; ++z) {
+      std::vector<std::uint8_t> colours;
+      for (int i = 0; i < blob.x * blob.y; ++i) {
+        const std::uint8_t s = texels[std::size_t(z * blob.x * blob.y + i)];
+        colours.insert(colours.end(), {s, std::uint8_t(255 - s), 90, std::uint8_t(s * s / 255 / 3)});
+      }
+      app.gl().BindTexture(GL_TEXTURE_2D, (*stack)[std::size_t(z)]);
+      filter(app.gl(), GL_TEXTURE_2D, GL_LINEAR);
+      app.gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, blob.x, blob.y, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                          colours.data());
+    }
+  };
+  scene.slices = [stack](GlApplication& app, double angle) {
+    fixed_function_camera(app.gl(), angle);
+    blend_over(app.gl());
+    app.gl().Enable(GL_TEXTURE_2D);
+    app.gl().TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
+    app.gl().Color4f(1, 0.8F, 0.9F, 1);
+    const std::size_t n = stack->size();
+    const bool from_behind = std::cos(angle * M_PI / 180) < 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t slice = from_behind ? n - 1 - i : i;
+      app.gl().BindTexture(GL_TEXTURE_2D, (*stack)[slice]);
+      app.gl().Begin(GL_QUADS);
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        app.gl().TexCoord2d(x, y);
+        app.gl().Vertex3d(x, y, (double(slice) + 0.5) / double(n));
+      }
+      app.gl().End();
+    }
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    app.gl().Disable(GL_TEXTURE_2D);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
 SliceScene assembly_program(bool two_dimensional_table) {
   SliceScene scene{two_dimensional_table ? "ARB vertex and fragment programs with a 2-D table"
                                          : "ARB fragment program with a 1-D table"};
@@ -528,8 +574,9 @@ SliceScene fogged_polygons() {
 }
 
 std::vector<SliceScene> all_slice_scenes() {
-  return {immediate_rgba(),        display_list_texgen(),  client_arrays_table(), vertex_shader_varying(),
-          assembly_program(false), assembly_program(true), core_batched(),        fogged_polygons()};
+  return {immediate_rgba(),        display_list_texgen(),   client_arrays_table(),
+          vertex_shader_varying(), assembly_program(false), assembly_program(true),
+          texture_stack(),         core_batched(),          fogged_polygons()};
 }
 
 }  // namespace understudy::spu::testing

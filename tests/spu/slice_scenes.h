@@ -43,6 +43,8 @@ SliceScene client_arrays_table();
 SliceScene client_arrays_table(const SliceBlending& blending);
 /// GLSL 1.20 with a vertex shader and a varying of its own.
 SliceScene vertex_shader_varying();
+/// A stack of 2-D textures instead of a 3-D one, each bound for one quad; drawn from either side.
+SliceScene texture_stack();
 /// An ARB fragment program whose second look-up depends on the first: a 1-D table, or a 2-D one under an ARB
 /// vertex program.
 SliceScene assembly_program(bool two_dimensional_table);

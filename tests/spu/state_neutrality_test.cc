@@ -229,7 +229,7 @@ TEST_P(NeutralState, AfterASubstitutedDrawIsThatAfterTheApplicationsOwn) {
   EXPECT_GT(bare.size(), 400U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, NeutralState, ::testing::Range<std::size_t>(0, 7));
+INSTANTIATE_TEST_SUITE_P(Scenes, NeutralState, ::testing::Range<std::size_t>(0, 8));
 
 }  // namespace
 }  // namespace understudy::spu::testing

@@ -26,8 +26,11 @@ using Picture = std::vector<volume::Rgba>;
 class Bench {
  public:
   Bench(const GlContext& context, const Pipeline& pipeline)
-      : gl_(*context.gl), alpha_test_(!context.core && gl_.IsEnabled(GL_ALPHA_TEST)), saved_(context) {
-    saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
+      : gl_(*context.gl),
+        target_(pipeline.volume.target),
+        alpha_test_(!context.core && gl_.IsEnabled(GL_ALPHA_TEST)),
+        saved_(context) {
+    saved_.borrow_texture(target_, pipeline.volume.unit);
     gl_.GenTextures(1, &texture_);
     gl_.GenRenderbuffers(1, &colour_);
     gl_.GenFramebuffers(1, &framebuffer_);
@@ -64,15 +67,19 @@ class Bench {
   void show(GLenum internal_format, GLenum format, const std::array<int, 3>& size,
             const std::vector<float>& texels, GLenum filter, const std::array<GLint, 4>& swizzle,
             bool with_swizzle) {
-    gl_.BindTexture(GL_TEXTURE_3D, texture_);
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GLint(filter));
-    gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GLint(filter));
+    gl_.BindTexture(target_, texture_);
+    gl_.TexParameteri(target_, GL_TEXTURE_MIN_FILTER, GLint(filter));
+    gl_.TexParameteri(target_, GL_TEXTURE_MAG_FILTER, GLint(filter));
     for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-      gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+      gl_.TexParameteri(target_, axis, GL_CLAMP_TO_EDGE);
     }
-    if (with_swizzle) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
-    gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(internal_format), size[0], size[1], size[2], 0, format, GL_FLOAT,
-                   texels.data());
+    if (with_swizzle) gl_.TexParameteriv(target_, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
+    if (target_ == GL_TEXTURE_2D) {
+      gl_.TexImage2D(target_, 0, GLint(internal_format), size[0], size[1], 0, format, GL_FLOAT, texels.data());
+    } else {
+      gl_.TexImage3D(target_, 0, GLint(internal_format), size[0], size[1], size[2], 0, format, GL_FLOAT,
+                     texels.data());
+    }
   }
 
   /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`. `across` and `up`: by how
@@ -103,6 +110,7 @@ class Bench {
   }
 
   const DispatchTable& gl_;
+  GLenum target_;
   bool alpha_test_;  ///< asked before SavedState switches it off
   SavedState saved_;
   GLuint texture_ = 0;
@@ -155,7 +163,7 @@ bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescri
       const double place =
           slope[0] * ((x + 0.5) / edge * 2 - 0.5) + slope[1] * ((y + 0.5) / edge * 2 - 0.5) + slope[2] * 0.5;
       const int entry = int(std::lround(place * (probed_entries - 1)));
-      const volume::Rgba& colour = picture[std::size_t(y * edge + x)];
+      const volume::Rgba& colour = picture[std::size_t(y) * edge + std::size_t(x)];
       for (std::size_t c = 0; c < 4; ++c) {
         float low = std::numeric_limits<float>::max();
         float high = std::numeric_limits<float>::lowest();
@@ -365,7 +373,9 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
 
   InputValues tabled = fragment.first;
   if (probed.fog) tabled[probed.fog->input][probed.fog->component] = probed.fog->reference;
-  if (sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table))
+  // The fixed function of a stack's slices looks at one place only.
+  if (!pipeline.stack &&
+      sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table))
     return "the colour depends on the field around the sample (gradient, lighting)";
 
   volume::TransferFunction function;

@@ -28,18 +28,26 @@ ObservedVertex vertex_from(const float* f, const Window& window) {
   return v;
 }
 
-ObservedPolygons parse(std::span<const float> feedback, const Window& window) {
+ObservedPolygons parse(std::span<const float> feedback, const Window& window, bool stack) {
   ObservedPolygons polygons;
   polygons.clipped = true;
   bool first = true;
   std::size_t i = 0;
-  while (i + 1 < feedback.size() && feedback[i] == float(GL_POLYGON_TOKEN)) {
+  double slice = 0;
+  while (i + 1 < feedback.size()) {
+    if (stack && feedback[i] == float(GL_PASS_THROUGH_TOKEN)) {
+      slice = feedback[i + 1];
+      i += 2;
+      continue;
+    }
+    if (feedback[i] != float(GL_POLYGON_TOKEN)) break;
     const auto count = std::size_t(feedback[i + 1]);
     i += 2;
     if (feedback.size() - i < count * floats_per_vertex) break;
     for (std::size_t k = 0; k < count; ++k, i += floats_per_vertex) {
       const float* f = &feedback[i];
       polygons.vertices.push_back(vertex_from(f, window));
+      if (stack) polygons.vertices.back().texture[2] = slice;
       const std::array<float, 4> colour{f[4], f[5], f[6], f[7]};
       if (first) polygons.primary_colour = colour;
       first = false;
@@ -82,7 +90,7 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
   }
   gl.FeedbackBuffer(application_size, GLenum(application_type), static_cast<GLfloat*>(application_buffer));
   if (values < 0) return {};
-  return parse(std::span(buffer).first(std::size_t(values)), window);
+  return parse(std::span(buffer).first(std::size_t(values)), window, run.pipeline().stack);
 }
 
 }  // namespace understudy::spu

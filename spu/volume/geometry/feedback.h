@@ -11,7 +11,8 @@
 namespace understudy::spu {
 
 /// Compatibility contexts only; the volume must be on texture unit 0, the only one that feedback tells about.
-/// Empty polygons when nothing is visible or the buffer would exceed 256 MiB.
+/// The third coordinate of a stack's slices is their number. Empty polygons when nothing is visible or the
+/// buffer would exceed 256 MiB.
 ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run);
 
 }  // namespace understudy::spu

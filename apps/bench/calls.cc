@@ -94,9 +94,8 @@ void empty_upload(benchmark::State& state) {
   glBindTexture(GL_TEXTURE_2D, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   const GLuint texel = 0;
-  for (auto _ : state)
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                    &texel);  // NOLINT(clang-analyzer-deadcode.DeadStores)
+  for (auto _ : state)  // NOLINT(clang-analyzer-deadcode.DeadStores)
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, &texel);
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
@@ -115,7 +114,7 @@ void no_textures(benchmark::State& state) {
 
 void get_viewport(benchmark::State& state) {
   GLint viewport[4];
-  for (const auto _ : state) {
+  for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)
     glGetIntegerv(GL_VIEWPORT, viewport);
     benchmark::DoNotOptimize(viewport);
   }

@@ -2,70 +2,68 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 
 namespace understudy::spu {
 namespace {
 
-using std::string_view_literals::operator""sv;
+constexpr std::string_view vertex_prefixes[] = {
+    "glVertex2",        "glVertex3",         "glVertex4",        "glTexCoord1",     "glTexCoord2",
+    "glTexCoord3",      "glTexCoord4",       "glMultiTexCoord",  "glColor3",        "glColor4",
+    "glNormal3",        "glSecondaryColor3", "glFogCoordd",      "glFogCoordf",     "glFogCoordh",
+    "glEdgeFlag",       "glVertexAttrib1",   "glVertexAttrib2",  "glVertexAttrib3", "glVertexAttrib4",
+    "glVertexAttribI1", "glVertexAttribI2",  "glVertexAttribI3", "glVertexAttribI4"};
+constexpr std::string_view draw_prefixes[] = {"glDrawArrays", "glDrawElements", "glDrawRangeElements",
+                                              "glMultiDraw",  "glArrayElement", "glRect",
+                                              "glEvalMesh",   "glEvalPoint",    "glEvalCoord"};
+constexpr std::string_view bound_texture_prefixes[] = {
+    "glTexImage",   "glTexSubImage",        "glCopyTexImage",         "glCopyTexSubImage",
+    "glTexStorage", "glCompressedTexImage", "glCompressedTexSubImage"};
+constexpr std::string_view unknown_texture_prefixes[] = {
+    "glTextureImage",       "glTextureStorage", "glTextureSubImage",  "glCopyTexture",
+    "glCompressedTexture",  "glMultiTexImage",  "glMultiTexSubImage", "glCopyMultiTex",
+    "glCompressedMultiTex", "glClearTex",       "glCopyImageSubData", "glTextureView",
+    "glEGLImageTargetTex"};
+constexpr std::string_view not_compiled_prefixes[] = {"glGen",
+                                                      "glDelete",
+                                                      "glGet",
+                                                      "glIs",
+                                                      "glPixelStore",
+                                                      "glReadPixels",
+                                                      "glFlush",
+                                                      "glFinish",
+                                                      "glRenderMode",
+                                                      "glFeedbackBuffer",
+                                                      "glSelectBuffer",
+                                                      "glVertexPointer",
+                                                      "glNormalPointer",
+                                                      "glColorPointer",
+                                                      "glTexCoordPointer",
+                                                      "glIndexPointer",
+                                                      "glEdgeFlagPointer",
+                                                      "glFogCoordPointer",
+                                                      "glSecondaryColorPointer",
+                                                      "glInterleavedArrays",
+                                                      "glEnableClientState",
+                                                      "glDisableClientState",
+                                                      "glClientActiveTexture",
+                                                      "glPushClientAttrib",
+                                                      "glPopClientAttrib",
+                                                      "glBindBuffer",
+                                                      "glBufferData",
+                                                      "glBufferSubData",
+                                                      "glMapBuffer",
+                                                      "glUnmapBuffer",
+                                                      "glVertexAttribPointer",
+                                                      "glEnableVertexAttribArray",
+                                                      "glDisableVertexAttribArray",
+                                                      "glBindVertexArray",
+                                                      "glNewList",
+                                                      "glEndList",
+                                                      "glCallList"};
 
-constexpr std::array vertex_prefixes = {
-    "glVertex2"sv,        "glVertex3"sv,         "glVertex4"sv,        "glTexCoord1"sv,     "glTexCoord2"sv,
-    "glTexCoord3"sv,      "glTexCoord4"sv,       "glMultiTexCoord"sv,  "glColor3"sv,        "glColor4"sv,
-    "glNormal3"sv,        "glSecondaryColor3"sv, "glFogCoordd"sv,      "glFogCoordf"sv,     "glFogCoordh"sv,
-    "glEdgeFlag"sv,       "glVertexAttrib1"sv,   "glVertexAttrib2"sv,  "glVertexAttrib3"sv, "glVertexAttrib4"sv,
-    "glVertexAttribI1"sv, "glVertexAttribI2"sv,  "glVertexAttribI3"sv, "glVertexAttribI4"sv};
-constexpr std::array draw_prefixes = {"glDrawArrays"sv, "glDrawElements"sv, "glDrawRangeElements"sv,
-                                      "glMultiDraw"sv,  "glArrayElement"sv, "glRect"sv,
-                                      "glEvalMesh"sv,   "glEvalPoint"sv,    "glEvalCoord"sv};
-constexpr std::array bound_texture_prefixes = {
-    "glTexImage"sv,   "glTexSubImage"sv,        "glCopyTexImage"sv,         "glCopyTexSubImage"sv,
-    "glTexStorage"sv, "glCompressedTexImage"sv, "glCompressedTexSubImage"sv};
-constexpr std::array unknown_texture_prefixes = {
-    "glTextureImage"sv,       "glTextureStorage"sv, "glTextureSubImage"sv,  "glCopyTexture"sv,
-    "glCompressedTexture"sv,  "glMultiTexImage"sv,  "glMultiTexSubImage"sv, "glCopyMultiTex"sv,
-    "glCompressedMultiTex"sv, "glClearTex"sv,       "glCopyImageSubData"sv, "glTextureView"sv,
-    "glEGLImageTargetTex"sv};
-constexpr std::array not_compiled_prefixes = {"glGen"sv,
-                                              "glDelete"sv,
-                                              "glGet"sv,
-                                              "glIs"sv,
-                                              "glPixelStore"sv,
-                                              "glReadPixels"sv,
-                                              "glFlush"sv,
-                                              "glFinish"sv,
-                                              "glRenderMode"sv,
-                                              "glFeedbackBuffer"sv,
-                                              "glSelectBuffer"sv,
-                                              "glVertexPointer"sv,
-                                              "glNormalPointer"sv,
-                                              "glColorPointer"sv,
-                                              "glTexCoordPointer"sv,
-                                              "glIndexPointer"sv,
-                                              "glEdgeFlagPointer"sv,
-                                              "glFogCoordPointer"sv,
-                                              "glSecondaryColorPointer"sv,
-                                              "glInterleavedArrays"sv,
-                                              "glEnableClientState"sv,
-                                              "glDisableClientState"sv,
-                                              "glClientActiveTexture"sv,
-                                              "glPushClientAttrib"sv,
-                                              "glPopClientAttrib"sv,
-                                              "glBindBuffer"sv,
-                                              "glBufferData"sv,
-                                              "glBufferSubData"sv,
-                                              "glMapBuffer"sv,
-                                              "glUnmapBuffer"sv,
-                                              "glVertexAttribPointer"sv,
-                                              "glEnableVertexAttribArray"sv,
-                                              "glDisableVertexAttribArray"sv,
-                                              "glBindVertexArray"sv,
-                                              "glNewList"sv,
-                                              "glEndList"sv,
-                                              "glCallList"sv};
-
-template <std::size_t N>
-bool starts_with_any(std::string_view name, const std::array<std::string_view, N>& prefixes) {
+bool starts_with_any(std::string_view name, std::span<const std::string_view> prefixes) {
   return std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view p) { return name.starts_with(p); });
 }
 

@@ -1,5 +1,7 @@
 #include "spu/volume/program_stages.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstring>
 #include <limits>
@@ -298,17 +300,18 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
           "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
     } else {
       static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
-      const std::string k = "[" + std::to_string(others) + "]";
       const std::string slope =
-          input.integer ? "" : " + unit.x * understudy_across" + k + " + unit.y * understudy_up" + k;
-      body += "  " + input.name + " = " + type + "((understudy_value" + k + slope + ")" +
-              swizzle[std::size_t(input.components)] + ");\n";
+          input.integer
+              ? ""
+              : fmt::format(" + unit.x * understudy_across[{0}] + unit.y * understudy_up[{0}]", others);
+      body += fmt::format("  {} = {}((understudy_value[{}]{}){});\n", input.name, type, others, slope,
+                          swizzle[std::size_t(input.components)]);
       ++others;
     }
   }
   if (others > 0) {
     for (const char* name : {"value", "across", "up"})
-      declarations += std::string("uniform vec4 understudy_") + name + "[" + std::to_string(others) + "];\n";
+      declarations += fmt::format("uniform vec4 understudy_{}[{}];\n", name, others);
   }
   const std::string source =
       declarations +

@@ -172,6 +172,7 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
   constexpr double most_samples_of_shortest = 8;
   const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<float> values;
+  values.reserve(table_entries);
   for (int i = 0; i < table_entries; ++i)
     values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
   auto& entries = march.table.entries;
@@ -334,6 +335,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 
   constexpr int tried = 128;
   std::vector<float> values;
+  values.reserve(tried);
   for (int i = 0; i < tried; ++i) values.push_back(value_at(measured.range, double(i) / (tried - 1)));
   const auto middle = rays.middle();
   const auto through = probe.at(middle[0], middle[1], values);
@@ -436,6 +438,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const Ray shortest = ray_of_length(rays, march.steps, wanted);
   constexpr int looked_at = 16;
   std::vector<float> values;
+  values.reserve(looked_at);
   for (int i = 0; i < looked_at; ++i)
     values.push_back(value_at({march.table.low, march.table.high}, (i + 0.5) / looked_at));
   const auto expected = [&](const Rgba& fragment, float value, double n) {

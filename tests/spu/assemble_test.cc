@@ -56,7 +56,7 @@ class Assemble : public ::testing::Test {
  protected:
   std::string error_of(std::string_view text) {
     Chain chain(mock_.table(), std::make_shared<ShareGroup>(), testing::install);
-    const std::string error = assemble(chain, text, nullptr, units()).value_or("");
+    std::string error = assemble(chain, text, nullptr, units()).value_or("");
     if (!error.empty()) {
       EXPECT_EQ(&chain.head(Phase::plain), &mock_.table()) << "a chain with an error adds no unit: " << text;
     }
@@ -90,9 +90,11 @@ TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
     if (unit->standing == Standing::last) continue;
     // Such pairs are assembled from their first unit; traces are files, and have tests of their own.
     if (std::string_view(unit->name) == "unpack" || std::string_view(unit->name) == "trace") continue;
-    const std::string before = unit->needs != nullptr ? std::string(unit->needs) + " " : "";
-    const std::string behind = unit->leads_to != nullptr ? std::string(" ") + unit->leads_to : "";
-    EXPECT_EQ(error_of(before + unit->name + behind + " driver"), "") << unit->name;
+    std::string chain;
+    for (const char* name : {unit->needs, unit->name, unit->leads_to, "driver"}) {
+      if (name != nullptr) chain.append(name).append(" ");
+    }
+    EXPECT_EQ(error_of(chain), "") << unit->name;
   }
 }
 

@@ -47,7 +47,7 @@ std::vector<float> ColourTarget::read() const {
     gl.BlitFramebuffer(0, 0, edge, edge, 0, 0, edge, edge, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[1]);
   }
-  const auto pixels = app_.read_pixels();
+  auto pixels = app_.read_pixels();
   gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers_[0]);
   return pixels;
 }

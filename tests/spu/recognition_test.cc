@@ -258,7 +258,7 @@ TEST(RecognitionOfDepth, WhatTheSlicesWriteIsThereForWhoeverLooks) {
           app->gl().Vertex3d(x, y, 0.5);
         app->gl().End();
       }
-      const auto picture = app->read_pixels();
+      auto picture = app->read_pixels();
       app->end_frame();
       return picture;
     };

@@ -185,7 +185,9 @@ SliceScene display_list_texgen() {
     for (int k = 0; k < blob.z; ++k) {
       for (int j = 0; j < blob.y; ++j) {
         for (int i = 0; i < blob.x; ++i) {
-          padded[std::size_t((k * 32 + j) * 32 + i)] = texels[std::size_t((k * blob.y + j) * blob.x + i)];
+          const int to = (k * 32 + j) * 32 + i;
+          const int from = (k * blob.y + j) * blob.x + i;
+          padded[std::size_t(to)] = texels[std::size_t(from)];
         }
       }
     }
@@ -344,7 +346,8 @@ SliceScene texture_stack() {
     for (int z = 0; z < blob.z; ++z) {
       std::vector<std::uint8_t> colours;
       for (int i = 0; i < blob.x * blob.y; ++i) {
-        const std::uint8_t s = texels[std::size_t(z * blob.x * blob.y + i)];
+        const int at = z * blob.x * blob.y + i;
+        const std::uint8_t s = texels[std::size_t(at)];
         colours.insert(colours.end(), {s, std::uint8_t(255 - s), 90, std::uint8_t(s * s / 255 / 3)});
       }
       app.gl().BindTexture(GL_TEXTURE_2D, (*stack)[std::size_t(z)]);

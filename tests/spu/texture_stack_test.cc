@@ -98,9 +98,11 @@ TEST(TextureStacks, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
     for (int i = 0; i < 12; ++i) {
       app->gl().BindTexture(GL_TEXTURE_2D, GLuint(last - i));
       app->gl().Begin(GL_QUADS);
+      const int column = i % 4;
+      const int row = i / 4;
       for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
         app->gl().TexCoord2d(x, y);
-        app->gl().Vertex2d(-0.9 + 0.4 * (i % 4 + x), -0.9 + 0.5 * (i / 4 + y));
+        app->gl().Vertex2d(-0.9 + 0.4 * (column + x), -0.9 + 0.5 * (row + y));
       }
       app->gl().End();
     }

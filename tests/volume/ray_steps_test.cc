@@ -103,9 +103,10 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
       const Vec4 middle = transform_point(c.camera, {0.5, 0.5, 0.5}),
                  end = transform_point(c.camera, {1, 0.2, 0.9});
       const double there = (middle[2] / middle[3] + 1) / 2, slope = (end[2] / end[3] + 1) / 2 - there;
+      const int half = depth.rect.width / 2;
       for (int y = 0; y < depth.rect.height; ++y)
         for (int x = 0; x < depth.rect.width; ++x)
-          depth.depth.push_back(float(there + slope * (x - depth.rect.width / 2) / depth.rect.width));
+          depth.depth.push_back(float(there + slope * (x - half) / depth.rect.width));
       request.depth = depth;
       Image image(request.window);
       FrameCounts counts;

@@ -38,9 +38,27 @@ struct VolumeCounters {
   char explanation[512];  ///< what was recognised, in plain words
 };
 
+/// Parts of a frame, in milliseconds. They do not overlap; what is left of the frame is the application's.
+struct FrameShares {
+  double recognition;   ///< what a run means: geometry, colours, depth before it
+  double upload;        ///< texels to the nodes
+  double render;        ///< waiting for the render service
+  double verification;  ///< the application's own drawing, and the comparison
+  double presentation;  ///< the picture into the application's framebuffer
+
+  FrameShares& operator+=(const FrameShares& other) {
+    recognition += other.recognition;
+    upload += other.upload;
+    render += other.render;
+    verification += other.verification;
+    presentation += other.presentation;
+    return *this;
+  }
+};
+
 struct FrameRecord {
-  double time_ms;    ///< from the last frame end to this one
-  double render_ms;  ///< waiting for the render service
+  double time_ms;  ///< from the last frame end to this one
+  FrameShares spent_ms;
   std::uint32_t substituted;
   std::uint32_t left;
   double error_rms;  ///< against the application's own drawing; negative: not measured

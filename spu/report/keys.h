@@ -26,6 +26,7 @@ constexpr const char* calls = "calls";
 constexpr const char* frame_median = "frame_median";
 constexpr const char* substituted_median = "substituted_median";
 constexpr const char* application_median = "application_median";
+constexpr const char* recognition_median = "recognition_median";  ///< of substituted frames
 
 // left_out
 constexpr const char* samples_skipped = "samples_skipped";
@@ -36,7 +37,11 @@ constexpr const char* nodes_idle = "nodes_idle";
 // frames_detail[]
 constexpr const char* frame = "frame";
 constexpr const char* time = "time_ms";
+constexpr const char* recognition_time = "recognition_ms";
+constexpr const char* upload_time = "upload_ms";
 constexpr const char* render_time = "render_ms";
+constexpr const char* verification_time = "verification_ms";
+constexpr const char* presentation_time = "presentation_ms";
 constexpr const char* setting = "setting";
 constexpr const char* error_rms = "error_rms";  ///< null where not measured
 

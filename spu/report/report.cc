@@ -77,16 +77,21 @@ Json median_times(Processes processes) {
   std::vector<double> all;
   std::vector<double> substituted;
   std::vector<double> application;
+  std::vector<double> recognition;
   for (const ProcessCounters* process : processes) {
     for_each_kept_frame(*process, [&](std::uint64_t, const FrameRecord& frame) {
       all.push_back(frame.time_ms);
-      if (frame.substituted > 0) substituted.push_back(frame.time_ms);
+      if (frame.substituted > 0) {
+        substituted.push_back(frame.time_ms);
+        recognition.push_back(frame.spent_ms.recognition);
+      }
       if (frame.substituted == 0 && frame.left > 0) application.push_back(frame.time_ms);
     });
   }
   return {{report_key::frame_median, median(std::move(all))},
           {report_key::substituted_median, median(std::move(substituted))},
-          {report_key::application_median, median(std::move(application))}};
+          {report_key::application_median, median(std::move(application))},
+          {report_key::recognition_median, median(std::move(recognition))}};
 }
 
 Json left_out(const volume::FrameCounts& counts) {
@@ -100,7 +105,11 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
   Json detail{{report_key::frame, number},
               {report_key::pid, pid},
               {report_key::time, frame.time_ms},
-              {report_key::render_time, frame.render_ms},
+              {report_key::recognition_time, frame.spent_ms.recognition},
+              {report_key::upload_time, frame.spent_ms.upload},
+              {report_key::render_time, frame.spent_ms.render},
+              {report_key::verification_time, frame.spent_ms.verification},
+              {report_key::presentation_time, frame.spent_ms.presentation},
               {report_key::setting, frame.substituted > 0 ? "the application's planes" : "the application"},
               {report_key::substituted, frame.substituted},
               {report_key::left, frame.left},

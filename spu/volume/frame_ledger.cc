@@ -9,7 +9,7 @@ namespace {
 constexpr FrameRecord nothing_yet{.error_rms = -1};
 
 void add(FrameRecord& sum, const FrameRecord& more) {
-  sum.render_ms += more.render_ms;
+  sum.spent_ms += more.spent_ms;
   sum.substituted += more.substituted;
   sum.left += more.left;
   sum.error_rms = std::max(sum.error_rms, more.error_rms);

@@ -317,22 +317,27 @@ void VolumeUnit::close_run() {
   if (!run_) return;
   const std::unique_ptr<Run> run = std::move(run_);
   chain_.set_phase(resting_phase());
-  if (run->pipeline().stack && !is_a_stack(*run)) {
-    inside_begin = run->inside_begin;
-    run->replay(*context().gl);
-    return;
+  const bool shown = shows(*run);
+  note([spent = clock_.take()](FrameRecord& frame) { frame.spent_ms += spent; });
+  if (!shown) run->replay(*context().gl);
+}
+
+bool VolumeUnit::shows(const Run& run) {
+  const TimedShare timed(clock_, &FrameShares::recognition);
+  if (run.pipeline().stack && !is_a_stack(run)) {
+    inside_begin = run.inside_begin;
+    return false;
   }
-  const GLuint texture = run->volume_texture();
-  if (run->inside_begin) {
+  const GLuint texture = run.volume_texture();
+  if (run.inside_begin) {
     leave(texture, "calls other than vertices between glBegin and glEnd");
     inside_begin = true;
-    run->replay(*context().gl);
-    return;
+    return false;
   }
   try {
     if (const std::string& reason = known(texture).given_back; !reason.empty()) throw Doubt{reason};
-    substitute(*run);
-    return;
+    substitute(run);
+    return true;
   } catch (const Doubt& doubt) {
     ++known(texture).refusals;
     leave(texture, doubt.reason);
@@ -347,7 +352,7 @@ void VolumeUnit::close_run() {
   } catch (const std::exception& error) {
     leave(texture, error.what());
   }
-  run->replay(*context().gl);
+  return false;
 }
 
 void VolumeUnit::stack_defined() {
@@ -502,6 +507,7 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   }
   if (wanted.id == 0) wanted.id = session_->new_volume_id();
 
+  const TimedShare timed(clock_, &FrameShares::upload);
   known.generation = 0;
   std::optional<std::string> reason;
   service.begin_volume(wanted);
@@ -609,6 +615,7 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   const bool first = s.volume.frames == 0 && options.verify >= 0;
   const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
   if (!first && !due) return;
+  const TimedShare timed(clock_, &FrameShares::verification);
   const auto difference =
       s.difference ? s.difference : compare_with_application(context(), s.run, s.request, image);
   if (!difference) return;
@@ -675,10 +682,11 @@ void VolumeUnit::substitute(const Run& run) {
     classify(s);
     compose_request(s);
   }
-  const Clock::time_point asked = Clock::now();
-  const compositor::Rendered rendered = service.render(s.request);
-  const double render_ms = milliseconds_since(asked);
-  note([&](FrameRecord& frame) { frame.render_ms += render_ms; });
+  const auto render = [&] {
+    const TimedShare timed(clock_, &FrameShares::render);
+    return service.render(s.request);
+  };
+  const compositor::Rendered rendered = render();
 
   // The service's picture is gone with its next answer.
   const Blending& blending = s.pipeline.blending;
@@ -698,6 +706,7 @@ void VolumeUnit::substitute(const Run& run) {
     if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
   }
   if (options.debug_tint) tint(picture);
+  const TimedShare timed(clock_, &FrameShares::presentation);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
   if (blending.alpha_stands_apart() && s.proxy) {
     // The whole ray is one fragment.
@@ -715,10 +724,7 @@ void VolumeUnit::substitute(const Run& run) {
     s.request.fog.reset();
     // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
     if (s.pipeline.target.alpha_bits <= 8) s.request.termination = 1e-3F;
-    const Clock::time_point asked_again = Clock::now();
-    const compositor::Rendered alpha = service.render(s.request);
-    const double alpha_ms = milliseconds_since(asked_again);
-    note([&](FrameRecord& frame) { frame.render_ms += alpha_ms; });
+    const compositor::Rendered alpha = render();
     counts += alpha.counts;
     presenter_->present(shown, blending, &alpha.image);
   } else {

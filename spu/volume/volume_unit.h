@@ -15,6 +15,7 @@
 #include "spu/report/counters.h"
 #include "spu/volume/classification/probe.h"
 #include "spu/volume/context.h"
+#include "spu/volume/frame_clock.h"
 #include "spu/volume/geometry/slices.h"
 #include "spu/volume/present.h"
 #include "spu/volume/program_samplers.h"
@@ -82,6 +83,8 @@ class VolumeUnit final : public Unit {
  private:
   struct Substitution;
 
+  /// The picture of the run is in the framebuffer; else the application's calls are to be played.
+  bool shows(const Run& run);
   void substitute(const Run& run);
   KnownVolume& known(GLuint texture);
   void observe(Substitution& s);
@@ -127,6 +130,7 @@ class VolumeUnit final : public Unit {
   std::uint64_t saved_ = 0;
   std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_{};
+  FrameClock clock_;
 };
 
 }  // namespace understudy::spu

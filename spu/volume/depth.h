@@ -4,12 +4,16 @@
 #include <optional>
 
 #include "spu/volume/context.h"
+#include "spu/volume/target.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
 
-/// Window depth of `rect` of the framebuffer bound for drawing. Empty where nothing was drawn before the volume
-/// (all depths are at the far end), so that a scene without opaque geometry sends no depth.
-std::optional<volume::DepthImage> read_depth(const GlContext& context, const volume::Rect& rect, bool or_equal);
+/// Window depth of `rect` of the framebuffer bound for drawing, `target`. Empty where nothing was drawn before
+/// the volume (all depths are at the far end), so that a scene without opaque geometry sends no depth. Of a
+/// multisampled framebuffer one sample's depth stands for the pixel: along the edges of opaque geometry the
+/// others may differ.
+std::optional<volume::DepthImage> read_depth(const GlContext& context, const Target& target,
+                                             const volume::Rect& rect, bool or_equal);
 
 }  // namespace understudy::spu

@@ -188,6 +188,20 @@ std::optional<std::string> read_queries(const GlContext& context) {
   return std::nullopt;
 }
 
+/// Within a slice all samples of a pixel get the colour at its centre, as from our picture, unless each sample
+/// is shaded or masked by itself.
+std::optional<std::string> read_sample_operations(const GlContext& context, const Target& target) {
+  const DispatchTable& gl = *context.gl;
+  if (target.samples == 0 || !gl.IsEnabled(GL_MULTISAMPLE)) return std::nullopt;
+  if (gl.IsEnabled(GL_SAMPLE_ALPHA_TO_COVERAGE) || gl.IsEnabled(GL_SAMPLE_ALPHA_TO_ONE))
+    return "opacity becomes the coverage of a multisampled framebuffer";
+  if (gl.IsEnabled(GL_SAMPLE_COVERAGE) || (context.version >= 320 && gl.IsEnabled(GL_SAMPLE_MASK)))
+    return "only some samples of a multisampled framebuffer are drawn";
+  if (context.version >= 400 && gl.IsEnabled(GL_SAMPLE_SHADING))
+    return "the samples of a multisampled framebuffer are shaded one by one";
+  return std::nullopt;
+}
+
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
@@ -197,9 +211,7 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   if (auto reason = read_blending(gl, pipeline.target, pipeline.blending)) return reason;
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
-  // With GL_MULTISAMPLE disabled all samples of a pixel get the same, but depth is still kept by sample.
-  if (integer(gl, GL_SAMPLE_BUFFERS) > 0 && (gl.IsEnabled(GL_MULTISAMPLE) || gl.IsEnabled(GL_DEPTH_TEST)))
-    return "the framebuffer is multisampled";
+  if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
   if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
   std::array<GLint, 2> mode{};
   gl.GetIntegerv(GL_POLYGON_MODE, mode.data());

@@ -21,6 +21,9 @@ Target read_target(const DispatchTable& gl) {
   const auto type = GLenum(parameter(GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE));
   target.normalised = type == GL_UNSIGNED_NORMALIZED;
   target.floating = type == GL_FLOAT;
+  GLint multisampled = 0;
+  gl.GetIntegerv(GL_SAMPLE_BUFFERS, &multisampled);
+  if (multisampled > 0) gl.GetIntegerv(GL_SAMPLES, &target.samples);
   return target;
 }
 

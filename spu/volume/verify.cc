@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "spu/volume/saved_state.h"
+#include "spu/volume/float_framebuffer.h"
 
 namespace understudy::spu {
 namespace {
@@ -16,53 +16,6 @@ namespace {
 /// pixel. It is lost in a sum, but may be all that a maximum or minimum shows there: of these, the worst pixels
 /// do not count, one in so many.
 constexpr std::size_t strayed_part = 50;
-
-/// A float framebuffer with depth that covers the application's viewport.
-class FloatFramebuffer {
- public:
-  FloatFramebuffer(const GlContext& context, int width, int height,
-                   const std::optional<volume::DepthImage>& depth, float background)
-      : gl_(*context.gl) {
-    SavedState saved(context);
-    saved.borrow_texture(GL_TEXTURE_2D, 0);
-    gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.GenTextures(2, textures_.data());
-    gl_.BindTexture(GL_TEXTURE_2D, textures_[0]);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.BindTexture(GL_TEXTURE_2D, textures_[1]);
-    const std::vector<float> far(std::size_t(width) * std::size_t(height), 1.0F);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
-                   far.data());
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    if (depth) {
-      gl_.TexSubImage2D(GL_TEXTURE_2D, 0, depth->rect.x, depth->rect.y, depth->rect.width, depth->rect.height,
-                        GL_DEPTH_COMPONENT, GL_FLOAT, depth->depth.data());
-    }
-    gl_.GenFramebuffers(1, &name_);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, name_);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, textures_[0], 0);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, textures_[1], 0);
-    complete_ = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-    const std::array<float, 4> cleared{background, background, background, background};
-    if (complete_) gl_.ClearBufferfv(GL_COLOR, 0, cleared.data());
-  }
-  ~FloatFramebuffer() {
-    gl_.DeleteFramebuffers(1, &name_);
-    gl_.DeleteTextures(2, textures_.data());
-  }
-  FloatFramebuffer(const FloatFramebuffer&) = delete;
-  FloatFramebuffer& operator=(const FloatFramebuffer&) = delete;
-
-  bool complete() const { return complete_; }
-  GLuint name() const { return name_; }
-
- private:
-  const DispatchTable& gl_;
-  std::array<GLuint, 2> textures_{};
-  GLuint name_ = 0;
-  bool complete_ = false;
-};
 
 /// The application's blending with an alpha that goes the way of the colour, as the nodes' pictures have it.
 class ColourBlending {
@@ -110,7 +63,8 @@ std::optional<std::vector<float>> application_picture(const GlContext& context, 
   const int height = request.viewport.y + request.viewport.height;
   const Pipeline& pipeline = run.pipeline();
   const bool minimum = pipeline.blending.op == volume::Operator::min;
-  const FloatFramebuffer framebuffer(context, width, height, request.depth, minimum ? 1.0F : 0.0F);
+  const FloatFramebuffer framebuffer(context, width, height, pipeline.target.samples, request.depth,
+                                     minimum ? 1.0F : 0.0F);
   if (!framebuffer.complete()) return std::nullopt;
 
   std::array<GLint, 2> bound{};
@@ -121,12 +75,7 @@ std::optional<std::vector<float>> application_picture(const GlContext& context, 
     const ColourBlending blending(gl, pipeline.blending);
     run.replay(gl);
   }
-  std::vector<float> drawn(4 * rect.pixels());
-  {
-    const SavedState saved(context);
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer.name());
-    gl.ReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_FLOAT, drawn.data());
-  }
+  std::vector<float> drawn = framebuffer.pixels(rect);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
 

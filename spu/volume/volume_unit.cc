@@ -605,8 +605,8 @@ void VolumeUnit::compose_request(Substitution& s) {
   request.op = s.pipeline.blending.op;
   request.filter = s.volume.texture.filter;
   if (s.pipeline.depth_test) {
-    request.depth =
-        read_depth(context(), volume::footprint(request, request.region), s.pipeline.depth_or_equal);
+    request.depth = read_depth(context(), s.pipeline.target, volume::footprint(request, request.region),
+                               s.pipeline.depth_or_equal);
   }
 }
 

@@ -158,7 +158,6 @@ TEST_P(RefusedTargets, AreLeftBitIdentical) {
 INSTANTIATE_TEST_SUITE_P(
     Blending, RefusedTargets,
     ::testing::Values(
-        RefusedTarget{"MultisampledTarget", GL_RGBA8, 4, usual_blending(), "the framebuffer is multisampled"},
         RefusedTarget{"UnderWithoutAlpha", GL_RGB8, 0,
                       factors(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE, true),
                       "the slices blend by a destination alpha that the framebuffer lacks or that is masked"},

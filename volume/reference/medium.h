@@ -1,0 +1,68 @@
+// What a value of the field does to light: the right-hand side of the volume rendering integral
+//
+//   dT/dt = -extinction T,   dC/dt = source T,   T(0) = 1, C(0) = 0
+//
+// over the length t of a ray, in double precision and without a step size.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "volume/classification.h"
+
+namespace understudy::volume {
+
+/// Per unit of length.
+struct Rate {
+  std::array<double, 3> source{};
+  double extinction = 0;
+};
+
+/// Rates as functions of the field's value, smooth between neighbouring knots and constant outside of them.
+class Medium {
+ public:
+  /// Source and extinction themselves are linear between `entries`, which lie evenly from `low` to `high`.
+  /// Throws std::invalid_argument when there is none, or one is negative or not finite.
+  static Medium of_rates(double low, double high, std::vector<Rate> entries);
+
+  /// A transfer function as viewers mean it: premultiplied colour and opacity of a sample are linear between
+  /// entries, and a homogeneous layer as thick as the distance between samples shows exactly them. Its
+  /// extinction, -log(1 - opacity) / distance, is not linear, and infinite at opacity 1. Throws
+  /// std::invalid_argument when an entry is not finite, an opacity is not in [0, 1], or the distance not > 0.
+  static Medium of_samples(const TransferFunction& function, double distance);
+
+  /// Values at which the rates have a kink, ascending.
+  const std::vector<double>& knots() const { return knots_; }
+
+  /// Segment 0 lies below the first knot, segment i between knots i - 1 and i, the last above all knots.
+  std::size_t segments() const { return knots_.size() + 1; }
+  std::size_t segment_of(double value) const;
+  bool empty(std::size_t segment) const { return empty_[segment] != 0; }
+  /// Opacity is 1 all over the segment: no light passes, however short the way.
+  bool opaque(std::size_t segment) const { return opaque_[segment] != 0; }
+  /// The same of a way on which the field does not change.
+  bool opaque_at(std::size_t segment, double value) const;
+
+  /// `value` lies in `segment`.
+  Rate rate(std::size_t segment, double value) const;
+
+  /// Premultiplied colour and opacity of one sample (of_samples); source and extinction (of_rates).
+  std::array<double, 4> entry_at(std::size_t segment, double value) const;
+
+ private:
+  Medium(double low, double high, std::vector<std::array<double, 4>> entries, double distance);
+
+  std::vector<double> knots_;
+  std::vector<std::array<double, 4>> entries_;  ///< at the knots
+  double distance_;                             ///< 0: entries are rates
+  std::vector<char> empty_;
+  std::vector<char> opaque_;
+};
+
+/// The rate at which a medium absorbs and shines of which a layer of thickness `distance` has this
+/// premultiplied colour and opacity. Opacity 1 counts as the next smaller number: the infinite extinction at a
+/// value that is only passed is integrable.
+Rate rate_of_sample(const std::array<double, 4>& colour, double distance);
+
+}  // namespace understudy::volume

@@ -2,7 +2,7 @@
 """./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
 
 A row: name, value and unit, always; ratio_to (another row's name), ratio = value / its value and difference = value -
-its value; rms (error against that row's picture), where they apply.
+its value; rms (error against that row's picture), where they apply. Other fields are explained by each benchmark.
 """
 
 import json
@@ -18,8 +18,9 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
 import calls  # noqa: E402
 import frame  # noqa: E402
+import raycast  # noqa: E402
 
-BENCHMARKS = {"frame": frame.rows, "calls": calls.rows}
+BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 
@@ -56,6 +57,8 @@ def text_of(row):
         text += f"   {row['difference']:+.1f} {row['unit']}"
     if "rms" in row:
         text += f"   RMS {row['rms']:.2e}"
+    if "rms_total" in row:
+        text += f"   RMS {row['rms_arithmetic']:.1e} of arithmetic, {row['rms_total']:.1e} in all"
     return text
 
 

@@ -79,6 +79,16 @@ Rate Medium::rate(std::size_t segment, double value) const {
   return rate_of_sample(entry, distance_);
 }
 
+double Medium::noise(std::size_t segment) const {
+  const std::size_t below = segment == 0 ? 0 : segment - 1;
+  const std::size_t above = std::min(segment, knots_.size() - 1);
+  const double low = knots_[below], high = knots_[above];
+  const double greatest = std::max(rate(segment, low).extinction, rate(segment, high).extinction);
+  const double width = high - low;
+  return 8 * std::numeric_limits<double>::epsilon() * greatest *
+         (1 + (width > 0 ? std::max(std::abs(low), std::abs(high)) / width : 0));
+}
+
 Rate rate_of_sample(const std::array<double, 4>& colour, double distance) {
   const double opacity = std::min(colour[3], 1 - std::numeric_limits<double>::epsilon() / 2);
   const double depth = -std::log1p(-opacity);  // optical depth of one layer

@@ -47,6 +47,10 @@ class Medium {
   /// `value` lies in `segment`.
   Rate rate(std::size_t segment, double value) const;
 
+  /// By how much the extinction of a segment's values may be off because values are known to the last bit only:
+  /// much, compared with itself, where a table entry begins to show.
+  double noise(std::size_t segment) const;
+
   /// Premultiplied colour and opacity of one sample (of_samples); source and extinction (of_rates).
   std::array<double, 4> entry_at(std::size_t segment, double value) const;
 

@@ -103,9 +103,11 @@ class Integrator {
     add({colour, std::numeric_limits<double>::infinity()});
   }
 
+  /// `noise`: by how much extinctions may be off for rounding.
   template <typename RateAt>
-  void add(const RateAt& rate, double a, double b, double length) {
+  void add(const RateAt& rate, double a, double b, double length, double noise) {
     if (dark()) return;
+    noise_ = noise * length;
     split(rate, a, b, length, panel(rate, a, b, length));
   }
 
@@ -140,7 +142,7 @@ class Integrator {
     const double light = std::exp(-sum_.optical_depth);
     const double difference = light * greatest_difference(both, whole);
     // Fog: an opacity of 1e-9 is to be as right as one of 1.
-    const bool same_depth = std::abs(both.depth - whole.depth) <= tolerance_ * both.depth;
+    const bool same_depth = std::abs(both.depth - whole.depth) <= tolerance_ * both.depth + noise_ * (b - a);
     if (both.depth < deepest_panel && difference <= tolerance_ && same_depth) {
       add(both);
       sum_.error += difference;
@@ -151,6 +153,7 @@ class Integrator {
   }
 
   double tolerance_;
+  double noise_ = 0;  ///< of optical depth over the whole stretch
   RayIntegral sum_;
 };
 
@@ -218,7 +221,8 @@ RayIntegral ray_integral(std::span<const Stretch> ray, const Medium& medium, dou
         const auto seen = medium.entry_at(segment, value(a));
         return integrator.add_opaque({seen[0], seen[1], seen[2]});
       }
-      integrator.add([&](double u) { return medium.rate(segment, value(u)); }, a, b, stretch.length);
+      integrator.add([&](double u) { return medium.rate(segment, value(u)); }, a, b, stretch.length,
+                     medium.noise(segment));
     });
   }
   return integrator.sum();
@@ -235,7 +239,8 @@ RayIntegral ray_integral(std::span<const Stretch> ray, const LinearMap& map, dou
       const auto colour = at(0);
       integrator.add_opaque({colour[0], colour[1], colour[2]});
     } else {
-      integrator.add([&](double u) { return rate_of_sample(at(u), distance); }, 0, 1, stretch.length);
+      integrator.add([&](double u) { return rate_of_sample(at(u), distance); }, 0, 1, stretch.length,
+                     8 * std::numeric_limits<double>::epsilon() / distance);
     }
   }
   return integrator.sum();

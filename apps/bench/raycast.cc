@@ -1,0 +1,221 @@
+// understudy-bench-raycast: ray casting alone, without window, OpenGL or network. One picture is rendered again
+// and again; its time is processor time for each sample that the picture has, left out or not, and beside it
+// stands its error. Prints one JSON object.
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "volume/brick/brick_store.h"
+#include "volume/brick/cell_lattice.h"
+#include "volume/matrix.h"
+#include "volume/raycast/ray_caster.h"
+#include "volume/reference/pixel_integral.h"
+
+namespace {
+
+using namespace understudy::volume;
+
+struct Settings {
+  std::string file;
+  std::array<int, 3> size{256, 256, 256};
+  std::string table = "dense";
+  TexelType type = TexelType::u8;
+  int pixels = 512;
+  int threads = 1;
+  int frames = 9;
+  float epsilon = 1e-5F;
+  int stride = 8;  ///< of the pixels whose error is measured
+};
+
+std::vector<std::byte> texels_of(const Settings& settings) {
+  std::ifstream in(settings.file, std::ios::binary);
+  const std::size_t count =
+      std::size_t(settings.size[0]) * std::size_t(settings.size[1]) * std::size_t(settings.size[2]);
+  std::vector<std::byte> bytes(count);
+  if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(count)))
+    throw std::runtime_error(fmt::format("{} does not hold {} bytes", settings.file, count));
+  if (settings.type == TexelType::u8) return bytes;
+  // The same values in 16 bits.
+  std::vector<std::byte> wide(2 * count);
+  for (std::size_t i = 0; i < count; ++i) wide[2 * i] = wide[2 * i + 1] = bytes[i];
+  return wide;
+}
+
+/// Dense: every value is a little opaque. Sparse: only the higher values are, and those soon hide the rest.
+TransferFunction transfer_function(const std::string& name) {
+  constexpr int first_visible = 140;
+  TransferFunction function;
+  for (int i = 0; i < 256; ++i) {
+    const double dense = 0.002 + 0.03 * i / 255;
+    const double sparse = i < first_visible ? 0 : std::min(1.0, 0.02 + 0.3 * (i - first_visible) / 60.0);
+    const double alpha = name == "sparse" ? sparse : dense;
+    function.entries.push_back({float(alpha * (0.3 + 0.7 * i / 255)),
+                                float(alpha * (0.5 + 0.5 * std::sin(i * 0.05))),
+                                float(alpha * (1 - 0.8 * i / 255)), float(alpha)});
+  }
+  return function;
+}
+
+/// From two edges away, 30 degrees around and 25 above, with an opening of 40 degrees; one sample a voxel.
+RenderRequest request(const Settings& settings) {
+  constexpr double degree = std::numbers::pi / 180;
+  const double side = *std::max_element(settings.size.begin(), settings.size.end());
+  const Vec3 back{std::sin(30 * degree) * std::cos(25 * degree), std::sin(25 * degree),
+                  std::cos(30 * degree) * std::cos(25 * degree)};
+  const Vec3 right{std::cos(30 * degree), 0, -std::sin(30 * degree)};
+  const Vec3 up = cross(back, right);
+  const double near = 0.5 * side, far = 4 * side, f = 1 / std::tan(20 * degree);
+  const Matrix4 projection{
+      f, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), 2 * far * near / (near - far), 0, 0, -1, 0};
+  const Matrix4 view{right[0], right[1], right[2], 0,         up[0], up[1], up[2], 0,
+                     back[0],  back[1],  back[2],  -2 * side, 0,     0,     0,     1};
+  const Matrix4 voxels{double(settings.size[0]),
+                       0,
+                       0,
+                       -0.5 * settings.size[0],
+                       0,
+                       double(settings.size[1]),
+                       0,
+                       -0.5 * settings.size[1],
+                       0,
+                       0,
+                       double(settings.size[2]),
+                       -0.5 * settings.size[2],
+                       0,
+                       0,
+                       0,
+                       1};
+  RenderRequest r;
+  r.volume = 1;
+  r.version = 1;
+  r.texture_to_clip = multiply(projection, multiply(view, voxels));
+  r.viewport = r.window = {0, 0, settings.pixels, settings.pixels};
+  r.steps.emplace();
+  r.steps->metric = {double(settings.size[0]), 0, 0, 0, double(settings.size[1]), 0, 0, 0,
+                     double(settings.size[2])};
+  r.classification = transfer_function(settings.table);
+  r.termination = settings.epsilon;
+  return r;
+}
+
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Errors {
+  double largest = 0;
+  double squares = 0;
+  std::size_t count = 0;
+
+  void add(const float* ours, const double* exact) {
+    for (int k = 0; k < 4; ++k) {
+      const double d = std::abs(double(ours[k]) - exact[k]);
+      largest = std::max(largest, d);
+      squares += d * d;
+      ++count;
+    }
+  }
+  double rms() const { return std::sqrt(squares / double(count)); }
+};
+
+nlohmann::ordered_json measure(const Settings& settings) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    std::size_t(settings.threads));
+  VolumeDescription volume;
+  volume.id = 1;
+  volume.version = 1;
+  volume.size = settings.size;
+  volume.type = settings.type;
+  volume.stored = {{0, 0, 0}, settings.size};
+  const std::vector<std::byte> texels = texels_of(settings);
+  BrickStore store(volume, cell_lattice(volume).box());
+  store.add_slices(0, settings.size[2], texels);
+  store.finish();
+  RayCaster caster(store);
+  const RenderRequest asked = request(settings);
+  Image image(asked.viewport);
+  FrameCounts counts;
+  caster.render(asked, image, counts);  // what depends on the table alone is made once
+  std::vector<double> wall, processor;
+  for (int frame = 0; frame < settings.frames; ++frame) {
+    const auto start = std::chrono::steady_clock::now();
+    const double before = processor_seconds();
+    FrameCounts same;
+    caster.render(asked, image, same);
+    processor.push_back(processor_seconds() - before);
+    wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+
+  const Field field = texture_field(volume, Filter::linear, texels);
+  const Medium medium = Medium::of_samples(std::get<TransferFunction>(asked.classification), 1);
+  Errors arithmetic, total;
+  double reference_seconds = 0;
+  std::size_t rays = 0;
+  for (int y = settings.stride / 2; y < settings.pixels; y += settings.stride) {
+    for (int x = settings.stride / 2; x < settings.pixels; x += settings.stride) {
+      const Rect pixel{x, y, 1, 1};
+      const float* ours = &image.rgba[4 * (std::size_t(y) * std::size_t(settings.pixels) + std::size_t(x))];
+      arithmetic.add(ours, slice_sum(field, asked, pixel).at(x, y));
+      const double before = processor_seconds();
+      total.add(ours, pixel_integral(field, settings.size, asked, medium, x, y).data());
+      reference_seconds += processor_seconds() - before;
+      ++rays;
+    }
+  }
+  const double samples = double(counts.samples);
+  return {{"ns", 1e9 * median(processor) / samples},
+          {"wall_ms", 1e3 * median(wall)},
+          {"samples", counts.samples},
+          {"samples_taken", counts.samples_taken},
+          {"max_arithmetic", arithmetic.largest},
+          {"rms_arithmetic", arithmetic.rms()},
+          {"max_total", total.largest},
+          {"rms_total", total.rms()},
+          {"threads", settings.threads},
+          {"epsilon", settings.epsilon},
+          {"instruction_set", instruction_set()},
+          {"reference_rays_per_second", double(rays) / reference_seconds}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"times ray casting on one volume of bytes and measures its error"};
+  app.add_option("volume", settings.file, "raw bytes, x fastest")->required()->check(CLI::ExistingFile);
+  app.add_option("--size", settings.size, "voxels along x, y and z")->delimiter('x');
+  app.add_option("--table", settings.table, "transfer function")->check(CLI::IsMember({"dense", "sparse"}));
+  app.add_option("--type", settings.type, "kind of voxels that the bytes become")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, TexelType>{{"u8", TexelType::u8}, {"u16", TexelType::u16}}));
+  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(1, 16384));
+  app.add_option("--threads", settings.threads, "most threads")->check(CLI::Range(1, 1024));
+  app.add_option("--frames", settings.frames, "pictures, of whose times the median counts")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")
+      ->check(CLI::Range(0.0, 1.0));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    fmt::print("{}\n", measure(settings).dump());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy-bench-raycast: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,85 @@
+"""Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
+
+256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time stands the
+error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which has
+no samples (rms_total). Where the prototype at UNDERSTUDY_YARDSTICK (../shared/yardstick beside the checkout, if the
+variable is not set) can run, its program renders the same pictures of the same volume in turn.
+"""
+
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import viewers
+from frame import SIDE, cube
+
+ROUNDS = 5
+FRAMES = 5
+EPSILON = 1e-5
+FULL = f"{SIDE}x{SIDE}x{SIDE}"
+# By the row's name: what the program is asked for, and what the prototype is.
+CASES = {
+    "cpu/post-classified/dense": (["--table", "dense"], ("dense", 1)),
+    "cpu/post-classified/sparse": (["--table", "sparse"], ("sparse", 1)),
+    "cpu/post-classified/u16": (["--table", "dense", "--type", "u16"], None),
+    "cpu/post-classified/dense/2 threads": (["--table", "dense", "--threads", "2"], ("dense", 2)),
+    "cpu/post-classified/brain": (["--table", "sparse"], None),
+}
+YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
+
+
+def yardstick():
+    """The prototype's script; None where there is none, or this processor lacks what it was written for."""
+    script = Path(os.environ.get("UNDERSTUDY_YARDSTICK", viewers.ROOT.parent / "shared" / "yardstick")) / "run"
+    if not os.access(script, os.X_OK):
+        print(f"raycast: nothing to compare with, there is no {script}", file=sys.stderr)
+        return None
+    if "avx512f" not in Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace"):
+        print("raycast: nothing to compare with, the prototype needs AVX-512", file=sys.stderr)
+        return None
+    return script
+
+
+def yardstick_ns(script, table, threads):
+    text = subprocess.run([str(script), str(SIDE), "512", "1", table, str(threads), str(FRAMES), "0", str(EPSILON)],
+                          stdout=subprocess.PIPE, text=True, check=True).stdout
+    return min(float(ns) for _, ns in YARDSTICK_LINE.findall(text))
+
+
+def measured(volume, size, options):
+    program = viewers.PROGRAMS / "understudy-bench-raycast"
+    text = subprocess.run([str(program), str(volume), "--size", size, "--frames", str(FRAMES), "--epsilon", str(EPSILON),
+                           *options], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return json.loads(text)
+
+
+def rows():
+    script = yardstick()
+    if script:
+        yardstick_ns(script, "dense", 1)  # builds it, and its volume
+    made = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick" / f"{SIDE}.raw"
+    volume = made if script else cube()
+    brain = next(iter(sorted(Path("/usr/share/doc").glob("tachyon*/examples/scenes/vol/brain.256x256x109"))), None)
+    times, theirs, last = {}, {}, {}
+    for number in range(ROUNDS):
+        for name, (options, rival) in CASES.items():
+            if name.endswith("brain") and brain is None:
+                continue
+            print(f"  round {number + 1} of {ROUNDS}, {name}", file=sys.stderr, flush=True)
+            file, size = (brain, "256x256x109") if name.endswith("brain") else (volume, FULL)
+            last[name] = measured(file, size, options)
+            times.setdefault(name, []).append(last[name]["ns"])
+            if script and rival:
+                theirs.setdefault(name, []).append(yardstick_ns(script, *rival))
+    result = []
+    for name, values in times.items():
+        figures = {key: value for key, value in last[name].items() if key != "ns"}
+        row = {"name": name, "value": statistics.median(values), "unit": "ns", **figures}
+        if name in theirs:
+            row |= {"ratio_to": "yardstick", "ratio": row["value"] / statistics.median(theirs[name])}
+        result.append(row)
+    return result

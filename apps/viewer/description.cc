@@ -70,6 +70,23 @@ Json describe_classification(ModeKind mode, const Scene& scene) {
       {"entries_rgba8", scene.table()}};
 }
 
+Json describe_volumes(const std::vector<DrawnVolume>& volumes) {
+  Json described = Json::array();
+  for (const DrawnVolume& volume : volumes)
+    described.push_back({{"object_from_texture", {{"scale", volume.scale}, {"translate", volume.translate}}},
+                         {"entries_rgba8", volume.colours}});
+  return described;
+}
+
+Json describe_solid(const OpaqueGeometry& geometry) {
+  Json positions = Json::array(), colours = Json::array();
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+    positions.push_back(geometry.triangles[i].position);
+    if (i % 3 == 0) colours.push_back(geometry.triangles[i].colour);
+  }
+  return {{"positions", std::move(positions)}, {"colours", std::move(colours)}};
+}
+
 Json describe_blend(Operator op) {
   const BlendNames names = blend_names(op);
   return {{"source", names.source}, {"destination", names.destination}, {"equation", names.equation}};
@@ -97,7 +114,9 @@ void write_description(const std::string& path, const Options& options, const Sc
         {"orthographic", frame.camera.orthographic}}},
       {"matrices", describe_matrices(options.mode, frame.matrices)},
       {"object_from_texture", {{"scale", box.edges}, {"translate", -0.5 * box.edges}}},
+      {"volumes", describe_volumes(frame.volumes)},
       {"slices", describe_slices(box, frame.stack)},
+      {"solid", describe_solid(scene.opaque())},
       {"classification", describe_classification(options.mode, scene)},
       {"opacity_correction",
        {{"formula", "1 - (1 - alpha)^exponent"},

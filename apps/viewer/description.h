@@ -2,11 +2,13 @@
 // precision.
 //
 // Pixels: window coordinates of `viewport`, pixel (0, 0) at the lower left, its centre at (0.5, 0.5).
-// Matrices: 16 floats, column-major, exactly as passed to OpenGL. For each slice in the order given: where the
-// line through a pixel's centre meets the plane dot(normal_texture, t) = offset inside [0,1]^3, sample the
-// volume at t (linear between voxel centres at (i + 0.5) / size, clamped to the edge), take its colour from
-// `classification`, and blend it as colour = alpha * colour_slice + (1 - alpha) * colour. The first slice falls
-// onto the background (or frame and axes).
+// Matrices: 16 floats, column-major, exactly as passed to OpenGL. For each of `volumes` and each slice in the
+// order given: where the line through a pixel's centre meets the plane dot(normal_texture, t) = offset inside
+// [0,1]^3, sample the volume at t (linear between voxel centres at (i + 0.5) / size, clamped to the edge), take
+// its colour from the volume's entries (see `classification`), and blend it by `blend`. The first slice falls
+// onto the background and the triangles of `solid` (three positions in object space and one colour each), which
+// hide what is not nearer; with slices front to back it falls onto transparent black, and solid and background
+// come last. The lines of the box's frame are not described.
 #pragma once
 
 #include <string>

@@ -57,31 +57,35 @@ void Scene::set_preset(const Preset& preset) {
   mode_->set_table(colours_for(op_, table_));
   if (!second_) return;
   const std::size_t next = static_cast<std::size_t>(&preset - presets().data() + 1) % presets().size();
-  second_->set_table(colours_for(op_, make_table(presets()[next], opacity_exponent(), volume_.not_finite > 0)));
+  second_table_ = make_table(presets()[next], opacity_exponent(), volume_.not_finite > 0);
+  second_->set_table(colours_for(op_, second_table_));
 }
 
-void Scene::draw_volumes(const SliceStack& stack, const Matrices& matrices) {
+void Scene::draw_volumes(DrawnFrame& frame) {
+  const auto draw = [&](Mode& mode, const Table& table, double size, const Vec3& centre) {
+    frame.volumes.push_back({size * box_.edges, centre - 0.5 * size * box_.edges, colours_for(op_, table)});
+    Mat4 placed = translation(centre);
+    for (const std::size_t diagonal : {0, 5, 10}) placed[diagonal] = size;
+    mode.draw_slices(frame.stack, {frame.matrices.modelview * placed, frame.matrices.projection});
+  };
   if (!second_) {
-    mode_->draw_slices(stack, matrices);
+    draw(*mode_, table_, 1, {0, 0, 0});
     return;
   }
   // Each half as large, they meet in the box's centre, corner to corner.
-  const auto placed = [&](double side) {
-    Mat4 half = translation(0.25 * side * box_.edges);
-    for (const std::size_t diagonal : {0, 5, 10}) half[diagonal] = 0.5;
-    return Matrices{matrices.modelview * half, matrices.projection};
-  };
-  const bool second_is_farther = dot(stack.normal, box_.edges) > 0;
-  if (second_is_farther != stack.front_to_back) {
-    second_->draw_slices(stack, placed(1));
-    mode_->draw_slices(stack, placed(-1));
+  const auto draw_first = [&] { draw(*mode_, table_, 0.5, -0.25 * box_.edges); };
+  const auto draw_second = [&] { draw(*second_, second_table_, 0.5, 0.25 * box_.edges); };
+  const bool second_is_farther = dot(frame.stack.normal, box_.edges) > 0;
+  if (second_is_farther != frame.stack.front_to_back) {
+    draw_second();
+    draw_first();
   } else {
-    mode_->draw_slices(stack, placed(-1));
-    second_->draw_slices(stack, placed(1));
+    draw_first();
+    draw_second();
   }
 }
 
-void Scene::draw_back_to_front(const DrawnFrame& frame) {
+void Scene::draw_back_to_front(DrawnFrame& frame) {
   glClearColor(static_cast<float>(background_[0]), static_cast<float>(background_[1]),
                static_cast<float>(background_[2]), 0.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -91,12 +95,12 @@ void Scene::draw_back_to_front(const DrawnFrame& frame) {
   // Slices are hidden by what is solid, but never by each other.
   glDepthMask(GL_FALSE);
   blend_with(op_);
-  draw_volumes(frame.stack, frame.matrices);
+  draw_volumes(frame);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }
 
-void Scene::draw_front_to_back(const DrawnFrame& frame) {
+void Scene::draw_front_to_back(DrawnFrame& frame) {
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glEnable(GL_DEPTH_TEST);
@@ -109,7 +113,7 @@ void Scene::draw_front_to_back(const DrawnFrame& frame) {
   }
   glDepthMask(GL_FALSE);
   blend_with(op_);
-  draw_volumes(frame.stack, frame.matrices);
+  draw_volumes(frame);
   if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
   glDisable(GL_DEPTH_TEST);
   const Mat4 unit = translation({0, 0, 0});
@@ -119,8 +123,12 @@ void Scene::draw_front_to_back(const DrawnFrame& frame) {
 }
 
 DrawnFrame Scene::draw(const Camera& camera, int width, int height) {
-  DrawnFrame frame{camera, matrices_of(camera, width, height), width, height,
-                   cut_slices(box_, view_direction(camera), slices_across_diagonal_)};
+  DrawnFrame frame{camera,
+                   matrices_of(camera, width, height),
+                   width,
+                   height,
+                   cut_slices(box_, view_direction(camera), slices_across_diagonal_),
+                   {}};
   glViewport(0, 0, width, height);
   mode_->next_frame();
   if (second_) second_->next_frame();

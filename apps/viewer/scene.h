@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/viewer/modes/mode.h"
 #include "apps/viewer/options.h"
@@ -22,6 +23,13 @@ struct VolumeFacts {
   std::int64_t not_finite = 0;
 };
 
+/// Where one volume was drawn, and in which colours.
+struct DrawnVolume {
+  Vec3 scale;  ///< from texture to object space, before `translate`
+  Vec3 translate;
+  Table colours;  ///< as the operator takes them
+};
+
 /// Everything that determined one frame's picture.
 struct DrawnFrame {
   Camera camera;
@@ -29,6 +37,7 @@ struct DrawnFrame {
   int width = 0;
   int height = 0;
   SliceStack stack;
+  std::vector<DrawnVolume> volumes;  ///< in the order of drawing
 };
 
 class Scene {
@@ -45,6 +54,7 @@ class Scene {
   const Box& box() const { return box_; }
   const Preset& preset() const { return *preset_; }
   const Table& table() const { return table_; }
+  const OpaqueGeometry& opaque() const { return opaque_; }
   /// Slice spacing over reference distance: the exponent of the opacity correction.
   double opacity_exponent() const;
   Operator op() const { return op_; }
@@ -52,9 +62,9 @@ class Scene {
   std::string_view texture_format() const { return mode_->texture_format(); }
 
  private:
-  void draw_volumes(const SliceStack& stack, const Matrices& matrices);
-  void draw_back_to_front(const DrawnFrame& frame);
-  void draw_front_to_back(const DrawnFrame& frame);
+  void draw_volumes(DrawnFrame& frame);
+  void draw_back_to_front(DrawnFrame& frame);
+  void draw_front_to_back(DrawnFrame& frame);
 
   VolumeFacts volume_;
   Box box_;
@@ -66,6 +76,7 @@ class Scene {
   std::unique_ptr<Mode> second_;  ///< null: there is one volume
   const Preset* preset_ = nullptr;
   Table table_{};
+  Table second_table_{};
 };
 
 }  // namespace viewer

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/understudy/picture.h"
-#include "tests/apps/viewer/emulation.h"
 #include "tests/clients/stage.h"
+#include "tests/emulation/viewer_frame.h"
 
 namespace clients {
 namespace {
@@ -48,7 +48,7 @@ TEST_P(EveryMode, ThePictureIsNearerToTheSlicesInDoublePrecisionThanTheViewersOw
   ASSERT_EQ(substituted(json("report.json")), 1) << outcome.err;
 
   const nlohmann::json description = json("bare.json");
-  const std::vector<double> meant = viewer_test::emulate(description);
+  const std::vector<double> meant = emulation::emulate(description);
   const auto background = description.at("background").get<std::vector<double>>();
   const double bare = viewer_test::difference(channels(png("bare.png")), meant).rms;
   const double under = viewer_test::difference(channels(png("under.png")), meant).rms;

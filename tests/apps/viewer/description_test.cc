@@ -9,9 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/apps/viewer/emulation.h"
 #include "tests/apps/viewer/run_viewer.h"
 #include "tests/apps/viewer/temporary_folder.h"
+#include "tests/emulation/viewer_frame.h"
 
 namespace viewer_test {
 namespace {
@@ -93,7 +93,7 @@ TEST_P(Description, IsEnoughToRecomputeThePicture) {
 
   const Picture picture = read_png(png);
   const std::vector<double> drawn(picture.rgb.begin(), picture.rgb.end());
-  const Difference d = difference(drawn, emulate(description));
+  const Difference d = difference(drawn, emulation::emulate(description));
   const double spread = *std::max_element(drawn.begin(), drawn.end());
   fmt::print("{} {} {}: {} slices, RMS {:.3f}, max {:.2f} of 255\n", mode, type,
              orthographic ? "orthographic" : "perspective", slices.at("count").get<int>(), d.rms, d.max);

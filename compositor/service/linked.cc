@@ -8,7 +8,6 @@
 #include <array>
 #include <optional>
 #include <type_traits>
-#include <utility>
 
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
@@ -45,10 +44,12 @@ class LinkedService : public RenderService {
   }
 
   void begin_volume(const volume::VolumeDescription& volume) override {
+    give_up_posted();
     post(MessageType::begin_volume, encode(volume));
   }
 
   void begin_change(volume::VolumeId id, std::uint64_t version) override {
+    give_up_posted();
     post(MessageType::begin_change, encode(Change{id, version}));
   }
 
@@ -101,10 +102,12 @@ class LinkedService : public RenderService {
   }
 
   void forget_volume(volume::VolumeId id) override {
+    give_up_posted();
     request(MessageType::forget_volume, encode_id(id), patience_.reply);
   }
 
   Rendered render(const volume::RenderRequest& wanted) override {
+    give_up_posted();
     make_room(wanted.window);
     const Message reply = request(MessageType::render, encode(wanted), patience_.render, MessageType::rendered);
     const RenderedReply rendered = conversation([&] { return decode_rendered(reply.payload); });
@@ -164,11 +167,30 @@ class LinkedService : public RenderService {
   }
 
   void send(MessageType type, std::span<const Bytes> parts, int attach = -1) {
+    require_link();
+    settle_posted();
+    conversation([&] { connection_->send(type, ++sequence_, parts, Clock::now() + patience_.send, attach); });
+  }
+
+  void require_link() const {
     if (!connection_) throw ServiceLost(lost_);
     if (::getpid() != process_)
       throw ServiceLost("the link to the node group belongs to the process before fork()");
-    if (std::exchange(posted_, false)) reply(patience_.reply, MessageType::done);
-    conversation([&] { connection_->send(type, ++sequence_, parts, Clock::now() + patience_.send, attach); });
+  }
+
+  void settle_posted() {
+    if (!posted_) return;
+    require_link();
+    posted_ = false;
+    reply(patience_.reply, MessageType::done);
+  }
+
+  // A volume whose sending was broken off: that it was refused, too, concerns nobody any longer.
+  void give_up_posted() {
+    try {
+      settle_posted();
+    } catch (const RequestRefused&) {
+    }
   }
 
   Message reply(milliseconds patience, MessageType expected) {

@@ -311,6 +311,24 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   EXPECT_EQ(counts.received, 0U);
 }
 
+TEST_F(NodeGroupTest, WhatIsWrongWithAVolumeThatWasGivenUpConcernsNoOther) {
+  start(2);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  volume::VolumeDescription senseless = texture.description;
+  senseless.id = 8;
+  senseless.size = {0, 1, 1};
+  for (int i = 0; i < 2; ++i) {
+    linked->begin_volume(senseless);
+    EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+    linked->begin_volume(senseless);
+    EXPECT_NO_THROW(linked->forget_volume(8));
+    linked->begin_volume(senseless);
+    upload(*linked, texture);
+  }
+}
+
 TEST_F(NodeGroupTest, LargeAndManyBoxesTravelInSeveralMessages) {
   start(2);
   const auto linked = connect(), embedded = embedded_service();

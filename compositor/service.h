@@ -35,12 +35,19 @@ class RenderService {
  public:
   virtual ~RenderService() = default;
 
-  /// Announces a volume; texels follow slab by slab. An id that exists is replaced.
+  // Texels travel while their sender prepares the next: what is wrong with them may be said by a later call, by
+  // end_volume() at the latest.
+
+  /// Announces a volume; all its texels follow. An id that exists is replaced.
   virtual void begin_volume(const volume::VolumeDescription& volume) = 0;
-  /// Texels of the slices [first_slice, first_slice + slices) of `stored` (absolute z), tightly packed, x
-  /// fastest, native byte order, bytes_per_texel each.
-  virtual void add_slices(volume::VolumeId id, int first_slice, int slices,
+  /// A complete volume is about to get another version: the texels that differ follow.
+  virtual void begin_change(volume::VolumeId id, std::uint64_t version) = 0;
+  /// Texels of boxes inside `stored`, one box after the other, each tightly packed, x fastest, native byte
+  /// order, bytes_per_texel each. Between begin_volume() and end_volume() these are slabs: each covers `stored`
+  /// in x and y, and each slice comes once.
+  virtual void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
                           std::span<const std::byte> texels) = 0;
+  /// Nothing more follows; the volume is complete.
   virtual void end_volume(volume::VolumeId id) = 0;
   virtual void forget_volume(volume::VolumeId id) = 0;
 

@@ -145,6 +145,66 @@ void immediate_frame(benchmark::State& state) {
   glFinish();
 }
 
+constexpr int sprites = 32;
+
+/// 2-D textures, all of one size or each of another.
+void make_sprites(GLuint (&textures)[sprites], bool alike) {
+  glGenTextures(sprites, textures);
+  for (int i = 0; i < sprites; ++i) {
+    glBindTexture(GL_TEXTURE_2D, textures[i]);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 32, alike ? 32 : 32 + i, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  }
+}
+
+/// 400 blended quads, four from each texture before the next is bound, as programs draw icons and map tiles.
+/// Every other quad by glBegin, the others from an array. What Understudy has learnt of the program after some
+/// hundreds of frames is not part of the time.
+void sprite_frame(benchmark::State& state, bool alike) {
+  static const GLfloat corners[] = {0, 0, 0.1F, 0, 0.1F, 0.1F, 0, 0.1F};
+  GLuint textures[sprites];
+  make_sprites(textures, alike);
+  // Seen, unlike culled ones, but hardly a pixel.
+  glDisable(GL_CULL_FACE);
+  glViewport(0, 0, 1, 1);
+  glEnable(GL_TEXTURE_2D);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glEnableClientState(GL_VERTEX_ARRAY);
+  glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+  glVertexPointer(2, GL_FLOAT, 0, corners);
+  glTexCoordPointer(2, GL_FLOAT, 0, corners);
+  const auto frame = [&] {
+    glClear(GL_COLOR_BUFFER_BIT);
+    for (int quad = 0; quad < 400; ++quad) {
+      if (quad % 4 == 0) glBindTexture(GL_TEXTURE_2D, textures[quad / 4 % sprites]);
+      if (quad % 2 == 0) {
+        glDrawArrays(GL_QUADS, 0, 4);
+        continue;
+      }
+      glBegin(GL_QUADS);
+      for (int i = 0; i < 4; ++i) {
+        glTexCoord2fv(corners + 2 * i);
+        glVertex2fv(corners + 2 * i);
+      }
+      glEnd();
+    }
+    eglSwapBuffers(eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW));
+  };
+  constexpr int warm_up = 700;
+  for (int i = 0; i < warm_up; ++i) frame();
+  for (auto _ : state) frame();  // NOLINT(clang-analyzer-deadcode.DeadStores)
+  glFinish();
+  glDisableClientState(GL_VERTEX_ARRAY);
+  glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+  glDisable(GL_TEXTURE_2D);
+  glDisable(GL_BLEND);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  glDeleteTextures(sprites, textures);
+  glViewport(0, 0, width, width);
+  draw_no_pixels();
+}
+
 }  // namespace
 
 BENCHMARK(vertex)->Name("glVertex3f");
@@ -156,6 +216,9 @@ BENCHMARK(no_textures)->Name("glDeleteTextures");
 BENCHMARK(get_viewport)->Name("glGetIntegerv");
 BENCHMARK(draw_arrays)->Name("glDrawArrays");
 BENCHMARK(immediate_frame)->Name("immediate frame");
+BENCHMARK_CAPTURE(sprite_frame, different, false)->Name("textured quads");
+// The last one: what it draws looks like a volume for a while.
+BENCHMARK_CAPTURE(sprite_frame, alike, true)->Name("textured quads, one size");
 
 int main(int argc, char** argv) {
   open_context();

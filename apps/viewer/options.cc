@@ -48,7 +48,7 @@ CLI::Validator number_between(double low, double high) {
 std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
   CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
   app.name("understudy-viewer");
-  std::string mode = "table", op = "over", preset = "engine", type, surface = "any";
+  std::string mode = "table", op = "over", preset = "engine", type, surface = "any", step = "whole";
   VolumeSize size{};
   Vec3 spacing{};
 
@@ -70,6 +70,12 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
                  "(pre-integrated "
                  "slabs) or stacks (2-D textures)")
       ->check(CLI::IsMember({"rgba", "table", "core", "time", "bricks", "lit", "preint", "stacks"}))
+      ->capture_default_str();
+  app.add_option(
+         "--time-step", step,
+         "With --mode time, what changes from frame to frame: whole (every voxel), part (those in the middle, "
+         "and only they are uploaded) or again (the same, but all are uploaded)")
+      ->check(CLI::IsMember({"whole", "part", "again"}))
       ->capture_default_str();
   app.add_option("--operator", op, "How slices are blended: over, under (front to back), max, min or add")
       ->check(CLI::IsMember({"over", "under", "max", "min", "add"}))
@@ -135,6 +141,11 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   if (type_option->count() > 0) options.hints.type = scalar_type_named(type);
   if (spacing_option->count() > 0) options.hints.spacing = spacing;
   options.mode = *mode_named(mode);
+  options.time_step = std::map<std::string, TimeStep>{
+      {"whole", TimeStep::whole},
+      {"part", TimeStep::part},
+      {"again",
+       TimeStep::again}}.at(step);
   options.op = *operator_named(op);
   options.preset = find_preset(preset);
   options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},

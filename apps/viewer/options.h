@@ -19,6 +19,7 @@ struct Options {
   VolumeHints hints;
 
   ModeKind mode = ModeKind::table;
+  TimeStep time_step = TimeStep::whole;
   Operator op = Operator::over;
   int slices = 0;  ///< across the box's diagonal; 0: one per finest voxel edge
   const Preset* preset = nullptr;

@@ -42,8 +42,8 @@ Scene::Scene(const Options& options, Volume volume)
   volume_.value_at_1 = texels.value_at_1;
   volume_.not_finite = texels.not_finite;
   report(volume_, texels);
-  if (options.second_volume) second_ = make_mode(options.mode, texels, volume_.file);
-  mode_ = make_mode(options.mode, std::move(texels), volume_.file);
+  if (options.second_volume) second_ = make_mode(options.mode, texels, volume_.file, options.time_step);
+  mode_ = make_mode(options.mode, std::move(texels), volume_.file, options.time_step);
   set_preset(*options.preset);
 }
 

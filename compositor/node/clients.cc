@@ -93,7 +93,8 @@ std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
         take_image_memory(client, std::move(*message));
         return std::nullopt;
       case MessageType::begin_volume:
-      case MessageType::add_slices:
+      case MessageType::begin_change:
+      case MessageType::add_texels:
       case MessageType::end_volume:
       case MessageType::forget_volume:
       case MessageType::render:

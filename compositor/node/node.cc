@@ -12,22 +12,27 @@
 
 #include "compositor/exchange/direct_send.h"
 #include "compositor/node/clients.h"
+#include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/rank_renderer.h"
+#include "volume/brick/texel_box.h"
 
 namespace understudy::compositor {
 
 namespace {
 
-enum class Step : std::uint32_t { end, forget_client, request };
+enum class Step : std::uint32_t { end, forget_client, request, texels };
 
-// What rank 0 broadcasts before anything else. A request's payload follows as the application sent it.
+// What rank 0 broadcasts before anything else. A request's payload follows as the application sent it; of
+// texels their boxes follow, and then to each rank what it shows of them.
 struct Order {
   Step step = Step::end;
   MessageType type{};
   std::uint64_t client = 0;
   std::uint64_t payload_bytes = 0;
+  volume::VolumeId volume = 0;
+  std::uint64_t boxes = 0;
 };
 
 // What every rank tells every other about its part in a request.
@@ -36,6 +41,11 @@ struct Outcome {
   std::array<char, limits::max_text_bytes> reason{};  ///< ends with a zero
   volume::Rect footprint;
   volume::FrameCounts counts;
+
+  void refuse(const char* why) {
+    refused = true;
+    std::strncpy(reason.data(), why, reason.size() - 1);
+  }
 };
 
 class Node {
@@ -47,14 +57,20 @@ class Node {
 
  private:
   void request(Clients& clients, Clients::Request request);
+  std::vector<Outcome> texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here);
+  bool make_room(std::uint64_t bytes);
   bool receive_payload(const Order& order, std::span<std::byte> here);
+  void receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes);
+  void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
+  std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
   Exchanged composite(const std::vector<Outcome>& outcomes);
 
   Link& link_;
   RankRenderer renderer_;
-  std::vector<std::byte> payload_room_;  // the same size on all ranks but 0
-  std::size_t room_ = 0;                 // that size, known to rank 0 too
+  std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
+  std::size_t room_ = 0;                  // that size, known to rank 0 too
+  std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
   volume::Operator op_{};
   std::vector<Rank> visible_order_;
@@ -96,12 +112,12 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
     if (auto* asked = std::get_if<Clients::Request>(&event)) {
       request(*clients, std::move(*asked));
     } else {
-      Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0};
+      Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0, 0, 0};
       link_.broadcast(0, bytes_of(order));
       renderer_.forget_client(order.client);
     }
   }
-  Order order{Step::end, {}, 0, 0};
+  Order order{Step::end, {}, 0, 0, 0, 0};
   link_.broadcast(0, bytes_of(order));
   return clients.has_value();
 }
@@ -115,34 +131,130 @@ void Node::follow() {
       renderer_.forget_client(order.client);
       continue;
     }
+    if (order.step == Step::texels) {
+      std::vector<volume::TexelBox> boxes(order.boxes);
+      texels(order, boxes, {});
+      continue;
+    }
     if (!receive_payload(order, {})) continue;
     const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
     if (order.type == MessageType::render && !first_refusal(outcomes)) composite(outcomes);
   }
 }
 
-// Broadcasts the payload that is `here` on rank 0. False, on all ranks, when one of them has no room for it.
-bool Node::receive_payload(const Order& order, std::span<std::byte> here) {
+// Room for that much of a payload. False, on all ranks, when one of them has none.
+bool Node::make_room(std::uint64_t bytes) {
   // All ranks have seen the same orders, so they agree on when there must be more room; only then they must
   // also agree on whether there is.
-  if (order.payload_bytes > room_) {
-    std::uint8_t fits = 1;
-    try {
-      if (link_.rank() != 0) payload_room_.resize(order.payload_bytes);
-    } catch (const std::bad_alloc&) {
-      fits = 0;
-    }
-    std::vector<std::uint8_t> all(std::size_t(link_.size()));
-    link_.gather_to_all(bytes_of(fits), std::as_writable_bytes(std::span(all)));
-    if (std::ranges::count(all, 0) > 0) return false;
-    room_ = order.payload_bytes;
+  if (bytes <= room_) return true;
+  std::uint8_t fits = 1;
+  try {
+    if (link_.rank() != 0) payload_room_.resize(bytes);
+  } catch (const std::bad_alloc&) {
+    fits = 0;
   }
+  std::vector<std::uint8_t> all(std::size_t(link_.size()));
+  link_.gather_to_all(bytes_of(fits), std::as_writable_bytes(std::span(all)));
+  if (std::ranges::count(all, 0) > 0) return false;
+  room_ = bytes;
+  return true;
+}
+
+// Broadcasts the payload that is `here` on rank 0. False, on all ranks, when one of them has no room for it.
+bool Node::receive_payload(const Order& order, std::span<std::byte> here) {
+  if (!make_room(order.payload_bytes)) return false;
   link_.broadcast(0, link_.rank() == 0 ? here : std::span(payload_room_).first(order.payload_bytes));
   return true;
 }
 
+// Texels that are `here` on rank 0 go to the ranks that show them.
+std::vector<Outcome> Node::texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here) {
+  link_.broadcast(0, std::as_writable_bytes(boxes));
+  const VolumeKey key{order.client, order.volume};
+  Outcome mine;
+  try {
+    renderer_.check_texels(key, boxes, order.payload_bytes);
+  } catch (const std::exception& error) {
+    mine.refuse(error.what());  // on all ranks
+    return agree(mine, key);
+  }
+  if (!make_room(order.payload_bytes)) {
+    mine.refuse("a node has no memory left for this message");
+    return agree(mine, key);
+  }
+  try {
+    if (link_.rank() == 0) {
+      send_shares(key, boxes, here);
+    } else {
+      receive_shares(key, boxes);
+    }
+    renderer_.add_texels(key, shares_, payload_room_);
+  } catch (const RequestRefused& error) {
+    mine.refuse(error.what());
+  }
+  return agree(mine, key);
+}
+
+std::size_t bytes_of_boxes(std::span<const volume::TexelBox> boxes, std::size_t bytes_per_texel) {
+  std::size_t texels = 0;
+  for (const volume::TexelBox& box : boxes) texels += volume::texels_in(box);
+  return texels * bytes_per_texel;
+}
+
+void Node::receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes) {
+  shares_ = renderer_.shares(key, boxes, link_.rank());
+  const std::size_t bytes = bytes_of_boxes(shares_, renderer_.bytes_per_texel(key));
+  if (bytes == 0) return;
+  const Incoming share{0, std::span(payload_room_).first(bytes)};
+  link_.transfer({}, {&share, 1});
+}
+
+void Node::send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels) {
+  const std::size_t texel = renderer_.bytes_per_texel(key);
+  std::vector<std::vector<std::byte>> packed(std::size_t(link_.size()));
+  std::vector<Outgoing> outgoing;
+  for (Rank rank = 0; rank < link_.size(); ++rank) {
+    const std::vector<volume::TexelBox> shares = renderer_.shares(key, boxes, rank);
+    std::vector<std::byte>& bytes = packed[std::size_t(rank)];
+    bytes.resize(bytes_of_boxes(shares, texel));
+    std::span<std::byte> room(bytes);
+    Bytes left = texels;
+    auto share = shares.begin();
+    for (const volume::TexelBox& box : boxes) {
+      if (share != shares.end() && volume::contains(box, *share)) {
+        volume::copy_texels(*share, texel, box, left, *share, room);
+        room = room.subspan(bytes_of_boxes({&*share, 1}, texel));
+        ++share;
+      }
+      left = left.subspan(bytes_of_boxes({&box, 1}, texel));
+    }
+    if (rank == 0) {
+      shares_ = shares;
+    } else if (!bytes.empty()) {
+      outgoing.push_back({rank, bytes});
+    }
+  }
+  link_.transfer(outgoing, {});
+  payload_room_ = std::move(packed[0]);
+}
+
 void Node::request(Clients& clients, Clients::Request request) {
-  Order order{Step::request, request.message.type, request.client, request.message.payload.size()};
+  if (request.message.type == MessageType::add_texels) {
+    Texels message;
+    try {
+      message = decode_texels(request.message.payload);
+    } catch (const MalformedMessage& error) {
+      return clients.reply(request, MessageType::refused, encode_text(error.what()));
+    }
+    Order order{Step::texels,          request.message.type, request.client,
+                message.texels.size(), message.volume,       message.boxes.size()};
+    link_.broadcast(0, bytes_of(order));
+    const std::vector<Outcome> outcomes = texels(order, message.boxes, message.texels);
+    if (const Outcome* refusal = first_refusal(outcomes))
+      return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
+    return clients.reply(request, MessageType::done, {});
+  }
+  Order order{Step::request, request.message.type, request.client, request.message.payload.size(), 0, 0};
   link_.broadcast(0, bytes_of(order));
   if (!receive_payload(order, request.message.payload))
     return clients.reply(request, MessageType::refused,
@@ -182,10 +294,10 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         renderer_.begin(order.client, description);
         break;
       }
-      case MessageType::add_slices: {
-        const Slices slices = decode_slices(payload);
-        filling = VolumeKey{order.client, slices.volume};
-        renderer_.add_slices(*filling, slices.first_slice, slices.slices, slices.texels);
+      case MessageType::begin_change: {
+        const Change change = decode_change(payload);
+        filling = VolumeKey{order.client, change.volume};
+        renderer_.begin_change(*filling, change.version);
         break;
       }
       case MessageType::end_volume:
@@ -210,13 +322,16 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         throw MalformedMessage("an application does not send this type of message");
     }
   } catch (const std::exception& error) {
-    mine.refused = true;
-    std::strncpy(mine.reason.data(), error.what(), mine.reason.size() - 1);
+    mine.refuse(error.what());
   }
+  return agree(mine, filling);
+}
 
+// What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
+std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<VolumeKey>& filling) {
+  Outcome mine = outcome;
   std::vector<Outcome> outcomes(std::size_t(link_.size()));
   link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
-  // A volume that one rank could not take in is of no use on the others.
   if (filling && first_refusal(outcomes)) renderer_.forget(*filling);
   return outcomes;
 }

@@ -9,9 +9,13 @@ namespace {
 class EmbeddedService : public RenderService {
  public:
   void begin_volume(const volume::VolumeDescription& volume) override { renderer_.begin(application, volume); }
-  void add_slices(volume::VolumeId id, int first_slice, int slices,
+  void begin_change(volume::VolumeId id, std::uint64_t version) override {
+    renderer_.begin_change({application, id}, version);
+  }
+  void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
                   std::span<const std::byte> texels) override {
-    renderer_.add_slices({application, id}, first_slice, slices, texels);
+    renderer_.check_texels({application, id}, boxes, texels.size());
+    renderer_.add_texels({application, id}, boxes, texels);
   }
   void end_volume(volume::VolumeId id) override { renderer_.end({application, id}); }
   void forget_volume(volume::VolumeId id) override { renderer_.forget({application, id}); }

@@ -29,7 +29,8 @@ constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
 constexpr std::size_t read_ahead = std::size_t(1)
                                    << 20;  ///< memory given to a message before its bytes are here
 constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
-                                         << 23;  ///< several slices travel together up to this size
+                                         << 23;  ///< several slices or boxes travel together up to this size
+constexpr std::size_t max_boxes_per_message = 4096;  ///< of texels
 constexpr int max_ranks = 4096;
 constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
 

@@ -12,6 +12,7 @@
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
 #include "compositor/service/protocol.h"
+#include "volume/brick/texel_box.h"
 
 namespace understudy::compositor {
 
@@ -43,29 +44,57 @@ class LinkedService : public RenderService {
   }
 
   void begin_volume(const volume::VolumeDescription& volume) override {
-    request(MessageType::begin_volume, encode(volume), patience_.reply);
+    give_up_posted();
+    post(MessageType::begin_volume, encode(volume));
   }
 
-  void add_slices(volume::VolumeId id, int first_slice, int slices,
+  void begin_change(volume::VolumeId id, std::uint64_t version) override {
+    give_up_posted();
+    post(MessageType::begin_change, encode(Change{id, version}));
+  }
+
+  void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
                   std::span<const std::byte> texels) override {
-    if (slices <= 0 || texels.size() % std::size_t(slices) != 0)
-      throw RequestRefused(fmt::format("{} bytes are not {} slices of volume {}", texels.size(), slices, id));
-    const std::size_t slice_bytes = texels.size() / std::size_t(slices);
-    if (slice_bytes > limits::max_slice_bytes)
-      throw RequestRefused(
-          fmt::format("a slice of {} bytes is over the limit of {}", slice_bytes, limits::max_slice_bytes));
-    const int together = int(std::clamp<std::uint64_t>(
-        limits::max_slab_bytes / std::max<std::size_t>(1, slice_bytes), 1, std::uint64_t(slices)));
-    for (int done = 0; done < slices; done += together) {
-      const int now = std::min(together, slices - done);
-      const Slices slab{id, first_slice + done, now,
-                        texels.subspan(std::size_t(done) * slice_bytes, std::size_t(now) * slice_bytes)};
+    std::size_t count = 0;
+    for (const volume::TexelBox& box : boxes) count += volume::texels_in(box);
+    if (count == 0 || texels.size() % count != 0)
+      throw RequestRefused(fmt::format("{} bytes are not {} texels of volume {}", texels.size(), count, id));
+    const std::size_t texel = texels.size() / count;
+    Texels message{id, {}, texels.first(0)};
+    const auto send = [&] {
+      if (message.boxes.empty()) return;
       static constexpr std::array<std::byte, 8> padding{};
-      const auto head = encode_slices_head(slab);
-      const std::array<Bytes, 3> parts{head, slab.texels,
-                                       Bytes(padding).first((8 - slab.texels.size() % 8) % 8)};
-      request(MessageType::add_slices, parts, patience_.reply);
+      const auto head = encode_texels_head(message);
+      const std::array<Bytes, 3> parts{head, message.texels,
+                                       Bytes(padding).first((8 - message.texels.size() % 8) % 8)};
+      post(MessageType::add_texels, parts);
+      texels = texels.subspan(message.texels.size());
+      message = {id, {}, texels.first(0)};
+    };
+    for (const volume::TexelBox& box : boxes) {
+      const std::size_t slice_bytes =
+          volume::texels_in({box.low, {box.high[0], box.high[1], box.low[2] + 1}}) * texel;
+      if (slice_bytes > limits::max_slice_bytes)
+        throw RequestRefused(
+            fmt::format("a slice of {} bytes is over the limit of {}", slice_bytes, limits::max_slice_bytes));
+      for (int z = box.low[2]; z < box.high[2];) {
+        // As many slices as still fit into the message, and one at least into an empty one.
+        const std::size_t room =
+            limits::max_slab_bytes - std::min<std::size_t>(limits::max_slab_bytes, message.texels.size());
+        const std::size_t fits =
+            std::max<std::size_t>(room / std::max<std::size_t>(1, slice_bytes), message.boxes.empty() ? 1 : 0);
+        if (fits == 0 || message.boxes.size() == limits::max_boxes_per_message) {
+          send();
+          continue;
+        }
+        const int end = z + int(std::min(fits, std::size_t(box.high[2] - z)));
+        const std::size_t bytes = message.texels.size() + slice_bytes * std::size_t(end - z);
+        message.boxes.push_back({{box.low[0], box.low[1], z}, {box.high[0], box.high[1], end}});
+        message.texels = texels.first(bytes);
+        z = end;
+      }
     }
+    send();
   }
 
   void end_volume(volume::VolumeId id) override {
@@ -73,10 +102,12 @@ class LinkedService : public RenderService {
   }
 
   void forget_volume(volume::VolumeId id) override {
+    give_up_posted();
     request(MessageType::forget_volume, encode_id(id), patience_.reply);
   }
 
   Rendered render(const volume::RenderRequest& wanted) override {
+    give_up_posted();
     make_room(wanted.window);
     const Message reply = request(MessageType::render, encode(wanted), patience_.render, MessageType::rendered);
     const RenderedReply rendered = conversation([&] { return decode_rendered(reply.payload); });
@@ -121,13 +152,49 @@ class LinkedService : public RenderService {
   // One request and its one reply.
   Message request(MessageType type, std::span<const Bytes> parts, milliseconds patience,
                   MessageType expected = MessageType::done, int attach = -1) {
+    send(type, parts, attach);
+    return reply(patience, expected);
+  }
+
+  // A request whose reply is awaited before the next one: the caller prepares that meanwhile.
+  void post(MessageType type, const std::vector<std::byte>& payload) {
+    const Bytes part(payload);
+    post(type, {&part, 1});
+  }
+  void post(MessageType type, std::span<const Bytes> parts) {
+    send(type, parts);
+    posted_ = true;
+  }
+
+  void send(MessageType type, std::span<const Bytes> parts, int attach = -1) {
+    require_link();
+    settle_posted();
+    conversation([&] { connection_->send(type, ++sequence_, parts, Clock::now() + patience_.send, attach); });
+  }
+
+  void require_link() const {
     if (!connection_) throw ServiceLost(lost_);
     if (::getpid() != process_)
       throw ServiceLost("the link to the node group belongs to the process before fork()");
-    Message reply = conversation([&] {
-      connection_->send(type, ++sequence_, parts, Clock::now() + patience_.send, attach);
-      return connection_->receive(Clock::now() + patience);
-    });
+  }
+
+  void settle_posted() {
+    if (!posted_) return;
+    require_link();
+    posted_ = false;
+    reply(patience_.reply, MessageType::done);
+  }
+
+  // A volume whose sending was broken off: that it was refused, too, concerns nobody any longer.
+  void give_up_posted() {
+    try {
+      settle_posted();
+    } catch (const RequestRefused&) {
+    }
+  }
+
+  Message reply(milliseconds patience, MessageType expected) {
+    Message reply = conversation([&] { return connection_->receive(Clock::now() + patience); });
     if (reply.sequence != sequence_) lose("answered another request");
     if (reply.type == MessageType::refused)
       throw RequestRefused(conversation([&] { return decode_text(reply.payload); }));
@@ -159,6 +226,7 @@ class LinkedService : public RenderService {
   std::optional<Connection> connection_;
   std::string lost_;
   std::uint64_t sequence_ = 0;
+  bool posted_ = false;  // the reply to the last request is still to come
   int ranks_ = 0;
   pid_t process_ = ::getpid();
   ImageMemory image_;

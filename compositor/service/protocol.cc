@@ -197,24 +197,47 @@ VolumeDescription decode_volume(std::span<const std::byte> payload) {
   return volume;
 }
 
-std::vector<std::byte> encode_slices_head(const Slices& slices) {
+std::vector<std::byte> encode(const Change& change) {
   Writer out;
-  out.integer(std::int64_t(slices.volume));
-  out.integer(slices.first_slice);
-  out.integer(slices.slices);
-  out.integer(std::int64_t(slices.texels.size()));
+  out.integer(std::int64_t(change.volume));
+  out.integer(std::int64_t(change.version));
   return out.bytes();
 }
 
-Slices decode_slices(std::span<const std::byte> payload) {
-  Reader in("slices", payload);
-  Slices slices;
-  slices.volume = in.word("volume");
-  slices.first_slice = in.small("first_slice", 0, max_axis_texels);
-  slices.slices = in.small("slices", 1, max_axis_texels);
-  slices.texels = in.run("texels", limits::max_slice_bytes);
+Change decode_change(std::span<const std::byte> payload) {
+  Reader in("begin change", payload);
+  Change change;
+  change.volume = in.word("volume");
+  change.version = in.word("version");
   in.end();
-  return slices;
+  return change;
+}
+
+std::vector<std::byte> encode_texels_head(const Texels& texels) {
+  Writer out;
+  out.integer(std::int64_t(texels.volume));
+  out.integer(std::int64_t(texels.boxes.size()));
+  for (const TexelBox& box : texels.boxes) {
+    for (const int value : box.low) out.integer(value);
+    for (const int value : box.high) out.integer(value);
+  }
+  out.integer(std::int64_t(texels.texels.size()));
+  return out.bytes();
+}
+
+Texels decode_texels(std::span<const std::byte> payload) {
+  Reader in("texels", payload);
+  Texels texels;
+  texels.volume = in.word("volume");
+  texels.boxes.resize(std::size_t(in.integer("boxes", 1, limits::max_boxes_per_message)));
+  for (TexelBox& box : texels.boxes) {
+    for (int& value : box.low) value = in.small("boxes.low", 0, max_axis_texels - 1);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      box.high[axis] = in.small("boxes.high", box.low[axis] + 1, max_axis_texels);
+  }
+  texels.texels = in.run("texels", limits::max_slice_bytes);
+  in.end();
+  return texels;
 }
 
 std::vector<std::byte> encode(const RenderRequest& request) {

@@ -16,7 +16,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 2;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 3;         ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -26,7 +26,8 @@ enum class MessageType : std::uint16_t {
   // from an application to rank 0
   image_memory,  ///< attached: sealed memory for the pictures that follow; payload: its size
   begin_volume,
-  add_slices,
+  begin_change,
+  add_texels,
   end_volume,
   forget_volume,
   render,
@@ -55,11 +56,15 @@ struct Hello {
   int ranks = 0;
 };
 
-struct Slices {
+struct Change {
   volume::VolumeId volume = 0;
-  int first_slice = 0;
-  int slices = 0;
-  std::span<const std::byte> texels;  ///< seen in place in the decoded bytes
+  std::uint64_t version = 0;
+};
+
+struct Texels {
+  volume::VolumeId volume = 0;
+  std::vector<volume::TexelBox> boxes;  ///< none is empty
+  std::span<const std::byte> texels;    ///< of one box after the other; seen in place in the decoded bytes
 };
 
 /// A picture that lies at the beginning of the image memory.
@@ -71,7 +76,8 @@ struct RenderedReply {
 std::vector<std::byte> encode(const Hello& hello);
 std::vector<std::byte> encode(const volume::VolumeDescription& volume);
 /// Everything but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
-std::vector<std::byte> encode_slices_head(const Slices& slices);
+std::vector<std::byte> encode_texels_head(const Texels& texels);
+std::vector<std::byte> encode(const Change& change);
 std::vector<std::byte> encode(const volume::RenderRequest& request);
 std::vector<std::byte> encode(const RenderedReply& reply);
 std::vector<std::byte> encode_id(volume::VolumeId id);
@@ -81,7 +87,8 @@ std::vector<std::byte> encode_text(const std::string& text);  ///< cut at limits
 // All of these throw MalformedMessage. What comes back keeps within limits.h.
 Hello decode_hello(std::span<const std::byte> payload);
 volume::VolumeDescription decode_volume(std::span<const std::byte> payload);
-Slices decode_slices(std::span<const std::byte> payload);
+Change decode_change(std::span<const std::byte> payload);
+Texels decode_texels(std::span<const std::byte> payload);
 volume::RenderRequest decode_request(std::span<const std::byte> payload);
 RenderedReply decode_rendered(std::span<const std::byte> payload);
 volume::VolumeId decode_id(std::span<const std::byte> payload);

@@ -12,6 +12,7 @@
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "volume/brick/brick_store.h"
+#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/ray_caster.h"
@@ -24,10 +25,19 @@ struct RankRenderer::Volume {
   KdTree tree;
   BrickStore bricks;
   RayCaster caster;
-  bool complete = false;
+  std::vector<TexelBox> shown;  ///< by each rank
+  enum class State { filling, complete, changing } state = State::filling;
+  std::uint64_t version;
+  std::vector<std::size_t> changed_blocks;
 
   Volume(const VolumeDescription& description, int rank, int ranks)
-      : tree(description, ranks), bricks(description, tree.box(rank)), caster(bricks) {}
+      : tree(description, ranks),
+        bricks(description, tree.box(rank)),
+        caster(bricks),
+        version(description.version) {
+    for (int other = 0; other < ranks; ++other)
+      shown.push_back(BrickStore::texels_shown(description, tree.box(other)));
+  }
 };
 
 namespace {
@@ -84,10 +94,11 @@ RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
 
 RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const RenderRequest& request) const {
   Volume& volume = find({client, request.volume});
-  if (!volume.complete) throw RequestRefused(fmt::format("volume {} is not complete yet", request.volume));
-  if (const std::uint64_t held = volume.bricks.description().version; held != request.version)
-    throw RequestRefused(
-        fmt::format("volume {} is here in version {}, not {}", request.volume, held, request.version));
+  if (volume.state != Volume::State::complete)
+    throw RequestRefused(fmt::format("volume {} is not complete yet", request.volume));
+  if (volume.version != request.version)
+    throw RequestRefused(fmt::format("volume {} is here in version {}, not {}", request.volume, volume.version,
+                                     request.version));
   return volume;
 }
 
@@ -103,17 +114,68 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
   refusing([&] { volumes_.emplace(key, std::make_unique<Volume>(description, rank_, ranks_)); });
 }
 
-void RankRenderer::add_slices(VolumeKey key, int first_slice, int slices, std::span<const std::byte> texels) {
+void RankRenderer::begin_change(VolumeKey key, std::uint64_t version) {
   Volume& volume = find(key);
-  if (volume.complete)
-    throw RequestRefused(fmt::format("volume {} is complete: begin a new version", key.volume));
-  refusing([&] { volume.bricks.add_slices(first_slice, slices, texels); });
+  if (volume.state != Volume::State::complete)
+    throw RequestRefused(fmt::format("volume {} cannot change before it is complete", key.volume));
+  volume.state = Volume::State::changing;
+  volume.version = version;
+}
+
+void RankRenderer::check_texels(VolumeKey key, std::span<const TexelBox> boxes, std::size_t bytes) const {
+  const Volume& volume = find(key);
+  if (volume.state == Volume::State::complete)
+    throw RequestRefused(fmt::format("volume {} is complete: begin a change", key.volume));
+  const TexelBox& stored = volume.bricks.description().stored;
+  std::size_t texels = 0;
+  for (const TexelBox& box : boxes) {
+    const bool slab = box.low[0] == stored.low[0] && box.low[1] == stored.low[1] &&
+                      box.high[0] == stored.high[0] && box.high[1] == stored.high[1];
+    if (is_empty(box) || !contains(stored, box) || (volume.state == Volume::State::filling && !slab))
+      throw RequestRefused(fmt::format("texels ({}, {}, {}) to ({}, {}, {}) are no {} of volume {}", box.low[0],
+                                       box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
+                                       slab || !contains(stored, box) ? "part" : "slab", key.volume));
+    texels += texels_in(box);
+  }
+  if (const std::size_t expected = texels * bytes_per_texel(key); bytes != expected)
+    throw RequestRefused(
+        fmt::format("volume {}: {} bytes of texels instead of {}", key.volume, bytes, expected));
+}
+
+std::vector<TexelBox> RankRenderer::shares(VolumeKey key, std::span<const TexelBox> boxes, int rank) const {
+  const Volume& volume = find(key);
+  std::vector<TexelBox> shares;
+  for (const TexelBox& box : boxes)
+    if (const TexelBox share = intersection(box, volume.shown[std::size_t(rank)]); !is_empty(share))
+      shares.push_back(share);
+  return shares;
+}
+
+void RankRenderer::add_texels(VolumeKey key, std::span<const TexelBox> shares,
+                              std::span<const std::byte> texels) {
+  Volume& volume = find(key);
+  refusing([&] {
+    for (const TexelBox& share : shares) {
+      const std::size_t bytes = texels_in(share) * bytes_per_texel(key);
+      if (volume.state == Volume::State::filling)
+        volume.bricks.add_slices(share, texels.first(bytes));
+      else
+        volume.bricks.change(share, texels.first(bytes), volume.changed_blocks);
+      texels = texels.subspan(bytes);
+    }
+  });
+}
+
+std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
+  return volume::bytes_per_texel(find(key).bricks.description().type);
 }
 
 void RankRenderer::end(VolumeKey key) {
   Volume& volume = find(key);
-  refusing([&] { volume.bricks.finish(); });
-  volume.complete = true;
+  if (volume.state == Volume::State::filling) refusing([&] { volume.bricks.finish(); });
+  volume.caster.blocks_changed(volume.changed_blocks);
+  volume.changed_blocks.clear();
+  volume.state = Volume::State::complete;
 }
 
 void RankRenderer::forget(VolumeKey key) {

@@ -31,7 +31,14 @@ class RankRenderer {
   ~RankRenderer();
 
   void begin(std::uint64_t client, const volume::VolumeDescription& description);
-  void add_slices(VolumeKey key, int first_slice, int slices, std::span<const std::byte> texels);
+  void begin_change(VolumeKey key, std::uint64_t version);
+  /// Refuses texels that no rank may take: all ranks, asked the same, answer the same.
+  void check_texels(VolumeKey key, std::span<const volume::TexelBox> boxes, std::size_t bytes) const;
+  /// What of these boxes `rank` shows; the others' texels need not come there.
+  std::vector<volume::TexelBox> shares(VolumeKey key, std::span<const volume::TexelBox> boxes, int rank) const;
+  /// Texels of this rank's share, one box after the other.
+  void add_texels(VolumeKey key, std::span<const volume::TexelBox> shares, std::span<const std::byte> texels);
+  std::size_t bytes_per_texel(VolumeKey key) const;
   void end(VolumeKey key);
   void forget(VolumeKey key);
   void forget_client(std::uint64_t client);

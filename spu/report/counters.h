@@ -31,6 +31,8 @@ struct VolumeCounters {
   std::atomic<std::uint64_t> draws_substituted;
   std::atomic<std::uint64_t> draws_left;
   std::atomic<std::uint64_t> probes;  ///< how often its colours were found out
+  std::atomic<std::uint64_t> texel_bytes_sent;
+  std::atomic<std::uint64_t> texel_bytes_left_out;  ///< of changed textures: what the nodes had already
   ReasonCount left_because[max_counted_reasons];
   std::atomic<std::uint64_t> verified_frames;
   double verify_max;      ///< worst over the verified frames

@@ -150,6 +150,9 @@ Json report_of(const VolumeCounters& volume, std::int32_t pid) {
            {{report_key::substituted, volume.draws_substituted.load()},
             {report_key::left, volume.draws_left.load()}}},
           {report_key::probes, volume.probes.load()},
+          {report_key::texels,
+           {{report_key::bytes_sent, volume.texel_bytes_sent.load()},
+            {report_key::bytes_left_out, volume.texel_bytes_left_out.load()}}},
           {report_key::left_because, because},
           {report_key::verify, verified(volume)},
           {report_key::explanation, text_in(volume.explanation)}};
@@ -280,6 +283,10 @@ std::string explanation_text(Processes processes) {
                           volume.draws_left.load());
       if (volume.explanation[0] != '\0') {
         text += fmt::format("understudy:     recognised: {}\n", text_in(volume.explanation));
+      }
+      if (const std::uint64_t sent = volume.texel_bytes_sent.load(); sent > 0) {
+        text += fmt::format("understudy:     texels: {} bytes sent, {} bytes left out\n", sent,
+                            volume.texel_bytes_left_out.load());
       }
       for (const auto& [reason, count] : reasons_of(volume)) {
         text += fmt::format("understudy:     left to the application {}x: {}\n", count, reason);

@@ -2,7 +2,15 @@
 
 #include <algorithm>
 
+#include "volume/brick/texel_box.h"
+
 namespace understudy::spu {
+namespace {
+
+/// Kept apart per texture.
+constexpr std::size_t most_changes = 16;
+
+}  // namespace
 
 std::uint64_t ShareGroup::texture_version(GLuint texture) const {
   const std::scoped_lock lock(mutex_);
@@ -12,7 +20,42 @@ std::uint64_t ShareGroup::texture_version(GLuint texture) const {
 
 void ShareGroup::texture_changed(GLuint texture) {
   const std::scoped_lock lock(mutex_);
-  known(texture).version = ++changes_;
+  TextureRecord& record = known(texture);
+  record.version = record.changed_wholly = ++changes_;
+  record.changes.clear();
+}
+
+void ShareGroup::texture_changed(GLuint texture, const volume::TexelBox& box) {
+  const std::scoped_lock lock(mutex_);
+  TextureRecord& record = known(texture);
+  record.version = ++changes_;
+  auto& changes = record.changes;
+  if (!changes.empty()) {
+    // Slabs that are uploaded one after the other are one box.
+    const volume::TexelBox both = volume::enclosing(changes.back().box, box);
+    if (volume::texels_in(both) <= volume::texels_in(changes.back().box) + volume::texels_in(box)) {
+      changes.back() = {record.version, both};
+      return;
+    }
+  }
+  changes.push_back({record.version, box});
+  if (changes.size() <= most_changes) return;
+  // Whoever looks at every frame has seen the oldest.
+  changes[1].box = volume::enclosing(changes[0].box, changes[1].box);
+  changes.erase(changes.begin());
+}
+
+std::optional<std::vector<volume::TexelBox>> ShareGroup::changes_since(GLuint texture,
+                                                                       std::uint64_t version) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = textures_.find(texture);
+  if (found == textures_.end() || found->second.changed_wholly > version || some_changed_.load() > version)
+    return std::nullopt;
+  std::vector<volume::TexelBox> boxes;
+  for (const auto& change : found->second.changes) {
+    if (change.version > version) boxes.push_back(change.box);
+  }
+  return boxes;
 }
 
 void ShareGroup::some_texture_changed() {

@@ -10,9 +10,11 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "dispatch/table.h"
 #include "spu/track/program_sources.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 
@@ -29,6 +31,10 @@ class ShareGroup {
   /// Grows with every change of the texture's contents or definition.
   std::uint64_t texture_version(GLuint texture) const;
   void texture_changed(GLuint texture);
+  /// Nothing outside `box` of its level 0 did.
+  void texture_changed(GLuint texture, const volume::TexelBox& box);
+  /// Boxes around what changed after `version`; nothing where that may be anything.
+  std::optional<std::vector<volume::TexelBox>> changes_since(GLuint texture, std::uint64_t version) const;
   /// A change of a texture whose name is not known. Before there are volumes nobody asks for it, and it is not
   /// noted.
   void some_texture_changed();
@@ -44,7 +50,12 @@ class ShareGroup {
 
   /// A 3-D texture has contents: what draws are watched for.
   void volume_defined() { has_volumes_.store(true, std::memory_order_relaxed); }
-  bool has_volumes() const { return has_volumes_.load(std::memory_order_relaxed); }
+  /// A context watches for stacks of 2-D textures, or does so no longer.
+  void stacks_watched() { stack_watchers_.fetch_add(1, std::memory_order_relaxed); }
+  void stacks_left() { stack_watchers_.fetch_sub(1, std::memory_order_relaxed); }
+  bool has_volumes() const {
+    return has_volumes_.load(std::memory_order_relaxed) || stack_watchers_.load(std::memory_order_relaxed) > 0;
+  }
 
   /// The texture is, or was, attached to a framebuffer or bound as an image: its contents change without an
   /// upload.
@@ -62,7 +73,13 @@ class ShareGroup {
 
  private:
   struct TextureRecord {
+    struct Change {
+      std::uint64_t version;
+      volume::TexelBox box;
+    };
     std::uint64_t version = 0;
+    std::uint64_t changed_wholly = 0;  ///< version
+    std::vector<Change> changes;       ///< since then, the oldest first
     bool rendered_to = false;
   };
 
@@ -78,6 +95,7 @@ class ShareGroup {
   std::atomic<std::uint64_t> deletions_{0};
   std::atomic<bool> textures_are_known_{false};  ///< textures_ is not empty
   std::atomic<bool> has_volumes_{false};
+  std::atomic<int> stack_watchers_{0};
   std::atomic<bool> lists_change_textures_{false};
 };
 

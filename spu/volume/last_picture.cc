@@ -19,10 +19,14 @@ class LastPicture final : public compositor::RenderService {
     last_.reset();
     service_->begin_volume(volume);
   }
-  void add_slices(volume::VolumeId id, int first_slice, int slices,
+  void begin_change(volume::VolumeId id, std::uint64_t version) override {
+    last_.reset();
+    service_->begin_change(id, version);
+  }
+  void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
                   std::span<const std::byte> texels) override {
     last_.reset();
-    service_->add_slices(id, first_slice, slices, texels);
+    service_->add_texels(id, boxes, texels);
   }
   void end_volume(volume::VolumeId id) override {
     last_.reset();

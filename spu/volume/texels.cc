@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
+#include <stdexcept>
 #include <vector>
+
+#include "volume/brick/texel_box.h"
 
 namespace understudy::spu {
 namespace {
-
-constexpr std::size_t slab_bytes = std::size_t(4) << 20;
 
 GLint level_parameter(const DispatchTable& gl, GLenum target, GLenum name) {
   GLint value = 0;
@@ -149,15 +148,70 @@ GLenum pixel_type(volume::TexelType type) {
   }
 }
 
-void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
-  for (std::size_t i = 0; i + sizeof(float) <= texels.size(); i += sizeof(float)) {
-    float value;
-    std::memcpy(&value, texels.data() + i, sizeof value);
-    if (!std::isfinite(value)) continue;
-    range[0] = std::min(range[0], value);
-    range[1] = std::max(range[1], value);
+class BoundTexture final : public TexelSource {
+ public:
+  BoundTexture(const GlContext& context, GLuint texture, const TextureDescription& description)
+      : context_(context), texture_(texture), description_(description) {}
+
+  void read(const volume::TexelBox& box, std::span<std::byte> texels) override {
+    const DispatchTable& gl = *context_.gl;
+    const GLenum format = pixel_format(description_.base);
+    const GLenum type = pixel_type(description_.type);
+    if (context_.version >= 450) {
+      gl.GetTextureSubImage(texture_, 0, box.low[0], box.low[1], box.low[2], box.high[0] - box.low[0],
+                            box.high[1] - box.low[1], box.high[2] - box.low[2], format, type,
+                            GLsizei(texels.size()), texels.data());
+      return;
+    }
+    // Before OpenGL 4.5 only the whole level can be read: one copy, gone with this source.
+    const std::size_t texel = volume::bytes_per_texel(description_.type);
+    const volume::TexelBox whole{{0, 0, 0}, description_.size};
+    if (level_.empty()) {
+      level_.resize(volume::texels_in(whole) * texel);
+      gl.GetTexImage(GL_TEXTURE_3D, 0, format, type, level_.data());
+    }
+    volume::copy_texels(box, texel, whole, level_, box, texels);
   }
-}
+
+ private:
+  const GlContext& context_;
+  GLuint texture_;
+  TextureDescription description_;
+  std::vector<std::byte> level_;
+};
+
+class Stack final : public TexelSource {
+ public:
+  Stack(const GlContext& context, std::span<const GLuint> textures, const TextureDescription& description)
+      : context_(context), textures_(textures), description_(description) {}
+
+  void read(const volume::TexelBox& box, std::span<std::byte> texels) override {
+    const DispatchTable& gl = *context_.gl;
+    const std::size_t texel = volume::bytes_per_texel(description_.type);
+    volume::TexelBox slice{{0, 0, 0}, {description_.size[0], description_.size[1], 0}};
+    for (int z = box.low[2]; z < box.high[2]; ++z) {
+      gl.BindTexture(GL_TEXTURE_2D, textures_[std::size_t(z)]);
+      TextureDescription found;
+      if (const auto reason = describe_texture(context_, GL_TEXTURE_2D, 0, found))
+        throw std::runtime_error(*reason);
+      found.size[2] = description_.size[2];
+      if (found.size != description_.size || found.type != description_.type || found.base != description_.base)
+        throw std::runtime_error("the stack's textures differ in size or format");
+      slice.low[2] = z;
+      slice.high[2] = z + 1;
+      slice_.resize(volume::texels_in(slice) * texel);
+      gl.GetTexImage(GL_TEXTURE_2D, 0, pixel_format(description_.base), pixel_type(description_.type),
+                     slice_.data());
+      volume::copy_texels(volume::intersection(box, slice), texel, slice, slice_, box, texels);
+    }
+  }
+
+ private:
+  const GlContext& context_;
+  std::span<const GLuint> textures_;
+  TextureDescription description_;
+  std::vector<std::byte> slice_;
+};
 
 }  // namespace
 
@@ -213,48 +267,18 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
   return std::nullopt;
 }
 
-std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
-                                 const TextureDescription& description, const volume::TexelBox& box,
-                                 const std::function<void(int, int, std::span<const std::byte>)>& slab) {
-  const DispatchTable& gl = *context.gl;
-  const GLenum format = pixel_format(description.base);
-  const GLenum type = pixel_type(description.type);
-  const std::size_t texel = volume::bytes_per_texel(description.type);
-  const std::array<int, 3> extent{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]};
-  const std::size_t slice = std::size_t(extent[0]) * std::size_t(extent[1]) * texel;
-  std::array<float, 2> range{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
-  const bool floats = description.type == volume::TexelType::f32;
+std::unique_ptr<TexelSource> texture_source(const GlContext& context, GLuint texture,
+                                            const TextureDescription& description) {
+  return std::make_unique<BoundTexture>(context, texture, description);
+}
 
-  if (context.version >= 450) {
-    const int slices = int(std::clamp<std::size_t>(slab_bytes / slice, 1, std::size_t(extent[2])));
-    std::vector<std::byte> texels(slice * std::size_t(slices));
-    for (int z = box.low[2]; z < box.high[2]; z += slices) {
-      const int count = std::min(slices, box.high[2] - z);
-      const std::size_t bytes = slice * std::size_t(count);
-      gl.GetTextureSubImage(texture, 0, box.low[0], box.low[1], z, extent[0], extent[1], count, format, type,
-                            GLsizei(bytes), texels.data());
-      if (floats) widen(range, std::span(texels).first(bytes));
-      slab(z, count, std::span(texels).first(bytes));
-    }
-  } else {
-    // Before OpenGL 4.5 only the whole level can be read: one copy, gone when this returns.
-    const std::size_t row = std::size_t(description.size[0]) * texel;
-    const std::size_t whole_slice = row * std::size_t(description.size[1]);
-    std::vector<std::byte> all(whole_slice * std::size_t(description.size[2]));
-    gl.GetTexImage(GL_TEXTURE_3D, 0, format, type, all.data());
-    std::vector<std::byte> texels(slice);
-    for (int z = box.low[2]; z < box.high[2]; ++z) {
-      for (int y = 0; y < extent[1]; ++y) {
-        std::memcpy(texels.data() + std::size_t(y) * std::size_t(extent[0]) * texel,
-                    all.data() + whole_slice * std::size_t(z) + row * std::size_t(box.low[1] + y) +
-                        std::size_t(box.low[0]) * texel,
-                    std::size_t(extent[0]) * texel);
-      }
-      if (floats) widen(range, texels);
-      slab(z, 1, texels);
-    }
-  }
-  if (!floats || range[0] > range[1]) return {0.0F, 1.0F};
+std::unique_ptr<TexelSource> stack_source(const GlContext& context, std::span<const GLuint> textures,
+                                          const TextureDescription& description) {
+  return std::make_unique<Stack>(context, textures, description);
+}
+
+std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> range) {
+  if (description.type != volume::TexelType::f32 || range[0] > range[1]) return {0.0F, 1.0F};
   for (const volume::Wrap wrap : description.wrap) {
     if (wrap != volume::Wrap::border || !std::isfinite(description.border[0])) continue;
     range[0] = std::min(range[0], description.border[0]);
@@ -263,33 +287,6 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
   // A constant field has no range to spread a table over: any room above it will do.
   if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
   return range;
-}
-
-std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
-                                      const TextureDescription& description, const volume::TexelBox& box,
-                                      const std::function<void(int, int, std::span<const std::byte>)>& slab) {
-  const DispatchTable& gl = *context.gl;
-  const std::size_t texel = volume::bytes_per_texel(description.type);
-  const auto width = std::size_t(box.high[0] - box.low[0]) * texel;
-  const auto row = std::size_t(description.size[0]) * texel;
-  std::vector<std::byte> whole(row * std::size_t(description.size[1]));
-  std::vector<std::byte> part(width * std::size_t(box.high[1] - box.low[1]));
-  for (int z = box.low[2]; z < box.high[2]; ++z) {
-    gl.BindTexture(GL_TEXTURE_2D, textures[std::size_t(z)]);
-    TextureDescription slice;
-    if (auto reason = describe_texture(context, GL_TEXTURE_2D, 0, slice)) return reason;
-    slice.size[2] = description.size[2];
-    if (slice.size != description.size || slice.type != description.type || slice.base != description.base)
-      return "the stack's textures differ in size or format";
-    gl.GetTexImage(GL_TEXTURE_2D, 0, pixel_format(description.base), pixel_type(description.type),
-                   whole.data());
-    for (int y = box.low[1]; y < box.high[1]; ++y) {
-      std::memcpy(part.data() + std::size_t(y - box.low[1]) * width,
-                  whole.data() + std::size_t(y) * row + std::size_t(box.low[0]) * texel, width);
-    }
-    slab(z, 1, part);
-  }
-  return std::nullopt;
 }
 
 }  // namespace understudy::spu

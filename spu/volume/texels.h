@@ -5,8 +5,9 @@
 // stays here.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "spu/volume/context.h"
@@ -33,17 +34,25 @@ struct TextureDescription {
 std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
                                             TextureDescription& description);
 
-/// Reads the texels of `box` from the 3-D texture bound to the active unit and hands them on in slabs of whole
-/// slices (first slice, number, texels tightly packed). Expects tight pixel packing (SavedState). Returns the
-/// range of finite values for f32, [0,1] otherwise.
-std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
-                                 const TextureDescription& description, const volume::TexelBox& box,
-                                 const std::function<void(int, int, std::span<const std::byte>)>& slab);
+/// Where texels are read from, any box of them. Expects tight pixel packing (SavedState).
+class TexelSource {
+ public:
+  virtual ~TexelSource() = default;
+  /// Tightly packed, x fastest. Throws std::runtime_error with a reason.
+  virtual void read(const volume::TexelBox& box, std::span<std::byte> texels) = 0;
+};
 
-/// The same from a stack of 2-D textures, slice by slice; binds them to the active unit. A reason where they
-/// are not alike, or hold floats.
-std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
-                                      const TextureDescription& description, const volume::TexelBox& box,
-                                      const std::function<void(int, int, std::span<const std::byte>)>& slab);
+/// The 3-D texture bound to the active unit.
+std::unique_ptr<TexelSource> texture_source(const GlContext& context, GLuint texture,
+                                            const TextureDescription& description);
+
+/// A stack of 2-D textures, which are bound to the active unit one by one. Those that are not alike are
+/// refused.
+std::unique_ptr<TexelSource> stack_source(const GlContext& context, std::span<const GLuint> textures,
+                                          const TextureDescription& description);
+
+/// The values over which a table is to be spread: of float fields, whose finite texels lie in `texels`, with
+/// the border colour where it shows; [0,1] of others.
+std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> texels);
 
 }  // namespace understudy::spu

@@ -1,11 +1,15 @@
 #include "spu/volume/texture_changes.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/volume_unit.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {
@@ -51,6 +55,68 @@ struct ChangesNamedTexture<Slot> {
   }
 };
 
+/// The box of an upload; empty where its numbers make no sense, and nothing is uploaded.
+volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth) {
+  const auto end = [](GLint low, GLsizei extent) {
+    return int(std::clamp<std::int64_t>(std::int64_t(low) + extent, low, std::numeric_limits<int>::max()));
+  };
+  return {{x, y, z}, {end(x, width), end(y, height), end(z, depth)}};
+}
+
+/// A box of one level of the texture bound to `target` is about to change.
+void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) {
+  VolumeUnit& unit = here();
+  GLint texture = 0;
+  if (target == GL_TEXTURE_3D && level == 0 && !unit.inside_begin)
+    unit.context().gl->GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
+  if (texture != 0) {
+    unit.chain().group().texture_changed(GLuint(texture), box);
+  } else {
+    NoteTextureChange::before(CallId::TexSubImage3D);
+  }
+}
+
+void named_box_changes(GLuint texture, GLint level, const volume::TexelBox& box) {
+  ShareGroup& group = here().chain().group();
+  if (level == 0) {
+    group.texture_changed(texture, box);
+  } else {
+    group.texture_changed(texture);
+  }
+}
+
+void APIENTRY tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                               GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels) {
+  bound_box_changes(target, level, box_of(x, y, z, width, height, depth));
+  here().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels);
+}
+
+void APIENTRY copy_tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLint from_x,
+                                    GLint from_y, GLsizei width, GLsizei height) {
+  bound_box_changes(target, level, box_of(x, y, z, width, height, 1));
+  here().next().CopyTexSubImage3D(target, level, x, y, z, from_x, from_y, width, height);
+}
+
+void APIENTRY texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                                   GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                   const void* pixels) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
+  here().next().TextureSubImage3D(texture, level, x, y, z, width, height, depth, format, type, pixels);
+}
+
+void APIENTRY copy_texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLint from_x,
+                                        GLint from_y, GLsizei width, GLsizei height) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, 1));
+  here().next().CopyTextureSubImage3D(texture, level, x, y, z, from_x, from_y, width, height);
+}
+
+void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                                  GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                  const void* value) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
+  here().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type, value);
+}
+
 }  // namespace
 
 void fill_texture_change_slots(DispatchTable& table) {
@@ -68,9 +134,12 @@ void fill_texture_change_slots(DispatchTable& table) {
   table.TextureStorage3D = ChangesNamedTexture<&Table::TextureStorage3D>::call;
   table.TextureSubImage1D = ChangesNamedTexture<&Table::TextureSubImage1D>::call;
   table.TextureSubImage2D = ChangesNamedTexture<&Table::TextureSubImage2D>::call;
-  table.TextureSubImage3D = ChangesNamedTexture<&Table::TextureSubImage3D>::call;
+  table.TextureSubImage3D = texture_sub_image_3d;
+  table.CopyTextureSubImage3D = copy_texture_sub_image_3d;
+  table.TexSubImage3D = tex_sub_image_3d;
+  table.CopyTexSubImage3D = copy_tex_sub_image_3d;
   table.ClearTexImage = ChangesNamedTexture<&Table::ClearTexImage>::call;
-  table.ClearTexSubImage = ChangesNamedTexture<&Table::ClearTexSubImage>::call;
+  table.ClearTexSubImage = clear_tex_sub_image;
 }
 
 }  // namespace understudy::spu

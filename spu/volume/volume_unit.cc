@@ -15,7 +15,9 @@
 #include "spu/volume/save_frames.h"
 #include "spu/volume/saved_state.h"
 #include "spu/volume/substitution.h"
+#include "spu/volume/texel_transfer.h"
 #include "spu/volume/verify.h"
+#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
 
@@ -30,6 +32,8 @@ double milliseconds_since(Clock::time_point start) {
 
 /// Fewer textures in a row are no stack worth looking at.
 constexpr std::size_t fewest_stack_slices = 8;
+/// A viewer shows its stack before so many frames are over, or makes another.
+constexpr int most_frames_without_stack = 600;
 
 volume::Matrix4 projection_matrix(const DispatchTable& gl) {
   std::array<GLdouble, 16> column_major{};
@@ -164,13 +168,6 @@ volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& 
     box.high[k] = std::clamp(int(std::floor(region.high[k] * n - 0.5)) + 2, box.low[k] + 1, size[k]);
   }
   return box;
-}
-
-bool holds(const volume::TexelBox& outer, const volume::TexelBox& inner) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (inner.low[k] < outer.low[k] || inner.high[k] > outer.high[k]) return false;
-  }
-  return true;
 }
 
 std::string_view name_of(volume::TexelType type) {
@@ -357,8 +354,25 @@ bool VolumeUnit::shows(const Run& run) {
 
 void VolumeUnit::stack_defined() {
   stacks_possible_ = true;
-  chain_.group().volume_defined();
+  frames_without_stack_ = 0;
+  if (!stacks_watched_) chain_.group().stacks_watched();
+  stacks_watched_ = true;
   if (chain_.phase() == Phase::plain) chain_.set_phase(Phase::watching);
+}
+
+void VolumeUnit::leave_stacks() {
+  if (!stacks_watched_ || !known_.empty()) return;
+  if (stacks_possible_ && ++frames_without_stack_ < most_frames_without_stack) return;
+  stop_watching_stacks();
+  // The next textures of one size begin a row of their own; one look at what they draw is enough then.
+  stack_detection = {};
+  other_stacks_ = patient_refusals - 1;
+  if (chain_.phase() == Phase::watching && !chain_.group().has_volumes()) chain_.set_phase(Phase::plain);
+}
+
+void VolumeUnit::stop_watching_stacks() {
+  if (stacks_watched_) chain_.group().stacks_left();
+  stacks_watched_ = stacks_possible_ = false;
 }
 
 /// Textured quads in a row are no volume until their geometry says so.
@@ -489,46 +503,50 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   describe_volume(s);
   KnownVolume& known = s.volume;
   const TextureDescription& texture = known.texture;
-  volume::VolumeDescription wanted;
-  wanted.id = known.description.id;
-  wanted.version = s.texture_version;
+  volume::VolumeDescription wanted = known.description;
   wanted.size = texture.size;
   wanted.type = texture.type;
   wanted.wrap = texture.wrap;
   wanted.border = texture.border;
   wanted.stored = texels_of(s.slices.region, texture.size);
   const bool kept = known.generation == session_->generation();
-  if (kept && holds(known.description.stored, wanted.stored)) {
+  if (kept && volume::contains(known.description.stored, wanted.stored)) {
     wanted.stored = known.description.stored;
-    if (wanted == known.description) return;
   } else if (kept) {
     // The view showed a part first and shows more now: take the whole, once.
     wanted.stored = {{0, 0, 0}, texture.size};
   }
-  if (wanted.id == 0) wanted.id = session_->new_volume_id();
+  const bool changed_at_most = kept && wanted == known.description;
+  if (changed_at_most && known.texture_version == s.texture_version) return;
 
   const TimedShare timed(clock_, &FrameShares::upload);
   known.generation = 0;
-  std::optional<std::string> reason;
-  service.begin_volume(wanted);
+  Transferred transferred;
   {
     SavedState saved(context());
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
-    const auto add = [&](int first, int slices, std::span<const std::byte> texels) {
-      service.add_slices(wanted.id, first, slices, texels);
-    };
-    if (s.pipeline.stack) {
-      saved.borrow_texture(GL_TEXTURE_2D, 0);
-      known.range = {0, 1};
-      reason = read_stack(context(), s.stack, texture, wanted.stored, add);
+    if (s.pipeline.stack) saved.borrow_texture(GL_TEXTURE_2D, 0);
+    const auto source = s.pipeline.stack ? stack_source(context(), s.stack, texture)
+                                         : texture_source(context(), s.pipeline.volume.texture, texture);
+    if (changed_at_most) {
+      std::optional<std::vector<volume::TexelBox>> regions;
+      if (!s.pipeline.stack)
+        regions = chain_.group().changes_since(s.pipeline.volume.texture, known.texture_version);
+      if (!regions) regions = {wanted.stored};
+      transferred = send_changes(service, wanted, *regions, *source, known.hashes);
     } else {
-      known.range = read_texels(context(), s.pipeline.volume.texture, texture, wanted.stored, add);
+      if (wanted.id == 0) wanted.id = session_->new_volume_id();
+      ++wanted.version;
+      known.hashes = TileHashes(wanted.stored, wanted.type);
+      transferred = send_volume(service, wanted, *source, known.hashes);
     }
   }
-  if (reason) throw Doubt{*reason};
-  service.end_volume(wanted.id);
+  known.range = value_range(texture, known.hashes.range());
   known.description = wanted;
+  known.texture_version = s.texture_version;
   known.generation = session_->generation();
+  known.counters->texel_bytes_sent.fetch_add(transferred.sent, std::memory_order_relaxed);
+  known.counters->texel_bytes_left_out.fetch_add(transferred.left_out, std::memory_order_relaxed);
 }
 
 void VolumeUnit::classify(Substitution& s) {
@@ -768,6 +786,7 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   count_frame(frame);
   frame_started_ = Clock::now();
   forget_deleted_volumes();
+  leave_stacks();
 }
 
 void VolumeUnit::forget_deleted_volumes() {
@@ -784,6 +803,7 @@ void VolumeUnit::forget_deleted_volumes() {
 
 void VolumeUnit::abandon() {
   run_.reset();
+  stop_watching_stacks();
   stages_.clear();
   for (auto& [texture, volume] : known_) {
     const auto lock = session_->lock();

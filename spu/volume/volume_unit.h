@@ -23,6 +23,7 @@
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
 #include "spu/volume/stack_detection.h"
+#include "spu/volume/tile_hashes.h"
 
 namespace understudy::spu {
 
@@ -30,6 +31,8 @@ namespace understudy::spu {
 struct KnownVolume {
   volume::VolumeDescription description;  ///< as the service has it
   std::uint64_t generation = 0;           ///< of the service that has it; 0: none
+  std::uint64_t texture_version = 0;      ///< of the texture, whose texels it has
+  TileHashes hashes;                      ///< of the texels that it has
   TextureDescription texture;
   std::array<float, 2> range{0, 1};
   std::optional<Probed> probed;
@@ -89,6 +92,9 @@ class VolumeUnit final : public Unit {
   KnownVolume& known(GLuint texture);
   void observe(Substitution& s);
   bool is_a_stack(const Run& run);
+  /// Ends the watch for stacks where none is drawn.
+  void leave_stacks();
+  void stop_watching_stacks();
   void find_geometry(Substitution& s);
   void describe_volume(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
@@ -121,7 +127,9 @@ class VolumeUnit final : public Unit {
   Records calls_;  ///< of the open run; kept between runs for its memory
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
-  bool stacks_possible_ = false;
+  bool stacks_watched_ = false;
+  bool stacks_possible_ = false;  ///< while they are watched: rows of textures may still be one
+  int frames_without_stack_ = 0;
   int other_stacks_ = 0;  ///< runs through many 2-D textures that were no volume, since the last that was
   ProgramSamplers samplers_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>

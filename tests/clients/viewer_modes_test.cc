@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -61,7 +62,9 @@ TEST_P(ViewerModes, AreSubstitutedOrLeft) {
 INSTANTIATE_TEST_SUITE_P(
     Of, ViewerModes,
     testing::Values(
-        Way{"Time", "time", {}, 1, nullptr}, Way{"Bricks", "bricks", {}, 50, nullptr},
+        Way{"Time", "time", {}, 1, nullptr}, Way{"TimeInPart", "time", {"--time-step", "part"}, 1, nullptr},
+        Way{"TimeInPartAgain", "time", {"--time-step", "again"}, 1, nullptr},
+        Way{"Bricks", "bricks", {}, 50, nullptr},
         Way{"BricksFrontToBack", "bricks", {"--operator", "under"}, 50, nullptr},
         Way{"Under", "table", {"--operator", "under", "--opaque"}, 1, nullptr},
         Way{"UnderInOneBatch", "core", {"--operator", "under"}, 1, nullptr},
@@ -82,6 +85,41 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"Stacks", "stacks", {}, 1, nullptr},
         Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });
+
+class TimeSteps : public Stage, public testing::WithParamInterface<const char*> {};
+
+// The whole volume once; then, of a box in its middle, the tiles of 16^3 texels that it meets.
+TEST_P(TimeSteps, SendOnlyWhatChanges) {
+  if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  constexpr std::uint64_t whole = 256 * 256 * 110, tiles = 64 * 64 * 48;
+  for (const char* ranks : {"0", "4"}) {
+    const std::string folder = std::string("frames") + ranks;
+    const Outcome outcome =
+        run_well(under({"-n", ranks, "--save-frames", file(folder), "--report", file("report.json")}) +
+                 engine_viewer("time", {"--time-step", GetParam(), "--frames", "3", "--orbit", "20"}));
+    const nlohmann::json report = json("report.json");
+    ASSERT_EQ(substituted(report), 3) << outcome.err;
+    const nlohmann::json& texels = report.at("volumes").at(0).at("texels");
+    const auto sent = texels.at("bytes_sent").get<std::uint64_t>();
+    fmt::print("{} on {} ranks: {} bytes sent\n", GetParam(), ranks, sent);
+    EXPECT_EQ(sent + texels.at("bytes_left_out").get<std::uint64_t>(), 3 * whole);
+    EXPECT_GT(sent, whole);
+    // Air stays air.
+    EXPECT_LT(sent, std::string(GetParam()) == "whole" ? 3 * whole : whole + 2 * tiles + 1);
+  }
+  for (int number = 0; number < 3; ++number) {
+    const std::string name = fmt::format("frame_{:04}.pfm", number);
+    const Picture one = read_picture(file("frames0") / name), four = read_picture(file("frames4") / name);
+    ASSERT_EQ(one.rgba.size(), four.rgba.size());
+    float largest = 0;
+    for (std::size_t i = 0; i < one.rgba.size(); ++i)
+      largest = std::max(largest, std::abs(one.rgba[i] - four.rgba[i]));
+    EXPECT_LE(largest, 1e-5F) << name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, TimeSteps, testing::Values("whole", "part", "again"),
+                         [](const auto& info) { return std::string(info.param); });
 
 class OperatorsOnRanks : public Stage, public testing::WithParamInterface<const char*> {};
 

@@ -38,8 +38,11 @@ inline void upload(RenderService& service, const Texture& texture) {
   const std::size_t slice_bytes = texture.texels.size() / std::size_t(slices);
   for (int z = 0; z < slices; z += 3) {
     const int now = std::min(3, slices - z);
-    service.add_slices(
-        d.id, d.stored.low[2] + z, now,
+    volume::TexelBox slab = d.stored;
+    slab.low[2] += z;
+    slab.high[2] = slab.low[2] + now;
+    service.add_texels(
+        d.id, {&slab, 1},
         std::span(texture.texels).subspan(std::size_t(z) * slice_bytes, std::size_t(now) * slice_bytes));
   }
   service.end_volume(d.id);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <random>
 
 #include "compositor/exchange/thread_link.h"
 #include "compositor/node/node.h"
@@ -17,6 +18,9 @@
 #include "compositor/service/rank_renderer.h"
 #include "tests/compositor/forwarding_link.h"
 #include "tests/compositor/group_scene.h"
+#include "volume/brick/brick_store.h"
+#include "volume/brick/texel_box.h"
+#include "volume/kd_tree.h"
 
 namespace understudy::compositor {
 namespace {
@@ -185,6 +189,172 @@ TEST_F(NodeGroupTest, AVolumeThatIsBegunAgainIsReplaced) {
   EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
 }
 
+// Boxes of a texture's own texels, one after the other.
+std::vector<std::byte> texels_of(const Texture& texture, std::span<const volume::TexelBox> boxes) {
+  const std::size_t texel = volume::bytes_per_texel(texture.description.type);
+  std::vector<std::byte> bytes;
+  for (const volume::TexelBox& box : boxes) {
+    std::vector<std::byte> part(volume::texels_in(box) * texel);
+    volume::copy_texels(box, texel, texture.description.stored, texture.texels, box, part);
+    bytes.insert(bytes.end(), part.begin(), part.end());
+  }
+  return bytes;
+}
+
+TEST_F(NodeGroupTest, ChangedTexelsGiveThePictureOfAFreshVolumeBitForBit) {
+  const unsigned seed = 1811;
+  std::printf("seed %u\n", seed);
+  std::mt19937 random(seed);
+  for (const int ranks : {0, 1, 4}) {
+    Group* group = ranks > 0 ? &start(ranks) : nullptr;
+    const auto service = ranks > 0 ? connect() : embedded_service();
+    for (const TexelType type : {TexelType::u8, TexelType::f32}) {
+      Texture texture = some_texture(7, type);
+      upload(*service, texture);
+      volume::RenderRequest request = some_request(texture);
+      const volume::Image before = picture_of(*service, request);
+      for (std::uint64_t version = 1; version <= 4; ++version) {
+        std::vector<volume::TexelBox> boxes(1 + random() % 5);
+        for (volume::TexelBox& box : boxes)
+          for (std::size_t k = 0; k < 3; ++k) {
+            box.low[k] = int(random() % unsigned(texture.description.size[k]));
+            box.high[k] = box.low[k] + 1 + int(random() % unsigned(texture.description.size[k] - box.low[k]));
+          }
+        const Texture other = volume::testing::noise(texture.description, unsigned(random()));
+        for (const volume::TexelBox& box : boxes)
+          volume::copy_texels(box, volume::bytes_per_texel(type), texture.description.stored, other.texels,
+                              texture.description.stored, texture.texels);
+        service->begin_change(7, version);
+        EXPECT_THROW(service->render(request), RequestRefused) << "in the midst of a change";
+        service->add_texels(7, boxes, texels_of(texture, boxes));
+        service->end_volume(7);
+        request.version = version;
+        const volume::Image changed = picture_of(*service, request);
+        EXPECT_GT(largest_difference(changed, before), 0.01) << "the change is to be seen";
+
+        Texture fresh = texture;
+        fresh.description.id = 8;
+        fresh.description.version = version;
+        upload(*service, fresh);
+        volume::RenderRequest of_fresh = request;
+        of_fresh.volume = 8;
+        EXPECT_EQ(largest_difference(picture_of(*service, of_fresh), changed), 0)
+            << ranks << " ranks, version " << version;
+      }
+    }
+    if (group == nullptr) continue;
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group->ended(); }));
+  }
+}
+
+// Counted where they arrive.
+TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
+  struct Counts {
+    std::atomic<std::uint64_t> received = 0, broadcast = 0;
+  } counts;
+  class Counting : public ForwardingLink {
+   public:
+    Counting(Link& link, Counts& counts) : ForwardingLink(link), counts_(counts) {}
+    void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
+      for (const Incoming& message : incoming) counts_.received += message.bytes.size();
+      ForwardingLink::transfer(outgoing, incoming);
+    }
+    void broadcast(Rank root, std::span<std::byte> bytes) override {
+      if (rank() != root) counts_.broadcast += bytes.size();
+      ForwardingLink::broadcast(root, bytes);
+    }
+
+   private:
+    Counts& counts_;
+  };
+  constexpr int ranks = 4;
+  start(ranks, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
+    Counting counting(link, counts);
+    run(counting);
+  });
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  const volume::KdTree tree(texture.description, ranks);
+  std::vector<volume::TexelBox> shown;
+  std::uint64_t all = 0;
+  for (int rank = 0; rank < ranks; ++rank) {
+    shown.push_back(volume::BrickStore::texels_shown(texture.description, tree.box(rank)));
+    if (rank > 0) all += volume::texels_in(shown.back());
+  }
+  upload(*linked, texture);
+  EXPECT_EQ(counts.received, all);
+  EXPECT_LT(counts.received, texture.texels.size()) << "less than one copy travels";
+  EXPECT_LT(counts.broadcast, texture.texels.size() / 2) << "orders and boxes, no texels";
+
+  // One texel in the midst of one rank's share, then one that two ranks share.
+  const volume::TexelBox& last = shown.back();
+  const volume::TexelBox one{{last.high[0] - 1, last.high[1] - 1, last.high[2] - 1}, last.high};
+  const volume::TexelBox shared = volume::intersection(shown[2], shown[3]);
+  ASSERT_FALSE(volume::is_empty(shared));
+  for (const auto& [box, copies] : {std::pair{one, 1U}, {shared, 2U}}) {
+    counts.received = 0;
+    linked->begin_change(7, copies);
+    linked->add_texels(7, {&box, 1}, texels_of(texture, {&box, 1}));
+    linked->end_volume(7);
+    std::uint64_t expected = 0;
+    for (int rank = 1; rank < ranks; ++rank)
+      expected += volume::texels_in(volume::intersection(box, shown[std::size_t(rank)]));
+    EXPECT_GE(expected, copies * volume::texels_in(box));
+    EXPECT_LT(expected, (copies + 1) * volume::texels_in(box)) << "an edge of it may be in a third share";
+    EXPECT_EQ(counts.received, expected);
+  }
+  // An unchanged volume under a new version costs no texels.
+  counts.received = 0;
+  linked->begin_change(7, 3);
+  linked->end_volume(7);
+  EXPECT_EQ(counts.received, 0U);
+}
+
+TEST_F(NodeGroupTest, WhatIsWrongWithAVolumeThatWasGivenUpConcernsNoOther) {
+  start(2);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  volume::VolumeDescription senseless = texture.description;
+  senseless.id = 8;
+  senseless.size = {0, 1, 1};
+  for (int i = 0; i < 2; ++i) {
+    linked->begin_volume(senseless);
+    EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
+    linked->begin_volume(senseless);
+    EXPECT_NO_THROW(linked->forget_volume(8));
+    linked->begin_volume(senseless);
+    upload(*linked, texture);
+  }
+}
+
+TEST_F(NodeGroupTest, LargeAndManyBoxesTravelInSeveralMessages) {
+  start(2);
+  const auto linked = connect(), embedded = embedded_service();
+  Texture texture = volume::testing::sampled(volume::testing::describe({300, 200, 170}, TexelType::u8),
+                                             volume::testing::marschner_lobb_field());
+  for (RenderService* service : {linked.get(), embedded.get()}) {
+    service->begin_volume(texture.description);
+    service->add_texels(7, {&texture.description.stored, 1}, texture.texels);
+    service->end_volume(7);
+  }
+  std::vector<volume::TexelBox> points;
+  for (std::size_t i = 0; i < limits::max_boxes_per_message + 10; ++i) {
+    const std::array<int, 3> at{int(i % 300), int(i / 300) + 80, 60};
+    points.push_back({at, {at[0] + 1, at[1] + 1, at[2] + 90}});
+  }
+  const std::vector<std::byte> texels(points.size() * 90, std::byte(220));
+  for (RenderService* service : {linked.get(), embedded.get()}) {
+    service->begin_change(7, 1);
+    service->add_texels(7, points, texels);
+    service->end_volume(7);
+  }
+  volume::RenderRequest request = some_request(texture);
+  request.version = 1;
+  EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
+}
+
 // What makes no sense is refused alike by both services, with a reason, and both go on serving.
 TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
   start(3);
@@ -198,16 +368,40 @@ TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
     EXPECT_THROW(service->end_volume(texture.description.id), RequestRefused);
 
     service->begin_volume(texture.description);
-    EXPECT_THROW(service->add_slices(texture.description.id, 0, 1, std::span(texture.texels).first(5)),
-                 RequestRefused);
+    const volume::TexelBox first_slice{{0, 0, 0}, {41, 37, 1}}, outside{{0, 0, 28}, {41, 37, 30}};
+    EXPECT_THROW(
+        service->add_texels(texture.description.id, {&first_slice, 1}, std::span(texture.texels).first(5)),
+        RequestRefused);
+    for (const auto& [box, texels] : {std::pair{outside, 2}, {volume::TexelBox{{0, 0, 0}, {41, 36, 1}}, 1}}) {
+      service->begin_volume(texture.description);
+      const auto bytes = std::span(texture.texels).first(volume::texels_in(box));
+      // What is wrong may be said by a later call.
+      EXPECT_THROW(
+          {
+            service->add_texels(texture.description.id, {&box, 1}, bytes);
+            service->end_volume(texture.description.id);
+          },
+          RequestRefused)
+          << texels;
+    }
+    EXPECT_THROW(
+        {
+          service->begin_change(99, 1);
+          service->end_volume(99);
+        },
+        RequestRefused);
 
     volume::VolumeDescription senseless = texture.description;
+    const auto begin_and_end = [&] {
+      service->begin_volume(senseless);
+      service->end_volume(senseless.id);
+    };
     senseless.size = {0, 1, 1};
-    EXPECT_THROW(service->begin_volume(senseless), RequestRefused);
+    EXPECT_THROW(begin_and_end(), RequestRefused);
     senseless.size = {16384, 16384, 16384};
     senseless.stored = {{0, 0, 0}, senseless.size};
     senseless.type = TexelType::rgba8;
-    EXPECT_THROW(service->begin_volume(senseless), RequestRefused);
+    EXPECT_THROW(begin_and_end(), RequestRefused);
 
     upload(*service, texture);
     volume::RenderRequest bad = good;
@@ -253,10 +447,12 @@ TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
   EXPECT_THROW(linked->render(some_request(texture)), RequestRefused);
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
 
-  // A volume of which one rank could not take a slab is not kept half.
+  // A volume of which some ranks could not take a slab, because it came to them twice, is not kept half.
   linked->begin_volume(texture.description);
-  armed = true;
-  EXPECT_THROW(linked->add_slices(texture.description.id, 0, 29, texture.texels), RequestRefused);
+  linked->add_texels(texture.description.id, {&texture.description.stored, 1}, texture.texels);
+  const volume::TexelBox first_slice{{0, 0, 0}, {41, 37, 1}};
+  linked->add_texels(texture.description.id, {&first_slice, 1}, std::span(texture.texels).first(41 * 37));
+  EXPECT_THROW(linked->end_volume(texture.description.id), RequestRefused);
   EXPECT_THROW(linked->end_volume(texture.description.id), RequestRefused);
   upload(*linked, texture);
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
@@ -410,7 +606,8 @@ TEST_F(NodeGroupTest, AGroupThatDoesNotReadIsGivenUp) {
   const Connection taken = group.take_in();
   application.join();
   const std::vector<std::byte> slice(std::size_t(8) << 20);
-  EXPECT_THROW(linked->add_slices(1, 0, 1, slice), ServiceLost);
+  const volume::TexelBox box{{0, 0, 0}, {2048, 4096, 1}};
+  EXPECT_THROW(linked->add_texels(1, {&box, 1}, slice), ServiceLost);
 }
 
 TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {

@@ -68,9 +68,9 @@ struct Kind {
   std::function<std::vector<std::byte>(std::span<const std::byte>)> read_and_write_again;
 };
 
-std::vector<std::byte> slices_message(const Slices& slices) {
-  std::vector<std::byte> bytes = encode_slices_head(slices);
-  bytes.insert(bytes.end(), slices.texels.begin(), slices.texels.end());
+std::vector<std::byte> texels_message(const Texels& texels) {
+  std::vector<std::byte> bytes = encode_texels_head(texels);
+  bytes.insert(bytes.end(), texels.texels.begin(), texels.texels.end());
   bytes.resize((bytes.size() + 7) / 8 * 8);
   return bytes;
 }
@@ -81,7 +81,9 @@ std::vector<Kind> all_kinds() {
   return {
       {"hello", encode(Hello{7}), [](auto b) { return encode(decode_hello(b)); }},
       {"volume", encode(some_volume()), [](auto b) { return encode(decode_volume(b)); }},
-      {"slices", slices_message({4, 2, 1, texels}), [](auto b) { return slices_message(decode_slices(b)); }},
+      {"change", encode(Change{4, 2}), [](auto b) { return encode(decode_change(b)); }},
+      {"texels", texels_message({4, {{{1, 2, 3}, {2, 4, 5}}, {{0, 0, 0}, {3, 3, 1}}}, texels}),
+       [](auto b) { return texels_message(decode_texels(b)); }},
       {"request with a table", encode(some_request(false, false)), request},
       {"request with a map and depth", encode(some_request(true, true)), request},
       {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
@@ -251,6 +253,15 @@ TEST(Protocol, LimitsAreKept) {
   v = some_volume();
   v.stored.high[0] = v.stored.low[0];
   EXPECT_THROW(decode_volume(encode(v)), MalformedMessage);
+
+  Texels texels{1, std::vector<TexelBox>(limits::max_boxes_per_message, {{0, 0, 0}, {1, 1, 1}}), {}};
+  EXPECT_NO_THROW(decode_texels(texels_message(texels)));
+  texels.boxes.push_back(texels.boxes.front());
+  EXPECT_THROW(decode_texels(texels_message(texels)), MalformedMessage);
+  texels.boxes = {{{0, 2, 0}, {1, 2, 1}}};
+  EXPECT_THROW(decode_texels(texels_message(texels)), MalformedMessage) << "an empty box";
+  texels.boxes = {{{0, 0, 0}, {1, 1, max_axis_texels + 1}}};
+  EXPECT_THROW(decode_texels(texels_message(texels)), MalformedMessage);
 
   EXPECT_THROW(decode_hello(encode(Hello{0})), MalformedMessage);
   EXPECT_THROW(decode_hello(encode(Hello{limits::max_ranks + 1})), MalformedMessage);

@@ -84,7 +84,8 @@ class CountingService final : public compositor::RenderService {
  public:
   explicit CountingService(int& pictures) : pictures_(pictures) {}
   void begin_volume(const volume::VolumeDescription&) override {}
-  void add_slices(volume::VolumeId, int, int, std::span<const std::byte>) override {}
+  void begin_change(volume::VolumeId, std::uint64_t) override {}
+  void add_texels(volume::VolumeId, std::span<const volume::TexelBox>, std::span<const std::byte>) override {}
   void end_volume(volume::VolumeId) override {}
   void forget_volume(volume::VolumeId) override {}
   compositor::Rendered render(const volume::RenderRequest&) override {

@@ -115,6 +115,8 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared
   application->chain_->make_current();
   application->substituted_before_ = application->substituted();
   application->left_before_ = application->left();
+  application->sent_before_ = application->texel_bytes_sent();
+  application->left_out_before_ = application->texel_bytes_left_out();
   return application;
 }
 
@@ -167,6 +169,18 @@ std::uint64_t GlApplication::left() const {
   std::uint64_t sum = 0;
   for (const VolumeCounters& volume : volumes()) sum += volume.draws_left;
   return sum - left_before_;
+}
+
+std::uint64_t GlApplication::texel_bytes_sent() const {
+  std::uint64_t sum = 0;
+  for (const VolumeCounters& volume : volumes()) sum += volume.texel_bytes_sent;
+  return sum - sent_before_;
+}
+
+std::uint64_t GlApplication::texel_bytes_left_out() const {
+  std::uint64_t sum = 0;
+  for (const VolumeCounters& volume : volumes()) sum += volume.texel_bytes_left_out;
+  return sum - left_out_before_;
 }
 
 std::string GlApplication::last_reason() const {

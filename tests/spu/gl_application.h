@@ -45,6 +45,9 @@ class GlApplication {
   std::uint64_t substituted() const;
   std::uint64_t left() const;
   std::string last_reason() const;
+  /// Bytes of texels since this application started, and what was left out of them.
+  std::uint64_t texel_bytes_sent() const;
+  std::uint64_t texel_bytes_left_out() const;
 
  private:
   GlApplication() = default;
@@ -58,6 +61,8 @@ class GlApplication {
   std::unique_ptr<Chain> chain_;
   std::uint64_t substituted_before_ = 0;
   std::uint64_t left_before_ = 0;
+  std::uint64_t sent_before_ = 0;
+  std::uint64_t left_out_before_ = 0;
 };
 
 /// A smooth blob with a hole, 8 bits, non-cubic.

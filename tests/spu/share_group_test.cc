@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 namespace understudy::spu {
@@ -27,6 +28,68 @@ TEST(ShareGroup, AVersionNeverComesBack) {
   EXPECT_GT(group.texture_version(7), last);
   group.texture_changed(7);
   EXPECT_GT(group.texture_version(7), last + 1);
+}
+
+TEST(ShareGroup, TellsWhichTexelsChangedSinceAVersion) {
+  using volume::TexelBox;
+  ShareGroup group;
+  group.volume_defined();
+  group.remember(7);
+  const auto first = group.texture_version(7);
+  const TexelBox corner{{0, 0, 0}, {4, 4, 4}}, other{{20, 0, 0}, {24, 4, 4}};
+  group.texture_changed(7, corner);
+  const auto second = group.texture_version(7);
+  EXPECT_GT(second, first);
+  group.texture_changed(7, other);
+  EXPECT_THAT(*group.changes_since(7, first), ElementsAre(corner, other));
+  EXPECT_THAT(*group.changes_since(7, second), ElementsAre(other));
+  EXPECT_TRUE(group.changes_since(7, group.texture_version(7))->empty());
+  group.texture_changed(7);
+  EXPECT_FALSE(group.changes_since(7, second)) << "all of it may have changed";
+  const auto whole = group.texture_version(7);
+  group.texture_changed(7, corner);
+  EXPECT_THAT(*group.changes_since(7, whole), ElementsAre(corner));
+  group.some_texture_changed();
+  EXPECT_FALSE(group.changes_since(7, whole));
+  EXPECT_FALSE(group.changes_since(8, whole)) << "nothing is known of it";
+}
+
+TEST(ShareGroup, KeepsFewBoxesHoweverManyChangesThereAre) {
+  using volume::TexelBox;
+  ShareGroup group;
+  const auto before = group.texture_version(7);
+  for (int z = 0; z < 200; ++z) group.texture_changed(7, {{0, 0, z}, {64, 64, z + 1}});
+  EXPECT_THAT(*group.changes_since(7, before), ElementsAre(TexelBox{{0, 0, 0}, {64, 64, 200}}))
+      << "slices in a row are one slab";
+  // Far apart: the oldest are taken together, and whoever has seen them is told the latest exactly.
+  std::uint64_t seen = 0;
+  for (int i = 0; i < 100; ++i) {
+    seen = group.texture_version(7);
+    group.texture_changed(7, {{4 * i, 0, 0}, {4 * i + 1, 1, 1}});
+  }
+  EXPECT_THAT(*group.changes_since(7, seen), ElementsAre(TexelBox{{396, 0, 0}, {397, 1, 1}}));
+  const auto all = *group.changes_since(7, before);
+  EXPECT_LE(all.size(), 16U);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const TexelBox& box) {
+      return box.low[0] <= 4 * i && box.high[0] > 4 * i;
+    })) << i;
+  }
+}
+
+TEST(ShareGroup, HasVolumesWhileAnyContextWatchesForStacks) {
+  ShareGroup group;
+  EXPECT_FALSE(group.has_volumes());
+  group.stacks_watched();
+  group.stacks_watched();
+  group.stacks_left();
+  EXPECT_TRUE(group.has_volumes());
+  group.stacks_left();
+  EXPECT_FALSE(group.has_volumes());
+  group.stacks_watched();
+  group.volume_defined();
+  group.stacks_left();
+  EXPECT_TRUE(group.has_volumes()) << "a 3-D texture is for good";
 }
 
 TEST(ShareGroup, ADeletedTextureIsForgotten) {

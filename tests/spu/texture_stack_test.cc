@@ -119,6 +119,37 @@ TEST(TextureStacks, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
   EXPECT_EQ(app->substituted(), 0U);
   EXPECT_EQ(app->left(), 0U);
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+
+  EXPECT_EQ(Chain::current()->phase(), Phase::plain) << "nobody looks at draws any longer";
+  EXPECT_EQ(desktop(true), bare);
+  const SliceScene scene = texture_stack();
+  scene.set_up(*app);
+  EXPECT_EQ(Chain::current()->phase(), Phase::watching) << "other textures of one size may be a volume";
+  app->gl().Clear(GL_COLOR_BUFFER_BIT);
+  scene.draw(*app, 10);
+  Chain::current()->settle();
+  EXPECT_EQ(app->substituted(), 1U) << app->last_reason();
+}
+
+TEST(TextureStacks, AreNotWaitedForForEver) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = texture_stack();
+  scene.set_up(*app);
+  for (int i = 0; i < 500; ++i) app->end_frame();
+  scene.draw(*app, 10);
+  app->end_frame();
+  EXPECT_EQ(app->substituted(), 1U) << app->last_reason();
+  for (int i = 0; i < 1000; ++i) app->end_frame();
+  scene.draw(*app, 10);
+  app->end_frame();
+  EXPECT_EQ(app->substituted(), 2U) << "a stack that was drawn is waited for";
+
+  auto other = GlApplication::start(Profile::compatibility);
+  scene.set_up(*other);
+  ASSERT_EQ(Chain::current()->phase(), Phase::watching);
+  for (int i = 0; i < 700; ++i) other->end_frame();
+  EXPECT_EQ(Chain::current()->phase(), Phase::plain);
 }
 
 }  // namespace

@@ -120,8 +120,7 @@ inline Texture noise(const VolumeDescription& description, unsigned seed) {
 
 inline BrickStore filled(const Texture& texture, const TexelBox& cells) {
   BrickStore store(texture.description, cells);
-  const TexelBox& s = texture.description.stored;
-  store.add_slices(s.low[2], s.high[2] - s.low[2], texture.texels);
+  store.add_slices(texture.description.stored, texture.texels);
   store.finish();
   return store;
 }

@@ -48,7 +48,7 @@ TEST(BrickStore, TakesSlabsInAnyOrder) {
   const std::size_t slice = 19 * 23 * 2;
   for (const auto& [first, count] : {std::pair{20, 13}, {0, 1}, {5, 15}, {1, 4}})
     pieces.add_slices(
-        first, count,
+        {{0, 0, first}, {19, 23, first + count}},
         std::span(texture.texels).subspan(std::size_t(first) * slice, std::size_t(count) * slice));
   pieces.finish();
   for (std::size_t b = 0; b < whole.blocks(); ++b)
@@ -59,15 +59,19 @@ TEST(BrickStore, RefusesWrongSlabs) {
   const Texture texture = noise(describe({5, 6, 7}, TexelType::u8), 63);
   BrickStore store(texture.description, cell_lattice(texture.description).box());
   const std::span<const std::byte> all = texture.texels;
-  EXPECT_THROW(store.add_slices(0, 7, all.first(100)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(-1, 1, all.first(30)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(6, 2, all.first(60)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(0, 0, {}), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(3, std::numeric_limits<int>::max(), all), std::invalid_argument);
-  store.add_slices(0, 3, all.first(90));
-  EXPECT_THROW(store.add_slices(2, 1, all.first(30)), std::invalid_argument);
+  const auto slab = [](int first, int end) { return TexelBox{{0, 0, first}, {5, 6, end}}; };
+  EXPECT_THROW(store.add_slices(slab(0, 7), all.first(100)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slab(-1, 0), all.first(30)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slab(6, 8), all.first(60)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slab(0, 0), {}), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slab(3, std::numeric_limits<int>::max()), all), std::invalid_argument);
+  EXPECT_THROW(store.add_slices({{0, 0, 0}, {4, 6, 1}}, all.first(24)), std::invalid_argument) << "too narrow";
+  store.add_slices(slab(0, 3), all.first(90));
+  EXPECT_THROW(store.add_slices(slab(2, 3), all.first(30)), std::invalid_argument);
   EXPECT_THROW(store.finish(), std::invalid_argument);
-  store.add_slices(3, 4, all.first(120));
+  std::vector<std::size_t> changed;
+  EXPECT_THROW(store.change(slab(0, 1), all.first(30), changed), std::invalid_argument) << "not finished";
+  store.add_slices(slab(3, 7), all.first(120));
   EXPECT_NO_THROW(store.finish());
 
   VolumeDescription d = texture.description;

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "volume/brick/texel_box.h"
+
 namespace understudy::volume {
 
 namespace {
@@ -68,8 +70,9 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
                       owned_.low[axis], owned_.high[axis], axis, all.low[axis], all.high[axis]));
     any = any && owned_.low[axis] < owned_.high[axis];
   }
-  slice_seen_.resize(std::size_t(volume.stored.high[2] - volume.stored.low[2]));
   if (!any) return;
+  shown_ = texels_shown(volume, owned_cells);
+  slice_seen_.resize(std::size_t(shown_.high[2] - shown_.low[2]));
   std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     first_block_[axis] = (owned_.low[axis] - all.low[axis]) / block_cells;
@@ -82,38 +85,67 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
         fmt::format("volume {}: {} blocks on one rank (at most {} are possible): divide it among more ranks",
                     volume.id, count, max_blocks));
   blocks_.resize(count);
+  constant_.resize(count);
   ranges_.resize(count * channels_);
   layers_.resize(std::size_t(block_counts_[2]));
 }
 
-void BrickStore::add_slices(int first_slice, int slices, std::span<const std::byte> texels) {
+TexelBox BrickStore::texels_shown(const VolumeDescription& volume, const TexelBox& owned_cells) {
+  if (is_empty(owned_cells)) return {};
+  const CellLattice lattice = cell_lattice(volume);
+  TexelBox shown;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int first = (owned_cells.low[axis] - lattice.origin[axis]) / block_cells * block_cells;
+    const int blocks = (owned_cells.high[axis] - lattice.origin[axis] - first + block_cells - 1) / block_cells;
+    const int last = std::min(first + blocks * block_cells, lattice.cells[axis]);
+    shown.low[axis] = shown.high[axis] = lattice_texel(volume, lattice, axis, first);
+    // A repeating axis may show both of its ends.
+    for (int point = first; point <= last; ++point) {
+      const int texel = lattice_texel(volume, lattice, axis, point);
+      shown.low[axis] = std::min(shown.low[axis], texel);
+      shown.high[axis] = std::max(shown.high[axis], texel + 1);
+    }
+  }
+  return shown;
+}
+
+void BrickStore::check_size(const TexelBox& box, std::size_t bytes) const {
   const TexelBox& stored = volume_.stored;
-  if (slices < 1 || first_slice < stored.low[2] || slices > stored.high[2] - first_slice)
+  if (is_empty(box) || !contains(stored, box))
+    throw std::invalid_argument(fmt::format(
+        "volume {}: texels ({}, {}, {}) to ({}, {}, {}) are not among the stored ({}, {}, {}) to ({}, {}, {})",
+        volume_.id, box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2], stored.low[0],
+        stored.low[1], stored.low[2], stored.high[0], stored.high[1], stored.high[2]));
+  if (const std::size_t expected = texels_in(box) * bytes_per_texel(volume_.type); bytes != expected)
     throw std::invalid_argument(
-        fmt::format("volume {}: slab of {} slices from {} is outside the stored slices {} to {}", volume_.id,
-                    slices, first_slice, stored.low[2], stored.high[2]));
-  const std::size_t slice_bytes = std::size_t(stored.high[0] - stored.low[0]) *
-                                  std::size_t(stored.high[1] - stored.low[1]) * bytes_per_texel(volume_.type);
-  if (texels.size() != slice_bytes * std::size_t(slices))
-    throw std::invalid_argument(fmt::format("volume {}: slab of {} slices holds {} bytes instead of {}",
-                                            volume_.id, slices, texels.size(),
-                                            slice_bytes * std::size_t(slices)));
-  for (int s = 0; s < slices; ++s) {
-    const auto index = std::size_t(first_slice - stored.low[2] + s);
+        fmt::format("volume {}: {} bytes of texels instead of {}", volume_.id, bytes, expected));
+}
+
+void BrickStore::add_slices(const TexelBox& slab, std::span<const std::byte> texels) {
+  check_size(slab, texels.size());
+  if (blocks_.empty()) return;
+  for (int axis = 0; axis < 2; ++axis)
+    if (slab.low[axis] > shown_.low[axis] || slab.high[axis] < shown_.high[axis])
+      throw std::invalid_argument(
+          fmt::format("volume {}: a slab covers texels {} to {} along axis {}, not {} to {}", volume_.id,
+                      slab.low[axis], slab.high[axis], axis, shown_.low[axis], shown_.high[axis]));
+  const std::size_t slice_bytes = texels.size() / std::size_t(slab.high[2] - slab.low[2]);
+  for (int texel_z = std::max(slab.low[2], shown_.low[2]); texel_z < std::min(slab.high[2], shown_.high[2]);
+       ++texel_z) {
+    const auto index = std::size_t(texel_z - shown_.low[2]);
     if (slice_seen_[index])
-      throw std::invalid_argument(fmt::format("volume {}: slice {} came twice", volume_.id, first_slice + s));
+      throw std::invalid_argument(fmt::format("volume {}: slice {} came twice", volume_.id, texel_z));
     slice_seen_[index] = true;
-    if (blocks_.empty()) continue;
-    const std::byte* slice = texels.data() + std::size_t(s) * slice_bytes;
+    const std::byte* slice = texels.data() + std::size_t(texel_z - slab.low[2]) * slice_bytes;
     // Wrapped and clamped axes show one slice at several points of the lattice.
     const int first = first_block_[2] * block_cells, last = first + block_counts_[2] * block_cells;
     for (int z = first; z <= last; ++z)
-      if (lattice_texel(volume_, lattice_, 2, std::min(z, lattice_.cells[2])) == first_slice + s)
-        place_slice(z, slice);
+      if (lattice_texel(volume_, lattice_, 2, std::min(z, lattice_.cells[2])) == texel_z)
+        place_slice(z, slab, slice);
   }
 }
 
-void BrickStore::place_slice(int lattice_z, const std::byte* slice) {
+void BrickStore::place_slice(int lattice_z, const TexelBox& slab, const std::byte* slice) {
   // A block face belongs to both neighbours.
   for (int layer = (lattice_z - 1) / block_cells; layer <= lattice_z / block_cells; ++layer) {
     const int index = layer - first_block_[2];
@@ -125,16 +157,16 @@ void BrickStore::place_slice(int lattice_z, const std::byte* slice) {
     const int z_in_block = lattice_z - layer * block_cells;
     switch (volume_.type) {
       case TexelType::u8:
-        fill_layer_slice<std::uint8_t>(target, z_in_block, slice);
+        fill_layer_slice<std::uint8_t>(target, z_in_block, slab, slice);
         break;
       case TexelType::u16:
-        fill_layer_slice<std::uint16_t>(target, z_in_block, slice);
+        fill_layer_slice<std::uint16_t>(target, z_in_block, slab, slice);
         break;
       case TexelType::f32:
-        fill_layer_slice<float>(target, z_in_block, slice);
+        fill_layer_slice<float>(target, z_in_block, slab, slice);
         break;
       case TexelType::rgba8:
-        fill_layer_slice<std::uint32_t>(target, z_in_block, slice);
+        fill_layer_slice<std::uint32_t>(target, z_in_block, slab, slice);
         break;
     }
     if (--target.slices_missing == 0) complete_layer(index);
@@ -142,15 +174,15 @@ void BrickStore::place_slice(int lattice_z, const std::byte* slice) {
 }
 
 template <typename Texel>
-void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const std::byte* slice) {
-  const int row_texels = volume_.stored.high[0] - volume_.stored.low[0];
+void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slab, const std::byte* slice) {
+  const int row_texels = slab.high[0] - slab.low[0];
   // Where each lattice point of the layer finds its texel in the slice.
   const auto sources = [&](int axis) {
     std::vector<int> source;
     for (int block = 0; block < block_counts_[axis]; ++block)
       for (int k = 0; k < block_row; ++k) {
         const int point = std::min((first_block_[axis] + block) * block_cells + k, lattice_.cells[axis]);
-        source.push_back(lattice_texel(volume_, lattice_, axis, point) - volume_.stored.low[axis]);
+        source.push_back(lattice_texel(volume_, lattice_, axis, point) - slab.low[axis]);
       }
     return source;
   };
@@ -200,20 +232,106 @@ void BrickStore::compact_layer(int layer_index) {
   for (std::size_t b = 0; b < in_layer; ++b, source += sizeof texels) {
     std::memcpy(texels.data(), source, sizeof texels);
     const std::size_t block = std::size_t(layer_index) * in_layer + b;
-    add_ranges(block, texels.data());
-    const auto value = bits(texels[0]);
-    const bool constant = std::all_of(texels.begin(), texels.end(), [&](Texel t) { return bits(t) == value; });
-    if (constant) {
-      if (const auto known = constant_blocks_.find(value); known != constant_blocks_.end()) {
-        blocks_[block] = known->second;
-        continue;
+    store_block(block, texels.data());
+  }
+}
+
+template <typename Texel>
+void BrickStore::store_block(std::size_t block, const Texel* texels) {
+  add_ranges(block, texels);
+  const auto value = bits(texels[0]);
+  constant_[block] = std::all_of(texels, texels + block_texels, [&](Texel t) { return bits(t) == value; });
+  if (!constant_[block]) {
+    std::byte* place = allocate_block();
+    std::memcpy(place, texels, sizeof(Texel) * block_texels);
+    blocks_[block] = place;
+    return;
+  }
+  Shared& shared = constant_blocks_[value];
+  if (shared.users++ == 0) {
+    shared.place = allocate_block();
+    std::memcpy(shared.place, texels, sizeof(Texel) * block_texels);
+  }
+  blocks_[block] = shared.place;
+}
+
+std::vector<std::vector<BrickStore::Point>> BrickStore::points_in(const TexelBox& box, int axis) const {
+  std::vector<std::vector<Point>> points(std::size_t(block_counts_[axis]));
+  for (int block = 0; block < block_counts_[axis]; ++block)
+    for (int k = 0; k < block_row; ++k) {
+      const int point = std::min((first_block_[axis] + block) * block_cells + k, lattice_.cells[axis]);
+      const int texel = lattice_texel(volume_, lattice_, axis, point);
+      if (texel >= box.low[axis] && texel < box.high[axis])
+        points[std::size_t(block)].push_back({k, texel - box.low[axis]});
+    }
+  return points;
+}
+
+void BrickStore::change(const TexelBox& box, std::span<const std::byte> texels,
+                        std::vector<std::size_t>& changed) {
+  if (!finished_)
+    throw std::invalid_argument(fmt::format("volume {}: texels change before all have come", volume_.id));
+  check_size(box, texels.size());
+  if (blocks_.empty()) return;
+  const std::array<std::vector<std::vector<Point>>, 3> points{points_in(box, 0), points_in(box, 1),
+                                                              points_in(box, 2)};
+  std::size_t block = 0;
+  for (const auto& z : points[2])
+    for (const auto& y : points[1])
+      for (const auto& x : points[0]) {
+        const std::size_t here = block++;
+        if (x.empty() || y.empty() || z.empty()) continue;
+        switch (volume_.type) {
+          case TexelType::u8:
+            change_block<std::uint8_t>(here, {x, y, z}, box, texels.data());
+            break;
+          case TexelType::u16:
+            change_block<std::uint16_t>(here, {x, y, z}, box, texels.data());
+            break;
+          case TexelType::f32:
+            change_block<float>(here, {x, y, z}, box, texels.data());
+            break;
+          case TexelType::rgba8:
+            change_block<std::uint32_t>(here, {x, y, z}, box, texels.data());
+            break;
+        }
+        changed.push_back(here);
+      }
+}
+
+template <typename Texel>
+void BrickStore::change_block(std::size_t block, const std::array<std::span<const Point>, 3>& points,
+                              const TexelBox& box, const std::byte* texels) {
+  std::array<Texel, block_texels> here;
+  std::memcpy(here.data(), blocks_[block], sizeof here);
+  const std::size_t row = std::size_t(box.high[0] - box.low[0]);
+  const std::size_t slice = row * std::size_t(box.high[1] - box.low[1]);
+  for (const Point& z : points[2])
+    for (const Point& y : points[1]) {
+      const std::byte* from =
+          texels + (std::size_t(z.texel) * slice + std::size_t(y.texel) * row) * sizeof(Texel);
+      Texel* to = here.data() + z.in_block * block_slice + y.in_block * block_row;
+      for (const Point& x : points[0]) {
+        Texel value;
+        std::memcpy(&value, from + std::size_t(x.texel) * sizeof(Texel), sizeof value);
+        if constexpr (std::is_same_v<Texel, float>) value = sane(value);
+        to[x.in_block] = value;
       }
     }
-    std::byte* place = allocate_block();
-    std::memcpy(place, texels.data(), sizeof texels);
-    blocks_[block] = place;
-    if (constant) constant_blocks_.emplace(value, place);
+
+  auto* place = const_cast<std::byte*>(blocks_[block]);  // of a chunk of this store
+  if (constant_[block]) {
+    Texel value;
+    std::memcpy(&value, place, sizeof value);
+    const auto shared = constant_blocks_.find(bits(value));
+    if (--shared->second.users == 0) {
+      constant_blocks_.erase(shared);
+      free_blocks_.push_back(place);
+    }
+  } else {
+    free_blocks_.push_back(place);
   }
+  store_block(block, here.data());
 }
 
 template <typename Texel>
@@ -255,6 +373,11 @@ void BrickStore::add_ranges(std::size_t block, const Texel* texels) {
 }
 
 std::byte* BrickStore::allocate_block() {
+  if (!free_blocks_.empty()) {
+    std::byte* place = free_blocks_.back();
+    free_blocks_.pop_back();
+    return place;
+  }
   if (chunks_.empty() || chunk_used_ == blocks_per_chunk) {
     chunks_.push_back(std::make_unique<std::byte[]>(blocks_per_chunk * block_bytes_));
     chunk_used_ = 0;
@@ -266,8 +389,7 @@ void BrickStore::finish() {
   for (std::size_t i = 0; i < slice_seen_.size(); ++i)
     if (!slice_seen_[i])
       throw std::invalid_argument(
-          fmt::format("volume {}: slice {} never came", volume_.id, int(i) + volume_.stored.low[2]));
-  constant_blocks_.clear();
+          fmt::format("volume {}: slice {} never came", volume_.id, int(i) + shown_.low[2]));
   layers_.clear();
   finished_ = true;
 }

@@ -5,6 +5,7 @@
 // equal texels shares one stored block with all others of the same value: padding and air cost no memory.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,15 +32,22 @@ class BrickStore {
   /// empty). Throws std::invalid_argument.
   BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells);
 
-  /// Texels of the slices [first_slice, first_slice + slices) of `stored` (absolute z), tightly packed, x
-  /// fastest, the slab covering `stored` in x and y. Slabs come once each; in rising order they need the
-  /// least memory. Throws std::invalid_argument when the slab lies outside `stored`, came before, or has the
-  /// wrong size.
-  void add_slices(int first_slice, int slices, std::span<const std::byte> texels);
+  /// The texels that a store with these cells shows: no others need come. Empty where there are no cells.
+  static TexelBox texels_shown(const VolumeDescription& volume, const TexelBox& owned_cells);
+  const TexelBox& texels_shown() const { return shown_; }
+
+  /// Texels of a slab inside `stored`, which in x and y covers at least texels_shown(). Each slice that is
+  /// shown comes once; in rising order they need the least memory. Throws std::invalid_argument when the slab
+  /// lies outside, is too narrow, came before, or has the wrong size.
+  void add_slices(const TexelBox& slab, std::span<const std::byte> texels);
 
   /// To be called after the last slab, before sampling. Throws std::invalid_argument naming a slice that is
   /// missing.
   void finish();
+
+  /// Other texels for a box inside `stored`, of a finished store. Throws std::invalid_argument. Adds the blocks
+  /// that show one of them to `changed`.
+  void change(const TexelBox& box, std::span<const std::byte> texels, std::vector<std::size_t>& changed);
   bool finished() const { return finished_; }
 
   const VolumeDescription& description() const { return volume_; }
@@ -83,14 +91,29 @@ class BrickStore {
     int slices_missing = block_row;
   };
 
-  void place_slice(int lattice_z, const std::byte* slice);
+  /// A lattice point of a block, and the texel behind it.
+  struct Point {
+    int in_block = 0;
+    int texel = 0;
+  };
+
+  void check_size(const TexelBox& box, std::size_t bytes) const;
+  void place_slice(int lattice_z, const TexelBox& slab, const std::byte* slice);
   template <typename Texel>
-  void fill_layer_slice(Layer& layer, int z_in_block, const std::byte* slice);
+  void fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slab, const std::byte* slice);
   void complete_layer(int layer_index);
   template <typename Texel>
   void compact_layer(int layer_index);
   template <typename Texel>
   void add_ranges(std::size_t block, const Texel* texels);
+  /// Per block along `axis` the points whose texels lie in `box`.
+  std::vector<std::vector<Point>> points_in(const TexelBox& box, int axis) const;
+  template <typename Texel>
+  void change_block(std::size_t block, const std::array<std::span<const Point>, 3>& points, const TexelBox& box,
+                    const std::byte* texels);
+  /// Makes `block` show these texels, its own or those of an equal block. What it had is given up before.
+  template <typename Texel>
+  void store_block(std::size_t block, const Texel* texels);
   std::byte* allocate_block();
 
   VolumeDescription volume_;
@@ -106,9 +129,16 @@ class BrickStore {
   std::vector<Range> ranges_;
   std::vector<std::unique_ptr<std::byte[]>> chunks_;
   std::size_t chunk_used_ = 0;
-  std::unordered_map<std::uint32_t, const std::byte*> constant_blocks_;  // by the bits of their value
+  std::vector<std::byte*> free_blocks_;  // given up by changes
+  struct Shared {
+    std::byte* place = nullptr;
+    std::size_t users = 0;
+  };
+  std::unordered_map<std::uint32_t, Shared> constant_blocks_;  // by the bits of their value
+  std::vector<bool> constant_;                                 // per block: its place is a shared one
   std::vector<Layer> layers_;
-  std::vector<bool> slice_seen_;
+  TexelBox shown_;
+  std::vector<bool> slice_seen_;  // of those that are shown
   bool finished_ = false;
 };
 

@@ -12,4 +12,7 @@ namespace understudy::volume {
 /// the value, strictly in its first component: only then does the first component alone decide a maximum.
 std::vector<float> block_bounds(const BrickStore& store, const TransferTable& table);
 
+/// The same for one block, under a table that rises.
+float block_bound(const BrickStore& store, const TransferTable& table, std::size_t block);
+
 }  // namespace understudy::volume

@@ -158,19 +158,30 @@ struct RayCaster::Prepared {
   SkipMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
 
-  static SkipMap skip_map(const BrickStore& store, const Classification& classification,
-                          bool keeps_clear_samples, const std::optional<TransferTable>& table) {
-    std::vector<bool> visible(store.blocks());
-    for (std::size_t b = 0; b < visible.size(); ++b) {
-      const auto ranges = store.ranges(b);
-      if (keeps_clear_samples)
-        visible[b] = ranges[0].low <= ranges[0].high;
-      else if (table)
-        visible[b] = table->shows(ranges[0]);
-      else
-        visible[b] = shows(std::get<LinearMap>(classification), ranges);
-    }
-    return SkipMap(store.block_counts(), std::move(visible));
+  bool visible(const BrickStore& store, std::size_t block) const {
+    const auto ranges = store.ranges(block);
+    if (keeps_clear_samples) return ranges[0].low <= ranges[0].high;
+    if (table) return table->shows(ranges[0]);
+    return shows(std::get<LinearMap>(classification), ranges);
+  }
+
+  SkipMap skip_map(const BrickStore& store) const {
+    std::vector<bool> all(store.blocks());
+    for (std::size_t b = 0; b < all.size(); ++b) all[b] = visible(store, b);
+    return SkipMap(store.block_counts(), std::move(all));
+  }
+
+  void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
+    if (bounds && !bounds->empty())
+      for (const std::size_t b : blocks) (*bounds)[b] = block_bound(store, *table, b);
+    // Distances reach far, but depend on nothing but which blocks show something.
+    if (std::all_of(blocks.begin(), blocks.end(),
+                    [&](std::size_t b) { return visible(store, b) == skip.shows(b); }))
+      return;
+    std::vector<bool> all(store.blocks());
+    for (std::size_t b = 0; b < all.size(); ++b) all[b] = skip.shows(b);
+    for (const std::size_t b : blocks) all[b] = visible(store, b);
+    skip = SkipMap(store.block_counts(), std::move(all));
   }
 
   static std::optional<TransferTable> make_table(const BrickStore& store, const Classification& classification,
@@ -185,13 +196,18 @@ struct RayCaster::Prepared {
       : classification(from),
         keeps_clear_samples(keeps_clear),
         table(make_table(store, classification, keeps_clear)),
-        skip(skip_map(store, classification, keeps_clear, table)) {}
+        skip(skip_map(store)) {}
 };
 
 RayCaster::RayCaster(const BrickStore& store) : store_(&store) {}
 RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+void RayCaster::blocks_changed(std::span<const std::size_t> blocks) {
+  for (const auto& prepared : prepared_)
+    if (prepared) prepared->blocks_changed(*store_, blocks);
+}
 
 void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts) {
   const BrickStore& store = *store_;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "volume/brick/brick_store.h"
 #include "volume/request.h"
@@ -38,6 +39,9 @@ class RayCaster {
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;
+
+  /// These blocks of the store show other texels than at the last render(): what is kept of them is made anew.
+  void blocks_changed(std::span<const std::size_t> blocks);
 
   /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral. Runs on
   /// all cores of the calling TBB arena. What depends on the classification alone is kept for the next two

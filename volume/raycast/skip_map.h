@@ -18,6 +18,7 @@ class SkipMap {
   /// Distances, saturated at 255, and three bytes that may be read after the last.
   const std::uint8_t* distances() const { return distances_.data(); }
   std::size_t empty_blocks() const { return empty_blocks_; }
+  bool shows(std::size_t block) const { return distances_[block] == 0; }
   bool all_empty() const { return empty_blocks_ + 3 == distances_.size(); }
 
  private:

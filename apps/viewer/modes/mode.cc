@@ -37,7 +37,7 @@ std::optional<ModeKind> mode_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file) {
+std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file, TimeStep step) {
   switch (kind) {
     case ModeKind::rgba:
       return make_rgba_mode(std::move(texels), file);
@@ -46,7 +46,7 @@ std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string&
     case ModeKind::core:
       return make_core_mode(texels, file);
     case ModeKind::time:
-      return make_time_mode(texels, file);
+      return make_time_mode(texels, file, step);
     case ModeKind::bricks:
       return make_bricks_mode(texels, file);
     case ModeKind::lit:

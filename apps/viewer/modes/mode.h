@@ -28,6 +28,13 @@ enum class ModeKind { rgba, table, core, time, bricks, lit, preint, stacks };
 std::string_view name_of(ModeKind kind);
 std::optional<ModeKind> mode_named(std::string_view name);
 
+/// What the time mode does between two frames.
+enum class TimeStep {
+  whole,  ///< every texel changes, all are uploaded
+  part,   ///< texels in the middle change, and only their box is uploaded
+  again   ///< texels in the middle change, but all are uploaded
+};
+
 /// Owns its OpenGL objects: made, used and destroyed with the same context current.
 class Mode {
  public:
@@ -49,6 +56,6 @@ class Mode {
 
 /// Needs a current context: 3.3 core for core, compatibility for all others. `file` names the volume in
 /// errors. Throws Error when the volume does not fit the texture limits, or OpenGL refuses.
-std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file);
+std::unique_ptr<Mode> make_mode(ModeKind kind, Texels texels, const std::string& file, TimeStep step);
 
 }  // namespace viewer

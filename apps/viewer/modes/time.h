@@ -1,5 +1,5 @@
-// As the table mode, but every frame shows another time step, uploaded into the same texture: the volume,
-// brighter and darker by turns. 8 bits.
+// As the table mode, but every frame shows another time step, uploaded into the same texture: the volume, or a
+// box in its middle, brighter and darker by turns. 8 bits.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,6 @@
 
 namespace viewer {
 
-std::unique_ptr<Mode> make_time_mode(const Texels& texels, const std::string& file);
+std::unique_ptr<Mode> make_time_mode(const Texels& texels, const std::string& file, TimeStep step);
 
 }  // namespace viewer

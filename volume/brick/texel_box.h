@@ -1,0 +1,25 @@
+// Boxes of texels, and what lies in them: tightly packed, x fastest.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+bool is_empty(const TexelBox& box);
+/// Whether `inner` lies in `outer`.
+bool contains(const TexelBox& outer, const TexelBox& inner);
+/// May be empty.
+TexelBox intersection(const TexelBox& a, const TexelBox& b);
+/// The smallest box around both; an empty one adds nothing.
+TexelBox enclosing(const TexelBox& a, const TexelBox& b);
+/// 0 for empty boxes.
+std::size_t texels_in(const TexelBox& box);
+
+/// Copies the texels of `box`, which lies in both `source_box` and `target_box`.
+void copy_texels(const TexelBox& box, std::size_t bytes_per_texel, const TexelBox& source_box,
+                 std::span<const std::byte> source, const TexelBox& target_box, std::span<std::byte> target);
+
+}  // namespace understudy::volume

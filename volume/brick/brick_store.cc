@@ -72,8 +72,10 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
   if (!any) return;
   std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    first_block_[axis] = (owned_.low[axis] - all.low[axis]) / block_cells;
-    const int end = (owned_.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
+    const int low = std::max(owned_.low[axis] - volume.margin, all.low[axis]);
+    const int high = std::min(owned_.high[axis] + volume.margin, all.high[axis]);
+    first_block_[axis] = (low - all.low[axis]) / block_cells;
+    const int end = (high - all.low[axis] + block_cells - 1) / block_cells;
     block_counts_[axis] = end - first_block_[axis];
     count *= std::uint64_t(block_counts_[axis]);
   }

@@ -149,6 +149,9 @@ GLenum pixel_type(volume::TexelType type) {
   }
 }
 
+constexpr std::array<float, 2> no_range{std::numeric_limits<float>::max(),
+                                        std::numeric_limits<float>::lowest()};
+
 void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
   for (std::size_t i = 0; i + sizeof(float) <= texels.size(); i += sizeof(float)) {
     float value;
@@ -157,6 +160,19 @@ void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
     range[0] = std::min(range[0], value);
     range[1] = std::max(range[1], value);
   }
+}
+
+/// The values that a table has to tell about, from those of the texels.
+std::array<float, 2> table_range(std::array<float, 2> range, const TextureDescription& description) {
+  if (description.type != volume::TexelType::f32 || range[0] > range[1]) return {0.0F, 1.0F};
+  for (const volume::Wrap wrap : description.wrap) {
+    if (wrap != volume::Wrap::border || !std::isfinite(description.border[0])) continue;
+    range[0] = std::min(range[0], description.border[0]);
+    range[1] = std::max(range[1], description.border[0]);
+  }
+  // A constant field has no range to spread a table over: any room above it will do.
+  if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
+  return range;
 }
 
 }  // namespace
@@ -222,7 +238,7 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
   const std::size_t texel = volume::bytes_per_texel(description.type);
   const std::array<int, 3> extent{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]};
   const std::size_t slice = std::size_t(extent[0]) * std::size_t(extent[1]) * texel;
-  std::array<float, 2> range{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
+  std::array<float, 2> range = no_range;
   const bool floats = description.type == volume::TexelType::f32;
 
   if (context.version >= 450) {
@@ -254,21 +270,15 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
       slab(z, 1, texels);
     }
   }
-  if (!floats || range[0] > range[1]) return {0.0F, 1.0F};
-  for (const volume::Wrap wrap : description.wrap) {
-    if (wrap != volume::Wrap::border || !std::isfinite(description.border[0])) continue;
-    range[0] = std::min(range[0], description.border[0]);
-    range[1] = std::max(range[1], description.border[0]);
-  }
-  // A constant field has no range to spread a table over: any room above it will do.
-  if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
-  return range;
+  return table_range(range, description);
 }
 
 std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
                                       const TextureDescription& description, const volume::TexelBox& box,
-                                      const std::function<void(int, int, std::span<const std::byte>)>& slab) {
+                                      const std::function<void(int, int, std::span<const std::byte>)>& slab,
+                                      std::array<float, 2>& range) {
   const DispatchTable& gl = *context.gl;
+  range = no_range;
   const std::size_t texel = volume::bytes_per_texel(description.type);
   const auto width = std::size_t(box.high[0] - box.low[0]) * texel;
   const auto row = std::size_t(description.size[0]) * texel;
@@ -287,8 +297,10 @@ std::optional<std::string> read_stack(const GlContext& context, std::span<const 
       std::memcpy(part.data() + std::size_t(y - box.low[1]) * width,
                   whole.data() + std::size_t(y) * row + std::size_t(box.low[0]) * texel, width);
     }
+    if (description.type == volume::TexelType::f32) widen(range, part);
     slab(z, 1, part);
   }
+  range = table_range(range, description);
   return std::nullopt;
 }
 

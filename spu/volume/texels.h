@@ -41,9 +41,10 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
                                  const std::function<void(int, int, std::span<const std::byte>)>& slab);
 
 /// The same from a stack of 2-D textures, slice by slice; binds them to the active unit. A reason where they
-/// are not alike, or hold floats.
+/// are not alike.
 std::optional<std::string> read_stack(const GlContext& context, std::span<const GLuint> textures,
                                       const TextureDescription& description, const volume::TexelBox& box,
-                                      const std::function<void(int, int, std::span<const std::byte>)>& slab);
+                                      const std::function<void(int, int, std::span<const std::byte>)>& slab,
+                                      std::array<float, 2>& range);
 
 }  // namespace understudy::spu

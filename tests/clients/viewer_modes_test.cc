@@ -74,11 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"Two", "table", {"--second", "--opaque"}, 2, nullptr},
         Way{"TwoFrontToBack", "core", {"--second", "--operator", "under"}, 2, nullptr},
         Way{"Lit", "lit", {}, 0, "the colour depends on the field around the sample (gradient, lighting)"},
-        Way{"Preintegrated",
-            "preint",
-            {},
-            0,
-            "the colour depends on more than the sample (position, lighting)"},
+        Way{"Preintegrated", "preint", {}, 1, nullptr},
+        Way{"PreintegratedFrontToBack", "preint", {"--operator", "under", "--opaque"}, 1, nullptr},
         Way{"Stacks", "stacks", {}, 1, nullptr},
         Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });

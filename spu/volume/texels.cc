@@ -55,6 +55,14 @@ std::string name_of_format(GLint format) {
       return "ALPHA";
     case GL_ALPHA8:
       return "ALPHA8";
+    case GL_LUMINANCE_ALPHA:
+      return "LUMINANCE_ALPHA";
+    case GL_LUMINANCE8_ALPHA8:
+      return "LUMINANCE8_ALPHA8";
+    case GL_RGB:
+      return "RGB";
+    case GL_RGB8:
+      return "RGB8";
     case GL_RGBA:
       return "RGBA";
     case GL_RGBA8:
@@ -92,10 +100,10 @@ std::optional<std::string> describe_components(const GlContext& context, GLenum 
     if (bits == 0) continue;
     const auto type = GLenum(level_parameter(gl, target, component.type));
     description.base = component.base;
-    if (component.base == BaseFormat::luminance && alpha > 0) return "the texture has luminance and alpha";
-    if (red > 0 && green > 0) {
-      if (alpha == 0) return "the texture has colour without alpha";
-      if (type != GL_UNSIGNED_NORMALIZED || red > 8) return "the texture's colours have more than 8 bits";
+    description.grey = component.base == BaseFormat::luminance && alpha > 0;
+    if (description.grey || (red > 0 && green > 0)) {
+      description.opaque = alpha == 0;
+      if (type != GL_UNSIGNED_NORMALIZED || bits > 8) return "the texture's colours have more than 8 bits";
       description.base = BaseFormat::rgba;
       description.type = volume::TexelType::rgba8;
       return std::nullopt;
@@ -162,6 +170,12 @@ void widen(std::array<float, 2>& range, std::span<const std::byte> texels) {
   }
 }
 
+/// Luminance comes as red, with neither green nor blue.
+void spread_luminance(const TextureDescription& description, std::span<std::byte> texels) {
+  for (std::size_t i = 0; description.grey && i + 3 < texels.size(); i += 4)
+    texels[i + 1] = texels[i + 2] = texels[i];
+}
+
 /// The values that a table has to tell about, from those of the texels.
 std::array<float, 2> table_range(std::array<float, 2> range, const TextureDescription& description) {
   if (description.type != volume::TexelType::f32 || range[0] > range[1]) return {0.0F, 1.0F};
@@ -217,6 +231,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
     gl.GetTexParameterfv(target, GL_TEXTURE_BORDER_COLOR, description.border.data());
   }
   if (description.base == BaseFormat::alpha) description.border[0] = description.border[3];
+  if (description.grey) description.border[1] = description.border[2] = description.border[0];
+  if (description.opaque) description.border[3] = 1;
   if (!context.core) {
     GLfloat scale = 1;
     GLfloat bias = 0;
@@ -249,6 +265,7 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
       const std::size_t bytes = slice * std::size_t(count);
       gl.GetTextureSubImage(texture, 0, box.low[0], box.low[1], z, extent[0], extent[1], count, format, type,
                             GLsizei(bytes), texels.data());
+      spread_luminance(description, std::span(texels).first(bytes));
       if (floats) widen(range, std::span(texels).first(bytes));
       slab(z, count, std::span(texels).first(bytes));
     }
@@ -266,6 +283,7 @@ std::array<float, 2> read_texels(const GlContext& context, GLuint texture,
                         std::size_t(box.low[0]) * texel,
                     std::size_t(extent[0]) * texel);
       }
+      spread_luminance(description, texels);
       if (floats) widen(range, texels);
       slab(z, 1, texels);
     }
@@ -289,7 +307,8 @@ std::optional<std::string> read_stack(const GlContext& context, std::span<const 
     TextureDescription slice;
     if (auto reason = describe_texture(context, GL_TEXTURE_2D, 0, slice)) return reason;
     slice.size[2] = description.size[2];
-    if (slice.size != description.size || slice.type != description.type || slice.base != description.base)
+    if (slice.size != description.size || slice.type != description.type || slice.base != description.base ||
+        slice.opaque != description.opaque || slice.grey != description.grey)
       return "the stack's textures differ in size or format";
     gl.GetTexImage(GL_TEXTURE_2D, 0, pixel_format(description.base), pixel_type(description.type),
                    whole.data());
@@ -297,6 +316,7 @@ std::optional<std::string> read_stack(const GlContext& context, std::span<const 
       std::memcpy(part.data() + std::size_t(y - box.low[1]) * width,
                   whole.data() + std::size_t(y) * row + std::size_t(box.low[0]) * texel, width);
     }
+    spread_luminance(description, part);
     if (description.type == volume::TexelType::f32) widen(range, part);
     slab(z, 1, part);
   }

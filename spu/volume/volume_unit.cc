@@ -596,6 +596,7 @@ void VolumeUnit::classify(Substitution& s) {
                          known.range[1],
                          s.pipeline.blending.premultiplied ? 1.0F : 0.0F,
                          float(known.texture.base),
+                         known.texture.opaque ? 1.0F : 0.0F,
                          float(known.texture.type),
                          float(s.pipeline.blending.op),
                          s.pipeline.target.floating ? 1.0F : 0.0F};

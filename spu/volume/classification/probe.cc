@@ -560,10 +560,17 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
   // Black, then each component alone: the columns of the map.
   std::fill_n(texels.begin(), 20, 0.0F);
   for (std::size_t c = 0; c < 4; ++c) texels[4 * (c + 1) + c] = 1.0F;
-  bench.show(GL_RGBA32F, GL_RGBA, edge, edge, texels, texture.swizzle, context.version >= 330);
+  // Colours without alpha have one everywhere, and what black gives is that alpha's column.
+  for (std::size_t i = 3; texture.opaque && i < texels.size(); i += 4) texels[i] = 1.0F;
+  const GLenum format = texture.opaque ? GL_RGB32F : GL_RGBA32F;
+  bench.show(format, GL_RGBA, edge, edge, texels, texture.swizzle, context.version >= 330);
   const Picture mapped = bench.draw(without_coordinate(fragment, fragment.first), false);
   for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) map.matrix[4 * row + column] = mapped[column + 1][row];
+    for (std::size_t column = 0; column < 4; ++column) {
+      const float of_alpha = texture.opaque ? mapped[0][row] : 0.0F;
+      map.matrix[4 * row + column] =
+          texture.opaque && column == 3 ? of_alpha : mapped[column + 1][row] - of_alpha;
+    }
   }
   for (std::size_t i = 0; i < pixels; ++i) {
     volume::Rgba expected{};
@@ -577,11 +584,12 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
   }
   if (pipeline.target.floating && leaves_unit_interval(map.matrix))
     return "the colours leave [0,1] in a float framebuffer";
-  bench.show(GL_RGBA32F, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, 0.5F}, texture.swizzle, context.version >= 330);
+  const float alpha = texture.opaque ? 1.0F : 0.5F;
+  bench.show(format, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, alpha}, texture.swizzle, context.version >= 330);
   const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
   for (std::size_t row = 0; row < 4; ++row) {
     const float* m = &map.matrix[4 * row];
-    const float expected = 0.25F * m[0] + 0.5F * m[1] + 0.75F * m[2] + 0.5F * m[3];
+    const float expected = 0.25F * m[0] + 0.5F * m[1] + 0.75F * m[2] + alpha * m[3];
     for (const volume::Rgba& colour : constant) {
       if (!(std::abs(colour[row] - expected) <= same_colour)) {
         return "the colour depends on more than the sample (position, lighting)";

@@ -48,6 +48,8 @@ struct VolumeDescription {
   /// The texels that travel: the part of the texture that the application shows, with one texel around it for
   /// the filter. What lies outside (power-of-two padding) is never sent and never sampled.
   TexelBox stored;
+  /// So many cells around its own each node holds beside them, for the second samples of slabs.
+  int margin = 0;
 
   bool operator==(const VolumeDescription&) const = default;
 };
@@ -76,6 +78,16 @@ struct RaySteps {
   double rounding = 0.5;
   /// Samples up to so many steps behind the opaque geometry still count.
   double past_depth = 0;
+};
+
+/// Where the second sample of a slab lies, whose first one lies on its plane: so many plane spacings further
+/// along the ray (0: none), and then away by a vector. It is not bound to the region, and may be anywhere that
+/// the texture's wrapping (repetition aside) gives it a value.
+struct Slab {
+  double planes = 0;
+  Vec3 offset{};
+  /// The two samples are nowhere further apart than this, axis by axis in texture space.
+  Vec3 reach{};
 };
 
 struct Box {
@@ -110,7 +122,8 @@ struct RenderRequest {
   Box region;  ///< where slices exist: samples outside this box of texture space do not; rays enter it
   std::vector<HalfSpace> clip_planes;
   Classification classification;
-  std::optional<Fog> fog;  ///< under any operator but `min`
+  std::optional<Slab> slab;  ///< set where the classification is a PairTable, and only there
+  std::optional<Fog> fog;    ///< under any operator but `min`; not with slabs
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   std::optional<DepthImage> depth;

@@ -146,7 +146,7 @@ nlohmann::ordered_json measure(const Settings& settings) {
   volume.stored = {{0, 0, 0}, settings.size};
   const std::vector<std::byte> texels = texels_of(settings);
   BrickStore store(volume, cell_lattice(volume).box());
-  store.add_slices(0, settings.size[2], texels);
+  store.add_slices(volume.stored, texels);
   store.finish();
   RayCaster caster(store);
   const RenderRequest asked = request(settings);

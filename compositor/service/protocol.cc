@@ -7,6 +7,7 @@
 
 #include "compositor/service/limits.h"
 #include "volume/brick/cell_lattice.h"
+#include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -57,6 +58,12 @@ void write(Writer& out, const Classification& classification) {
     out.real(table->low);
     out.real(table->high);
     write_run(out, table->entries);
+  } else if (const auto* pairs = std::get_if<PairTable>(&classification)) {
+    out.real(pairs->low);
+    out.real(pairs->high);
+    out.integer(pairs->edge);
+    write_run(out, pairs->entries);
+    out.integer(pairs->multiply_by_alpha);
   } else {
     const auto& map = std::get<LinearMap>(classification);
     for (const float value : map.matrix) out.real(value);
@@ -65,8 +72,22 @@ void write(Writer& out, const Classification& classification) {
   }
 }
 
+PairTable read_pairs(Reader& in) {
+  PairTable pairs;
+  pairs.low = in.real32("classification.low");
+  pairs.high = in.real32("classification.high");
+  pairs.edge = in.small("classification.edge", 2, max_pair_edge);
+  const auto entries = std::size_t(pairs.edge) * std::size_t(pairs.edge);
+  pairs.entries = in.values<Rgba>("classification.entries", entries);
+  if (pairs.entries.size() != entries) in.fail("classification.entries", "do not fill the square of pairs");
+  pairs.multiply_by_alpha = in.flag("classification.multiply_by_alpha");
+  return pairs;
+}
+
 Classification read_classification(Reader& in) {
-  if (in.integer("classification", 0, 1) == 0) {
+  const auto kind = in.integer("classification", 0, 2);
+  if (kind == 2) return read_pairs(in);
+  if (kind == 0) {
     TransferFunction table;
     table.low = in.real32("classification.low");
     table.high = in.real32("classification.high");
@@ -100,6 +121,23 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
   return steps;
+}
+
+void write(Writer& out, const std::optional<Slab>& slab) {
+  out.integer(slab.has_value());
+  if (!slab) return;
+  out.real(slab->planes);
+  write(out, slab->offset);
+  write(out, slab->reach);
+}
+
+std::optional<Slab> read_slab(Reader& in) {
+  if (!in.flag("slab")) return std::nullopt;
+  Slab slab;
+  slab.planes = in.real("slab.planes");
+  read(in, "slab.offset", slab.offset);
+  read(in, "slab.reach", slab.reach);
+  return slab;
 }
 
 void write(Writer& out, const std::optional<Fog>& fog) {
@@ -175,6 +213,7 @@ std::vector<std::byte> encode(const VolumeDescription& volume) {
   for (const float value : volume.border) out.real(value);
   for (const int value : volume.stored.low) out.integer(value);
   for (const int value : volume.stored.high) out.integer(value);
+  out.integer(volume.margin);
   return out.bytes();
 }
 
@@ -193,6 +232,7 @@ VolumeDescription decode_volume(std::span<const std::byte> payload) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume.stored.high[axis] =
         in.small(std::string("stored.high.") + x_y_z[axis], volume.stored.low[axis] + 1, volume.size[axis]);
+  volume.margin = in.small("margin", 0, max_axis_texels);
   in.end();
   return volume;
 }
@@ -263,6 +303,7 @@ std::vector<std::byte> encode(const RenderRequest& request) {
     out.real(plane.offset);
   }
   write(out, request.classification);
+  write(out, request.slab);
   write(out, request.fog);
   out.real(request.termination);
   write(out, request.depth);
@@ -293,6 +334,7 @@ RenderRequest decode_request(std::span<const std::byte> payload) {
     plane.offset = in.real("clip_planes.offset");
   }
   request.classification = read_classification(in);
+  request.slab = read_slab(in);
   request.fog = read_fog(in);
   request.termination = in.real32("termination");
   request.depth = read_depth(in);

@@ -131,6 +131,12 @@ volume::Classification alpha_as_colour(const volume::Classification& classificat
     }
     return gathered;
   }
+  if (const auto* pairs = std::get_if<volume::PairTable>(&classification)) {
+    volume::PairTable gathered = *pairs;
+    for (volume::Rgba& entry : gathered.entries) entry = {entry[3], 0, 0, entry[3]};
+    gathered.multiply_by_alpha = alpha.squared;
+    return gathered;
+  }
   volume::LinearMap map = std::get<volume::LinearMap>(classification);
   for (std::size_t column = 0; column < 4; ++column) map.matrix[column] = map.matrix[12 + column];
   map.multiply_by_alpha = alpha.squared;

@@ -41,6 +41,7 @@ GlContext describe_context(const DispatchTable& gl) {
   if (!context.core) {
     gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
     context.fragment_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_fragment_program");
+    context.fog_distance = context.version >= 300 && has_extension(gl, "GL_NV_fog_distance");
     context.vertex_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_vertex_program");
   }
   return context;

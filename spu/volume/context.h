@@ -12,6 +12,7 @@ struct GlContext {
   bool pipeline_statistics = false;   ///< there are queries of GL_ARB_pipeline_statistics_query
   bool fragment_assembly = false;     ///< GL_ARB_fragment_program
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
+  bool fog_distance = false;          ///< GL_NV_fog_distance
   int fixed_function_units = 0;       ///< texture units of the fixed-function pipeline; 0 in core profiles
 
   /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.

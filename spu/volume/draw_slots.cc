@@ -177,6 +177,16 @@ void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
   unit.next().BindTexture(target, texture);
 }
 
+/// Who names the unit again before every slice changes nothing.
+void APIENTRY active_texture_in_run(GLenum texture) {
+  VolumeUnit& unit = here();
+  const Pipeline& pipeline = unit.run().pipeline();
+  if (pipeline.stack && texture == GLenum(GL_TEXTURE0 + pipeline.volume.unit) && !unit.run().inside_begin)
+    return;
+  unit.close_run();
+  unit.next().ActiveTexture(texture);
+}
+
 void fill_draws(DispatchTable& table) {
   table.Begin = begin;
   table.CallList = call_list;
@@ -209,6 +219,8 @@ void fill_deferring_slots(DispatchTable& table) {
   table.End = end_in_run;
   table.BindTexture = bind_texture_in_run;
   table.BindTextureEXT = bind_texture_in_run;
+  table.ActiveTexture = active_texture_in_run;
+  table.ActiveTextureARB = active_texture_in_run;
   fill_draws(table);
   fill_array_calls(table);
 }

@@ -1,5 +1,7 @@
 #include "spu/volume/pipeline.h"
 
+#include <algorithm>
+
 namespace understudy::spu {
 namespace {
 
@@ -48,9 +50,23 @@ GLenum target_of_sampler(GLenum type) {
   }
 }
 
-/// The one 3-D texture and the tables that a program samples; a reason where that is not the shape of it.
+/// Of the 2-D textures that a program samples, the one on the active unit: who draws slice after slice binds
+/// them there.
+void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
+  const auto slice = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
+    return sampled.target == GL_TEXTURE_2D && sampled.unit == active && sampled.texture != 0;
+  });
+  if (slice == pipeline.others.end()) return;
+  pipeline.stack = true;
+  pipeline.volume = *slice;
+  pipeline.others.erase(slice);
+}
+
+/// The one 3-D texture and the tables that a program samples, or the slice of a stack; a reason where that is
+/// not the shape of it.
 std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
-                                                 ProgramSamplers& samplers, Pipeline& pipeline) {
+                                                 ProgramSamplers& samplers, bool stacks, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   const std::shared_ptr<const ProgramRecord> record = group.programs().program(pipeline.program);
   if (record == nullptr) return std::nullopt;  // never linked in our sight: no 3-D sampler known
@@ -70,7 +86,8 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     }
   }
   if (volumes > 1) return "the program samples more than one 3-D texture";
-  if (volumes == 1) {
+  if (volumes == 0 && stacks) take_slice(gl, pipeline);
+  if (pipeline.volume.texture != 0) {
     if (!record->fragment_source_known) return "the program's fragment shader source is not known";
     if (record->other_stages) return "the program has geometry or tessellation stages";
     pipeline.vertex_shader = record->vertex_shader;
@@ -126,6 +143,19 @@ std::optional<std::string> read_vertex_assembly(const GlContext& context) {
   return std::nullopt;
 }
 
+/// Fog by the distance from the eye's plane is a map of the position, as the camera is.
+std::optional<std::string> read_fog(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  pipeline.fog = true;
+  if (integer(gl, GL_FOG_COORD_SRC) != GL_FRAGMENT_DEPTH)
+    return "fog is enabled, by coordinates of the application's own";
+  if (context.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB))
+    return "fog is enabled, by coordinates of a vertex assembly program";
+  if (context.fog_distance && integer(gl, GL_FOG_DISTANCE_MODE_NV) == GL_EYE_RADIAL_NV)
+    return "fog is enabled, by the distance from the eye's point";
+  return std::nullopt;
+}
+
 std::optional<std::string> read_fixed_function_textures(const GlContext& context, bool stacks,
                                                         Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
@@ -158,7 +188,7 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   if (enabled_units > 1) return "more than one texture unit takes part in fixed function";
   if (pipeline.volume.unit != 0) return "the volume is not on texture unit 0 in fixed function";
   if (auto reason = read_vertex_assembly(context)) return reason;
-  if (gl.IsEnabled(GL_FOG)) return "fog is enabled";
+  if (gl.IsEnabled(GL_FOG)) return read_fog(context, pipeline);
   return std::nullopt;
 }
 
@@ -256,7 +286,7 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
   pipeline.program = GLuint(integer(gl, GL_CURRENT_PROGRAM));
   std::optional<std::string> reason;
   if (pipeline.program != 0) {
-    reason = read_program_textures(context, group, samplers, pipeline);
+    reason = read_program_textures(context, group, samplers, stacks, pipeline);
   } else if (!context.core) {
     reason = read_fixed_function_textures(context, stacks, pipeline);
   }

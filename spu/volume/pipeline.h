@@ -33,6 +33,7 @@ struct Pipeline {
   SampledTexture volume;
   bool stack = false;                  ///< `volume` is the first of a stack of 2-D textures, perhaps
   std::vector<SampledTexture> others;  ///< look-up tables of the program
+  bool fog = false;  ///< fixed function fades fragments by their distance from the eye's plane
   Blending blending;
   Target target;
   bool depth_test = false;
@@ -50,7 +51,7 @@ struct LeftAlone {
 
 using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;
 
-/// Reads the current state. Outside glBegin/glEnd only. With `stacks`, fixed function through a 2-D texture may
+/// Reads the current state. Outside glBegin/glEnd only. With `stacks`, what is drawn through a 2-D texture may
 /// be a slice, too.
 PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
                               bool stacks);

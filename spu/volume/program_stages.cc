@@ -296,8 +296,10 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
     if (!input.name.starts_with("gl_"))
       declarations += (input.integer ? "flat out " : "out ") + type + " " + input.name + ";\n";
     if (input.name == coordinate) {
-      body +=
-          "  " + input.name + (input.components == 3 ? " = vec3(unit, 0.5);\n" : " = vec4(unit, 0.5, 1.0);\n");
+      body += "  " + input.name +
+              (input.components == 2   ? " = unit;\n"
+               : input.components == 3 ? " = vec3(unit, 0.5);\n"
+                                       : " = vec4(unit, 0.5, 1.0);\n");
     } else {
       static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
       const std::string slope =

@@ -50,7 +50,8 @@ class CurrentAttributes {
 
 void Run::bind_slice(GLuint texture) {
   append_call(calls_, &DispatchTable::BindTexture, GL_TEXTURE_2D, texture);
-  append_call(calls_, &DispatchTable::PassThrough, GLfloat(slices_.size()));
+  // For feedback mode; core profiles have none, and no fixed-function vertices either.
+  if (!pipeline_.vertex_shader) append_call(calls_, &DispatchTable::PassThrough, GLfloat(slices_.size()));
   slices_.push_back({texture, draws});
 }
 

@@ -9,17 +9,27 @@ namespace {
 constexpr int suspicious_length = 16;
 constexpr GLsizei smallest_edge = 16;
 
+void defined(VolumeUnit& unit, GLenum target, GLint level, GLsizei width, GLsizei height) {
+  if (target != GL_TEXTURE_2D || level != 0 || !unit.stack_detection.continues(width, height)) return;
+  GLint texture = 0;
+  unit.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
+  if (unit.stack_detection.add(GLuint(texture))) unit.stack_defined();
+}
+
 void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,
                            GLint border, GLenum format, GLenum type, const void* pixels) {
   VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
   const DispatchTable& next = unit.next();
   next.TexImage2D(target, level, internal_format, width, height, border, format, type, pixels);
-  if (target != GL_TEXTURE_2D || level != 0 || !unit.stack_detection.continues(width, height)) return;
-  GLint texture = 0;
-  next.GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
-  if (unit.stack_detection.add(GLuint(texture))) unit.stack_defined();
+  defined(unit, target, level, width, height);
 }
 
+void APIENTRY tex_storage_2d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
+                             GLsizei height) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  unit.next().TexStorage2D(target, levels, internal_format, width, height);
+  defined(unit, target, 0, width, height);
+}
 }  // namespace
 
 bool StackDetection::continues(GLsizei width, GLsizei height) {
@@ -42,6 +52,7 @@ bool StackDetection::add(GLuint texture) {
 
 void fill_stack_detection_slots(DispatchTable& table) {
   table.TexImage2D = tex_image_2d;
+  table.TexStorage2D = tex_storage_2d;
 }
 
 }  // namespace understudy::spu

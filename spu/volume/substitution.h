@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "spu/volume/geometry/slab.h"
 #include "spu/volume/verify.h"
 #include "spu/volume/volume_unit.h"
 
@@ -29,11 +30,13 @@ struct VolumeUnit::Substitution {
   std::uint64_t texture_version = 0;
   bool proxy = false;  ///< one draw of a box, whose fragment shader marches
   ObservedPolygons polygons{};
+  std::vector<float> fog_numbers{};  ///< of fixed-function fog, vertex by vertex
   std::optional<Capture> capture{};  ///< where a vertex shader was observed; its polygons are in `polygons`
   std::optional<CameraFit> fit{};
   FragmentInputs fragment{};
   std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end
   SliceSet slices{};
+  std::vector<ObservedSlab> slabs{};  ///< what may be the second coordinates of slabs
   volume::RenderRequest request{};
   std::optional<Difference> difference{};  ///< from the application's picture, where that was drawn already
 };

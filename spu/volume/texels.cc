@@ -54,6 +54,14 @@ std::string name_of_format(GLint format) {
       return "ALPHA";
     case GL_ALPHA8:
       return "ALPHA8";
+    case GL_LUMINANCE_ALPHA:
+      return "LUMINANCE_ALPHA";
+    case GL_LUMINANCE8_ALPHA8:
+      return "LUMINANCE8_ALPHA8";
+    case GL_RGB:
+      return "RGB";
+    case GL_RGB8:
+      return "RGB8";
     case GL_RGBA:
       return "RGBA";
     case GL_RGBA8:
@@ -91,10 +99,10 @@ std::optional<std::string> describe_components(const GlContext& context, GLenum 
     if (bits == 0) continue;
     const auto type = GLenum(level_parameter(gl, target, component.type));
     description.base = component.base;
-    if (component.base == BaseFormat::luminance && alpha > 0) return "the texture has luminance and alpha";
-    if (red > 0 && green > 0) {
-      if (alpha == 0) return "the texture has colour without alpha";
-      if (type != GL_UNSIGNED_NORMALIZED || red > 8) return "the texture's colours have more than 8 bits";
+    description.grey = component.base == BaseFormat::luminance && alpha > 0;
+    if (description.grey || (red > 0 && green > 0)) {
+      description.opaque = alpha == 0;
+      if (type != GL_UNSIGNED_NORMALIZED || bits > 8) return "the texture's colours have more than 8 bits";
       description.base = BaseFormat::rgba;
       description.type = volume::TexelType::rgba8;
       return std::nullopt;
@@ -148,12 +156,24 @@ GLenum pixel_type(volume::TexelType type) {
   }
 }
 
+/// Luminance comes as red, with neither green nor blue.
+void spread_luminance(const TextureDescription& description, std::span<std::byte> texels) {
+  for (std::size_t i = 0; description.grey && i + 3 < texels.size(); i += 4)
+    texels[i + 1] = texels[i + 2] = texels[i];
+}
+
 class BoundTexture final : public TexelSource {
  public:
   BoundTexture(const GlContext& context, GLuint texture, const TextureDescription& description)
       : context_(context), texture_(texture), description_(description) {}
 
   void read(const volume::TexelBox& box, std::span<std::byte> texels) override {
+    read_as_stored(box, texels);
+    spread_luminance(description_, texels);
+  }
+
+ private:
+  void read_as_stored(const volume::TexelBox& box, std::span<std::byte> texels) {
     const DispatchTable& gl = *context_.gl;
     const GLenum format = pixel_format(description_.base);
     const GLenum type = pixel_type(description_.type);
@@ -173,7 +193,6 @@ class BoundTexture final : public TexelSource {
     volume::copy_texels(box, texel, whole, level_, box, texels);
   }
 
- private:
   const GlContext& context_;
   GLuint texture_;
   TextureDescription description_;
@@ -195,7 +214,9 @@ class Stack final : public TexelSource {
       if (const auto reason = describe_texture(context_, GL_TEXTURE_2D, 0, found))
         throw std::runtime_error(*reason);
       found.size[2] = description_.size[2];
-      if (found.size != description_.size || found.type != description_.type || found.base != description_.base)
+      if (found.size != description_.size || found.type != description_.type ||
+          found.base != description_.base || found.opaque != description_.opaque ||
+          found.grey != description_.grey)
         throw std::runtime_error("the stack's textures differ in size or format");
       slice.low[2] = z;
       slice.high[2] = z + 1;
@@ -204,6 +225,7 @@ class Stack final : public TexelSource {
                      slice_.data());
       volume::copy_texels(volume::intersection(box, slice), texel, slice, slice_, box, texels);
     }
+    spread_luminance(description_, texels);
   }
 
  private:
@@ -255,6 +277,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
     gl.GetTexParameterfv(target, GL_TEXTURE_BORDER_COLOR, description.border.data());
   }
   if (description.base == BaseFormat::alpha) description.border[0] = description.border[3];
+  if (description.grey) description.border[1] = description.border[2] = description.border[0];
+  if (description.opaque) description.border[3] = 1;
   if (!context.core) {
     GLfloat scale = 1;
     GLfloat bias = 0;

@@ -22,6 +22,8 @@ struct TextureDescription {
   std::array<int, 3> size{};
   volume::TexelType type = volume::TexelType::u8;
   BaseFormat base = BaseFormat::red;
+  bool opaque = false;  ///< colours without alpha: it is 1 everywhere
+  bool grey = false;    ///< colours are luminance and alpha
   volume::Filter filter = volume::Filter::linear;
   std::array<volume::Wrap, 3> wrap{};
   volume::Rgba border{};

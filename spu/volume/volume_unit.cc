@@ -84,6 +84,18 @@ bool clips_in_shader(const DispatchTable& gl) {
   return false;
 }
 
+/// What fixed-function fog goes by: how far vertices lie from the plane through the eye.
+std::vector<float> eye_distances(const DispatchTable& gl, std::span<const ObservedVertex> vertices) {
+  const auto clip_to_eye = volume::inverse(projection_matrix(gl));
+  if (!clip_to_eye) throw Doubt{"the projection matrix is singular"};
+  std::vector<float> distances;
+  for (const ObservedVertex& vertex : vertices) {
+    const volume::Vec4 eye = volume::transform(*clip_to_eye, vertex.clip);
+    distances.push_back(float(std::abs(eye[2] / eye[3])));
+  }
+  return distances;
+}
+
 /// Gives the observed slices of a stack their third coordinate. The end whose texture has the lower name is the
 /// low one, from whichever side the stack is drawn.
 std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
@@ -117,6 +129,17 @@ void append_fixed_function_state(const DispatchTable& gl, std::vector<float>& ke
   gl.GetTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, colour.data());
   key.insert(key.end(), colour.begin(), colour.end());
   gl.ActiveTexture(GLenum(active));
+}
+
+void append_fog_state(const DispatchTable& gl, std::vector<float>& key) {
+  std::array<GLfloat, 4> colour{};
+  gl.GetFloatv(GL_FOG_COLOR, colour.data());
+  key.insert(key.end(), colour.begin(), colour.end());
+  for (const GLenum name : {GL_FOG_MODE, GL_FOG_DENSITY, GL_FOG_START, GL_FOG_END}) {
+    GLfloat value = 0;
+    gl.GetFloatv(name, &value);
+    key.push_back(value);
+  }
 }
 
 void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
@@ -168,6 +191,29 @@ volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& 
     box.high[k] = std::clamp(int(std::floor(region.high[k] * n - 0.5)) + 2, box.low[k] + 1, size[k]);
   }
   return box;
+}
+
+/// The region, and where the far ends of its slabs may lie.
+volume::Box with_slabs(volume::Box region, const std::vector<ObservedSlab>& slabs) {
+  const volume::Box without = region;
+  for (const ObservedSlab& observed : slabs) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      region.low[k] = std::min(region.low[k], without.low[k] - observed.slab.reach[k]);
+      region.high[k] = std::max(region.high[k], without.high[k] + observed.slab.reach[k]);
+    }
+  }
+  return region;
+}
+
+/// Cells around their own that nodes need for slabs: whole blocks, so that a view that turns sends nothing
+/// anew.
+int margin_of(const std::vector<ObservedSlab>& slabs, const std::array<int, 3>& size) {
+  double cells = 0;
+  for (const ObservedSlab& observed : slabs) {
+    for (std::size_t k = 0; k < 3; ++k) cells = std::max(cells, observed.slab.reach[k] * size[k]);
+  }
+  constexpr int block = 8;
+  return block * int(std::ceil(cells / block));
 }
 
 std::string_view name_of(volume::TexelType type) {
@@ -426,6 +472,10 @@ void VolumeUnit::observe(Substitution& s) {
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
       s.polygons = std::move(capture.polygons);
       s.fit = capture.fit;
+      if (s.pipeline.stack) {
+        s.stack = place_slices(s.run, s.polygons);
+        s.fit = fit_camera(s.polygons.vertices);
+      }
       s.fragment.coordinate = capture.coordinate;
       s.fragment.first = capture.first;
       s.fragment.last = capture.last;
@@ -447,6 +497,10 @@ void VolumeUnit::observe(Substitution& s) {
   s.polygons = observe_by_feedback(context(), s.run);
   if (s.polygons.count() == 0) throw NothingVisible{};
   if (s.pipeline.stack) s.stack = place_slices(s.run, s.polygons);
+  if (s.pipeline.fog) {
+    s.fog_numbers = eye_distances(gl, s.polygons.vertices);
+    s.fragment.inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
+  }
   if (!s.polygons.constant_colour)
     throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
   s.fragment.coordinate = "gl_TexCoord[0]";
@@ -455,6 +509,8 @@ void VolumeUnit::observe(Substitution& s) {
       s.fragment.first.push_back({});
     } else if (input.name == "gl_FrontColor") {
       s.fragment.first.push_back(s.polygons.primary_colour);
+    } else if (s.pipeline.fog && input.name == "gl_FogFragCoord") {
+      s.fragment.first.push_back({s.fog_numbers.front(), 0, 0, 0});
     } else if (s.pipeline.assembly) {
       s.fragment.first.push_back({0.25F, 0.25F, 0.25F, 1});
     } else {
@@ -464,6 +520,11 @@ void VolumeUnit::observe(Substitution& s) {
   s.fragment.last = s.fragment.first;
   if (s.pipeline.assembly) std::fill(s.fragment.last.begin() + 2, s.fragment.last.end(), untold_value);
   s.fragment.range = {s.fragment.first, s.fragment.first};
+  if (s.pipeline.fog) {
+    const auto [low, high] = std::minmax_element(s.fog_numbers.begin(), s.fog_numbers.end());
+    s.fragment.first.back()[0] = s.fragment.range.low.back()[0] = *low;
+    s.fragment.last.back()[0] = s.fragment.range.high.back()[0] = *high;
+  }
 }
 
 void VolumeUnit::find_geometry(Substitution& s) {
@@ -476,6 +537,9 @@ void VolumeUnit::find_geometry(Substitution& s) {
   SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes, order_of(s.pipeline));
   if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
   s.slices = std::get<SliceSet>(finding);
+  if (!s.capture || s.pipeline.stack) return;
+  s.slabs = find_slabs(*s.capture, s.polygons.vertices, s.fragment.inputs, s.slices, *s.fit);
+  for (const ObservedSlab& observed : s.slabs) s.fragment.slab_ends.push_back(observed.input);
 }
 
 void VolumeUnit::describe_volume(Substitution& s) {
@@ -489,7 +553,6 @@ void VolumeUnit::describe_volume(Substitution& s) {
   gl.ActiveTexture(GLenum(active));
   if (reason) throw Doubt{*reason};
   if (s.pipeline.stack) {
-    if (texture.type == volume::TexelType::f32) throw Doubt{"the stack's textures hold floats"};
     texture.size[2] = int(s.stack.size());
     texture.wrap[2] = volume::Wrap::edge;
   }
@@ -508,8 +571,10 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   wanted.type = texture.type;
   wanted.wrap = texture.wrap;
   wanted.border = texture.border;
-  wanted.stored = texels_of(s.slices.region, texture.size);
   const bool kept = known.generation == session_->generation();
+  wanted.stored = texels_of(with_slabs(s.slices.region, s.slabs), texture.size);
+  wanted.margin = margin_of(s.slabs, texture.size);
+  if (kept) wanted.margin = std::max(wanted.margin, known.description.margin);
   if (kept && volume::contains(known.description.stored, wanted.stored)) {
     wanted.stored = known.description.stored;
   } else if (kept) {
@@ -525,7 +590,7 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   {
     SavedState saved(context());
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
-    if (s.pipeline.stack) saved.borrow_texture(GL_TEXTURE_2D, 0);
+    if (s.pipeline.stack) saved.borrow_texture(GL_TEXTURE_2D, s.pipeline.volume.unit);
     const auto source = s.pipeline.stack ? stack_source(context(), s.stack, texture)
                                          : texture_source(context(), s.pipeline.volume.texture, texture);
     if (changed_at_most) {
@@ -556,6 +621,7 @@ void VolumeUnit::classify(Substitution& s) {
                          known.range[1],
                          s.pipeline.blending.premultiplied ? 1.0F : 0.0F,
                          float(known.texture.base),
+                         known.texture.opaque ? 1.0F : 0.0F,
                          float(known.texture.type),
                          float(s.pipeline.blending.op),
                          s.pipeline.target.floating ? 1.0F : 0.0F};
@@ -570,6 +636,7 @@ void VolumeUnit::classify(Substitution& s) {
     key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
   } else {
     append_fixed_function_state(gl, key);
+    if (s.pipeline.fog) append_fog_state(gl, key);
   }
   for (const SampledTexture& table : s.pipeline.others) {
     key.push_back(float(table.texture));
@@ -586,13 +653,21 @@ void VolumeUnit::classify(Substitution& s) {
   }
   s.request.classification = known.probed->classification;
   if (known.probed->fog) place_fog(s, *known.probed->fog);
+  for (const ObservedSlab& observed : s.slabs) {
+    if (observed.input == known.probed->slab_end) s.request.slab = observed.slab;
+  }
+  if (known.probed->slab_end && !s.request.slab)
+    throw Doubt{"the second coordinate of slabs is neither a fixed way off nor on the ray"};
 }
 
 void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
   // The number, observed at every vertex, as a map of the position: a camera that sees one coordinate.
   std::vector<ObservedVertex> vertices = s.polygons.vertices;
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    vertices[v].clip = {s.capture->value(v, measured.input, measured.component), 0, 0, 0};
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const float number =
+        s.pipeline.fog ? s.fog_numbers[v] : s.capture->value(v, measured.input, measured.component);
+    vertices[v].clip = {number, 0, 0, 0};
+  }
   const auto fit = fit_camera(vertices);
   if (!fit || fit->residual > max_fit_residual) throw Doubt{"fog is not an affine map of the position"};
   const double scale = 1.0 / (double(measured.high) - measured.low);
@@ -661,15 +736,15 @@ void VolumeUnit::explain(const Substitution& s) {
                   name_of(s.volume.texture.type), s.volume.texture.format_name,
                   sampling_of(s.request, s.volume.texture.size),
                   s.request.filter == volume::Filter::linear ? "linear" : "nearest",
-                  std::holds_alternative<volume::LinearMap>(s.request.classification)
-                      ? "colours in the texels"
-                      : (s.pipeline.program != 0 ? "table probed from the program"
-                         : s.pipeline.assembly   ? "table probed from the assembly program"
-                                                 : "table probed from fixed function"),
+                  std::holds_alternative<volume::LinearMap>(s.request.classification) ? "colours in the texels"
+                  : s.request.slab ? "table of pairs probed from the program"
+                                   : (s.pipeline.program != 0 ? "table probed from the program"
+                                      : s.pipeline.assembly   ? "table probed from the assembly program"
+                                                              : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, name_of(s.pipeline.blending),
                   s.pipeline.blending.premultiplied ? "premultiplied" : "plain", s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
-                  s.request.fog ? ", fading in fog" : ""));
+                  !s.proxy && s.volume.probed->fog ? ", fading in fog" : ""));
 }
 
 void VolumeUnit::substitute(const Run& run) {

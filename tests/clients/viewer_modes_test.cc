@@ -77,11 +77,8 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"Two", "table", {"--second", "--opaque"}, 2, nullptr},
         Way{"TwoFrontToBack", "core", {"--second", "--operator", "under"}, 2, nullptr},
         Way{"Lit", "lit", {}, 0, "the colour depends on the field around the sample (gradient, lighting)"},
-        Way{"Preintegrated",
-            "preint",
-            {},
-            0,
-            "the colour depends on more than the sample (position, lighting)"},
+        Way{"Preintegrated", "preint", {}, 1, nullptr},
+        Way{"PreintegratedFrontToBack", "preint", {"--operator", "under", "--opaque"}, 1, nullptr},
         Way{"Stacks", "stacks", {}, 1, nullptr},
         Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -121,10 +118,13 @@ TEST_P(TimeSteps, SendOnlyWhatChanges) {
 INSTANTIATE_TEST_SUITE_P(Of, TimeSteps, testing::Values("whole", "part", "again"),
                          [](const auto& info) { return std::string(info.param); });
 
+/// An operator, or the pre-integrated slabs.
 class OperatorsOnRanks : public Stage, public testing::WithParamInterface<const char*> {};
 
 TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  const std::string name = GetParam();
+  const Words way = name == "slabs" ? Words{"--mode", "preint"} : Words{"--operator", name};
   // No voxel is 0: a minimum has something to tell.
   std::string voxels;
   constexpr int edge = 50;
@@ -140,7 +140,7 @@ TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
                              "--window-size",
                              "200",
                              "200"} +
-                       view({"--operator", GetParam(), "--opaque"});
+                       view(way + Words{"--opaque"});
   for (const char* ranks : {"0", "2"}) {
     const Outcome outcome = run_well(under({"-n", ranks, "--save-frames", file(std::string("frames") + ranks),
                                             "--report", file("report.json")}) +
@@ -149,8 +149,8 @@ TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
   }
   double largest = 0, brightest = 0;
   for (int number = 0; number < frames; ++number) {
-    const std::string name = fmt::format("frame_{:04}.pfm", number);
-    const Picture one = read_picture(file("frames0") / name), two = read_picture(file("frames2") / name);
+    const std::string frame = fmt::format("frame_{:04}.pfm", number);
+    const Picture one = read_picture(file("frames0") / frame), two = read_picture(file("frames2") / frame);
     ASSERT_EQ(one.rgba.size(), two.rgba.size());
     for (std::size_t i = 0; i < one.rgba.size(); ++i) {
       // Where a minimum has no sample it is larger than any float framebuffer's colour.
@@ -159,12 +159,12 @@ TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
       if (a < 1e3) brightest = std::max(brightest, a);
     }
   }
-  fmt::print("{}: at most {:.2e} apart, largest value {:.2f}\n", GetParam(), largest, brightest);
+  fmt::print("{}: at most {:.2e} apart, largest value {:.2f}\n", name, largest, brightest);
   EXPECT_GT(brightest, 0.3) << "there is something to see";
   EXPECT_LE(largest, 1e-5 * std::max(1.0, brightest));
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, OperatorsOnRanks, testing::Values("over", "under", "max", "min", "add"),
+INSTANTIATE_TEST_SUITE_P(Of, OperatorsOnRanks, testing::Values("over", "under", "max", "min", "add", "slabs"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "compositor/service/limits.h"
+#include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -25,6 +26,7 @@ VolumeDescription some_volume() {
   v.wrap = {Wrap::edge, Wrap::border, Wrap::repeat};
   v.border = {0.1F, 0.2F, 0.3F, 0.4F};
   v.stored = {{1, 2, 3}, {60, 33, 17}};
+  v.margin = 8;
   return v;
 }
 
@@ -57,6 +59,15 @@ RenderRequest some_request(bool colours, bool depth) {
   return r;
 }
 
+RenderRequest some_request_for_slabs() {
+  RenderRequest r = some_request(true, false);
+  PairTable pairs{-0.5F, 2.5F, 3, {}, false};
+  for (int i = 0; i < 9; ++i) pairs.entries.push_back({float(i), 0.5F, 0.25F, 0.125F});
+  r.classification = pairs;
+  r.slab = Slab{1, {0.1, -0.2, 0.3}, {0.15, 0.25, 0.35}};
+  return r;
+}
+
 FrameCounts some_counts() {
   return {1, 2, 3, 4, 5, 6, 7, 8, 9.5, 10.25};
 }
@@ -85,6 +96,7 @@ std::vector<Kind> all_kinds() {
       {"texels", texels_message({4, {{{1, 2, 3}, {2, 4, 5}}, {{0, 0, 0}, {3, 3, 1}}}, texels}),
        [](auto b) { return texels_message(decode_texels(b)); }},
       {"request with a table", encode(some_request(false, false)), request},
+      {"request for slabs", encode(some_request_for_slabs()), request},
       {"request with a map and depth", encode(some_request(true, true)), request},
       {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
        [](auto b) { return encode(decode_rendered(b)); }},
@@ -139,6 +151,15 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.depth->or_equal, sent.depth->or_equal);
   EXPECT_EQ(decode_request(encode(some_request(true, false))).classification,
             some_request(true, false).classification);
+}
+
+TEST(Protocol, SlabsArrive) {
+  const RenderRequest sent = some_request_for_slabs(), got = decode_request(encode(sent));
+  EXPECT_EQ(got.classification, sent.classification);
+  ASSERT_TRUE(got.slab.has_value());
+  EXPECT_EQ(got.slab->planes, sent.slab->planes);
+  EXPECT_EQ(got.slab->offset, sent.slab->offset);
+  EXPECT_EQ(got.slab->reach, sent.slab->reach);
 }
 
 TEST(Protocol, AMessageCutAnywhereIsRefusedWithFieldAndOffset) {
@@ -239,6 +260,12 @@ TEST(Protocol, LimitsAreKept) {
   refused(r);
   r = some_request(false, true);
   r.depth->depth.pop_back();
+  refused(r);
+  r = some_request_for_slabs();
+  std::get<PairTable>(r.classification).entries.pop_back();
+  refused(r);
+  r = some_request_for_slabs();
+  std::get<PairTable>(r.classification).edge = max_pair_edge + 1;
   refused(r);
 
   VolumeDescription v = some_volume();

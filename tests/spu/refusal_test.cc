@@ -14,7 +14,13 @@ struct Refusal {
 
 std::vector<Refusal> refusals() {
   return {
-      {"fog", "fog is enabled", [](GlApplication& a) { a.gl().Enable(GL_FOG); }},
+      {"fog over colours in the texels", "the colour depends on more than the sample (position, lighting)",
+       [](GlApplication& a) { a.gl().Enable(GL_FOG); }},
+      {"fog by coordinates", "fog is enabled, by coordinates of the application's own",
+       [](GlApplication& a) {
+         a.gl().Fogi(GL_FOG_COORD_SRC, GL_FOG_COORD);
+         a.gl().Enable(GL_FOG);
+       }},
       {"stencil test", "the stencil test is enabled", [](GlApplication& a) { a.gl().Enable(GL_STENCIL_TEST); }},
       {"logical operation", "a logical operation is enabled",
        [](GlApplication& a) { a.gl().Enable(GL_COLOR_LOGIC_OP); }},

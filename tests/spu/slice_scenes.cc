@@ -576,6 +576,298 @@ SliceScene fogged_polygons() {
   return scene;
 }
 
+SliceScene pre_integrated_slabs(bool along_rays) {
+  SliceScene scene{along_rays ? "slabs along rays, GLSL 1.20" : "slabs of one vector, GLSL 1.20"};
+  auto name = std::make_shared<GLuint>(0);
+  scene.set_up = [name](GlApplication& app) {
+    const DispatchTable& gl = app.gl();
+    const Blob blob;
+    std::vector<float> values;
+    for (const std::uint8_t s : blob.texels()) values.push_back(float(s) / 255);
+    GLuint texture = 0;
+    gl.GenTextures(1, &texture);
+    gl.BindTexture(GL_TEXTURE_3D, texture);
+    filter(gl, GL_TEXTURE_3D, GL_LINEAR);
+    gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, values.data());
+    // Of a narrow band of values: slabs whose ends lie on either side of it show it, samples alone would not.
+    constexpr int edge = 256;
+    const auto below = [](double s) { return 0.02 * s + 0.5 / (1 + std::exp(-60 * (s - 0.55))); };
+    std::vector<float> table;
+    for (int back = 0; back < edge; ++back) {
+      for (int front = 0; front < edge; ++front) {
+        const double f = front / 255.0;
+        const double b = back / 255.0;
+        const double slope = 0.02 + 30 * std::exp(-60 * std::abs(f - 0.55)) / 2;
+        const double depth = front == back ? 0.01 * slope : 0.3 * std::abs(below(b) - below(f));
+        table.insert(table.end(), {float(f), float(0.5 + 0.5 * std::sin(5 * b)), float(1 - 0.5 * (f + b)),
+                                   float(1 - std::exp(-depth))});
+      }
+    }
+    gl.GenTextures(1, &texture);
+    gl.ActiveTexture(GL_TEXTURE1);
+    gl.BindTexture(GL_TEXTURE_2D, texture);
+    filter(gl, GL_TEXTURE_2D, GL_LINEAR);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, edge, edge, 0, GL_RGBA, GL_FLOAT, table.data());
+    gl.ActiveTexture(GL_TEXTURE0);
+    *name = program(gl,
+                    "#version 120\n"
+                    "uniform mat4 camera; uniform vec3 slab; uniform vec4 eye; attribute vec3 corner;\n"
+                    "varying vec3 front; varying vec3 back;\n"
+                    "void main() {\n"
+                    "  front = corner;\n"
+                    "  vec3 ray = corner - eye.xyz;\n"
+                    "  back = front + mix(slab, slab.z / ray.z * ray, eye.w);\n"
+                    "  gl_Position = camera * vec4(corner, 1.0);\n"
+                    "}\n",
+                    "#version 120\n"
+                    "uniform sampler3D field; uniform sampler2D table; varying vec3 front; varying vec3 back;\n"
+                    "void main() {\n"
+                    "  vec2 ends = vec2(texture3D(field, front).r, texture3D(field, back).r);\n"
+                    "  gl_FragColor = texture2D(table, (ends * 255.0 + 0.5) / 256.0);\n"
+                    "}\n");
+    gl.UseProgram(*name);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "field"), 0);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "table"), 1);
+    gl.UseProgram(0);
+  };
+  auto array = std::make_shared<std::vector<std::array<GLfloat, 12>>>(slices);
+  scene.slices = [name, array, along_rays](GlApplication& app, double angle) {
+    const DispatchTable& gl = app.gl();
+    blend_over(gl);
+    gl.UseProgram(*name);
+    const Matrix camera = camera_matrix(angle);
+    gl.UniformMatrix4fv(gl.GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
+    gl.Uniform3f(gl.GetUniformLocation(*name, "slab"), 0, 0, -1.0F / slices);
+    const double turned = angle * M_PI / 180;
+    gl.Uniform4f(gl.GetUniformLocation(*name, "eye"), GLfloat(0.5 - 3 * std::sin(turned)), 0.5F,
+                 GLfloat(0.5 + 3 * std::cos(turned)), along_rays ? 1 : 0);
+    for (int i = 0; i < slices; ++i) quad_corners(slice_z(i), (*array)[std::size_t(i)]);
+    gl.EnableVertexAttribArray(3);
+    gl.VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, array->data());
+    gl.DrawArrays(GL_QUADS, 0, 4 * slices);
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    app.gl().DisableVertexAttribArray(3);
+    app.gl().UseProgram(0);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene fixed_function_fog(GLenum mode) {
+  SliceScene scene = immediate_rgba();
+  scene.name = "fixed function in fog";
+  scene.set_up = [](GlApplication& app) { scalar_texture(app.gl(), GL_INTENSITY8, GL_LUMINANCE); };
+  scene.slices = [mode, slices_alone = scene.slices](GlApplication& app, double angle) {
+    const std::array<GLfloat, 4> haze{0.9F, 0.3F, 0.1F, 1};
+    app.gl().Fogi(GL_FOG_MODE, GLint(mode));
+    app.gl().Fogfv(GL_FOG_COLOR, haze.data());
+    app.gl().Fogf(GL_FOG_START, 2.5F);
+    app.gl().Fogf(GL_FOG_END, 3.3F);
+    app.gl().Fogf(GL_FOG_DENSITY, 0.25F);
+    app.gl().Enable(GL_FOG);
+    slices_alone(app, angle);
+  };
+  scene.tidy_up = [tidy_up_slices = scene.tidy_up](GlApplication& app) {
+    tidy_up_slices(app);
+    app.gl().Disable(GL_FOG);
+  };
+  return scene;
+}
+
+SliceScene texture_stack_program(Profile profile, GLenum internal_format) {
+  SliceScene scene{"a stack of 2-D textures under GLSL", profile};
+  auto stack = std::make_shared<std::vector<GLuint>>();
+  auto name = std::make_shared<GLuint>(0);
+  scene.set_up = [stack, name, profile, internal_format](GlApplication& app) {
+    const DispatchTable& gl = app.gl();
+    const Blob blob;
+    const auto texels = blob.texels();
+    stack->resize(std::size_t(blob.z));
+    gl.GenTextures(blob.z, stack->data());
+    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (int z = 0; z < blob.z; ++z) {
+      gl.BindTexture(GL_TEXTURE_2D, (*stack)[std::size_t(z)]);
+      filter(gl, GL_TEXTURE_2D, GL_LINEAR);
+      gl.TexImage2D(GL_TEXTURE_2D, 0, GLint(internal_format), blob.x, blob.y, 0, GL_RED, GL_UNSIGNED_BYTE,
+                    &texels[std::size_t(z * blob.x * blob.y)]);
+    }
+    table_texture(gl);
+    const bool core = profile == Profile::core;
+    *name = program(gl,
+                    core ? "#version 330\n"
+                           "uniform mat4 camera; in vec3 corner; out vec2 place;\n"
+                           "void main() { place = corner.xy; gl_Position = camera * vec4(corner, 1.0); }\n"
+                         : nullptr,
+                    core ? "#version 330\n"
+                           "uniform sampler2D field; uniform sampler1D table; in vec2 place; out vec4 colour;\n"
+                           "void main() { colour = texture(table, texture(field, place).r); }\n"
+                         : "#version 120\n"
+                           "uniform sampler2D field; uniform sampler1D table;\n"
+                           "void main() {\n"
+                           "  gl_FragColor = texture1D(table, texture2D(field, gl_TexCoord[0].xy).r);\n"
+                           "}\n");
+    gl.UseProgram(*name);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "field"), 0);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "table"), 1);
+    gl.UseProgram(0);
+    if (!core) return;
+    std::vector<GLfloat> triangles;
+    for (int z = 0; z < blob.z; ++z) {
+      std::array<GLfloat, 12> q{};
+      quad_corners((z + 0.5) / blob.z, q);
+      for (const std::size_t corner : {0, 1, 2, 0, 2, 3})
+        triangles.insert(triangles.end(), {q[3 * corner], q[3 * corner + 1], q[3 * corner + 2]});
+    }
+    GLuint array = 0;
+    GLuint buffer = 0;
+    gl.GenVertexArrays(1, &array);
+    gl.BindVertexArray(array);
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
+                  GL_STATIC_DRAW);
+    gl.EnableVertexAttribArray(3);
+    gl.VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+  };
+  scene.slices = [stack, name, profile](GlApplication& app, double angle) {
+    if (profile == Profile::compatibility) fixed_function_camera(app.gl(), angle);
+    blend_over(app.gl());
+    app.gl().UseProgram(*name);
+    const Matrix camera = camera_matrix(angle);
+    if (profile == Profile::core)
+      app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
+    const std::size_t n = stack->size();
+    const bool from_behind = std::cos(angle * M_PI / 180) < 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t slice = from_behind ? n - 1 - i : i;
+      app.gl().ActiveTexture(GL_TEXTURE0);
+      app.gl().BindTexture(GL_TEXTURE_2D, (*stack)[slice]);
+      if (profile == Profile::core) {
+        app.gl().DrawArrays(GL_TRIANGLES, GLint(6 * slice), 6);
+        continue;
+      }
+      app.gl().Begin(GL_QUADS);
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        app.gl().TexCoord2d(x, y);
+        app.gl().Vertex3d(x, y, (double(slice) + 0.5) / double(n));
+      }
+      app.gl().End();
+    }
+  };
+  scene.tidy_up = [](GlApplication& app) {
+    app.gl().UseProgram(0);
+    app.gl().Disable(GL_BLEND);
+  };
+  return scene;
+}
+
+SliceScene view_space_slices() {
+  SliceScene scene{"corners in the eye's space, a projection alone", Profile::core};
+  auto name = std::make_shared<GLuint>(0);
+  auto array = std::make_shared<GLuint>(0);
+  scene.set_up = [name, array](GlApplication& app) {
+    const DispatchTable& gl = app.gl();
+    scalar_texture(gl, GL_R8, GL_RED);
+    table_texture(gl);
+    *name = program(gl,
+                    "#version 330\n"
+                    "uniform mat4 projection; in vec3 corner; in vec3 coordinate; out vec3 place;\n"
+                    "void main() { place = coordinate; gl_Position = projection * vec4(corner, 1.0); }\n",
+                    "#version 330\n"
+                    "uniform sampler3D field; uniform sampler1D table; in vec3 place; out vec4 colour;\n"
+                    "void main() { colour = texture(table, texture(field, place).r); }\n");
+    gl.UseProgram(*name);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "field"), 0);
+    gl.Uniform1i(gl.GetUniformLocation(*name, "table"), 1);
+    GLuint buffer = 0;
+    gl.GenVertexArrays(1, array.get());
+    gl.BindVertexArray(*array);
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    const auto coordinate = GLuint(gl.GetAttribLocation(*name, "coordinate"));
+    constexpr GLsizei stride = 6 * sizeof(GLfloat);
+    gl.EnableVertexAttribArray(3);
+    gl.VertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, stride, nullptr);
+    gl.EnableVertexAttribArray(coordinate);
+    gl.VertexAttribPointer(coordinate, 3, GL_FLOAT, GL_FALSE, stride,
+                           reinterpret_cast<const void*>(3 * sizeof(GLfloat)));
+  };
+  scene.slices = [name, array](GlApplication& app, double angle) {
+    const DispatchTable& gl = app.gl();
+    const double c = std::cos(angle * M_PI / 180);
+    const double s = std::sin(angle * M_PI / 180);
+    std::vector<GLfloat> triangles;
+    for (int i = 0; i < slices; ++i) {
+      std::array<GLfloat, 12> q{};
+      quad_corners(slice_z(i), q);
+      for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) {
+        const double x = q[3 * corner] - 0.5;
+        const double y = q[3 * corner + 1] - 0.5;
+        const double z = q[3 * corner + 2] - 0.5;
+        triangles.insert(triangles.end(), {GLfloat(c * x + s * z), GLfloat(y), GLfloat(-s * x + c * z - 3),
+                                           q[3 * corner], q[3 * corner + 1], q[3 * corner + 2]});
+      }
+    }
+    // The buffer is larger than what is drawn of it: the rest is one corner, over and over.
+    triangles.resize(triangles.size() + 6 * 30);
+    gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
+                  GL_STREAM_DRAW);
+    blend_over(gl);
+    gl.UseProgram(*name);
+    constexpr float near = 1;
+    constexpr float far = 10;
+    const Matrix projection{3.3F,
+                            0,
+                            0,
+                            0,
+                            0,
+                            3.3F,
+                            0,
+                            0,
+                            0,
+                            0,
+                            (far + near) / (near - far),
+                            -1,
+                            0,
+                            0,
+                            2 * far * near / (near - far),
+                            0};
+    gl.UniformMatrix4fv(gl.GetUniformLocation(*name, "projection"), 1, GL_FALSE, projection.data());
+    gl.BindVertexArray(*array);
+    gl.DrawArrays(GL_TRIANGLES, 0, GLsizei(triangles.size() / 6));
+  };
+  scene.tidy_up = [](GlApplication& app) { app.gl().Disable(GL_BLEND); };
+  return scene;
+}
+
+SliceScene degenerate_strip() {
+  SliceScene scene = core_batched();
+  scene.name = "core profile, one strip with degenerate triangles";
+  scene.set_up = [set_up = scene.set_up](GlApplication& app) {
+    set_up(app);
+    std::vector<GLfloat> strip;
+    for (int i = 0; i < slices; ++i) {
+      std::array<GLfloat, 12> q{};
+      quad_corners(slice_z(i), q);
+      for (const std::size_t corner : {0, 0, 1, 3, 2, 2})
+        strip.insert(strip.end(), {q[3 * corner], q[3 * corner + 1], q[3 * corner + 2]});
+    }
+    app.gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(strip.size() * sizeof(GLfloat)), strip.data(),
+                        GL_STATIC_DRAW);
+  };
+  scene.slices = [](GlApplication& app, double angle) {
+    blend_over(app.gl());
+    GLint program = 0;
+    app.driver().GetIntegerv(GL_CURRENT_PROGRAM, &program);
+    const Matrix camera = camera_matrix(angle);
+    app.gl().UniformMatrix4fv(app.gl().GetUniformLocation(GLuint(program), "camera"), 1, GL_FALSE,
+                              camera.data());
+    app.gl().DrawArrays(GL_TRIANGLE_STRIP, 0, 6 * slices);
+  };
+  return scene;
+}
+
 std::vector<SliceScene> all_slice_scenes() {
   return {immediate_rgba(),        display_list_texgen(),   client_arrays_table(),
           vertex_shader_varying(), assembly_program(false), assembly_program(true),

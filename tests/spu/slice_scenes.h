@@ -55,6 +55,19 @@ SliceScene core_batched();
 /// that nobody writes or reads, an alpha blend function of its own: what PyMOL does.
 SliceScene fogged_polygons();
 
+/// Pre-integrated slabs: front and back coordinate of each slab from the vertex shader, a 2-D table over both
+/// values, float throughout. The back lies behind the front by one vector, or on the ray through it.
+SliceScene pre_integrated_slabs(bool along_rays);
+/// glBegin/glEnd quads through an INTENSITY texture, in fixed-function fog of `mode`.
+SliceScene fixed_function_fog(GLenum mode);
+/// A stack of 2-D textures of `internal_format` under GLSL with a 1-D table; in a core profile from a buffer, a
+/// draw for each slice.
+SliceScene texture_stack_program(Profile profile, GLenum internal_format);
+/// Corners computed by the application in the eye's space; the program has nothing but a projection.
+SliceScene view_space_slices();
+/// Core profile, all slices in one strip, joined by degenerate triangles and filled up with zeros.
+SliceScene degenerate_strip();
+
 std::vector<SliceScene> all_slice_scenes();
 
 }  // namespace understudy::spu::testing

@@ -48,6 +48,21 @@ std::uint32_t bits(Texel texel) {
 
 }  // namespace
 
+namespace {
+
+/// The cells that a store keeps: its own, and the volume's margin around them.
+TexelBox kept_cells(const VolumeDescription& volume, const CellLattice& lattice, const TexelBox& owned_cells) {
+  const TexelBox all = lattice.box();
+  TexelBox kept;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    kept.low[axis] = std::max(owned_cells.low[axis] - volume.margin, all.low[axis]);
+    kept.high[axis] = std::min(owned_cells.high[axis] + volume.margin, all.high[axis]);
+  }
+  return kept;
+}
+
+}  // namespace
+
 BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells)
     : volume_(volume), lattice_(cell_lattice(volume)), owned_(owned_cells) {
   channels_ = volume.type == TexelType::rgba8 ? 4 : 1;
@@ -73,10 +88,11 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
   if (!any) return;
   shown_ = texels_shown(volume, owned_cells);
   slice_seen_.resize(std::size_t(shown_.high[2] - shown_.low[2]));
+  const TexelBox kept = kept_cells(volume, lattice_, owned_);
   std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    first_block_[axis] = (owned_.low[axis] - all.low[axis]) / block_cells;
-    const int end = (owned_.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
+    first_block_[axis] = (kept.low[axis] - all.low[axis]) / block_cells;
+    const int end = (kept.high[axis] - all.low[axis] + block_cells - 1) / block_cells;
     block_counts_[axis] = end - first_block_[axis];
     count *= std::uint64_t(block_counts_[axis]);
   }
@@ -93,10 +109,11 @@ BrickStore::BrickStore(const VolumeDescription& volume, const TexelBox& owned_ce
 TexelBox BrickStore::texels_shown(const VolumeDescription& volume, const TexelBox& owned_cells) {
   if (is_empty(owned_cells)) return {};
   const CellLattice lattice = cell_lattice(volume);
+  const TexelBox kept = kept_cells(volume, lattice, owned_cells);
   TexelBox shown;
   for (int axis = 0; axis < 3; ++axis) {
-    const int first = (owned_cells.low[axis] - lattice.origin[axis]) / block_cells * block_cells;
-    const int blocks = (owned_cells.high[axis] - lattice.origin[axis] - first + block_cells - 1) / block_cells;
+    const int first = (kept.low[axis] - lattice.origin[axis]) / block_cells * block_cells;
+    const int blocks = (kept.high[axis] - lattice.origin[axis] - first + block_cells - 1) / block_cells;
     const int last = std::min(first + blocks * block_cells, lattice.cells[axis]);
     shown.low[axis] = shown.high[axis] = lattice_texel(volume, lattice, axis, first);
     // A repeating axis may show both of its ends.

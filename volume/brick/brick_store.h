@@ -29,7 +29,7 @@ class BrickStore {
   static constexpr int block_texels = block_row * block_slice;
 
   /// Holds the blocks that meet `owned_cells` (cell coordinates, half-open, inside the lattice; may be
-  /// empty). Throws std::invalid_argument.
+  /// empty) or the volume's margin around them. Throws std::invalid_argument.
   BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells);
 
   /// The texels that a store with these cells shows: no others need come. Empty where there are no cells.

@@ -65,6 +65,31 @@ bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   return true;
 }
 
+/// Colour and opacity of a slab; false when it contributes nothing (NaN).
+bool classify(const PairLookup& pairs, float front, float back, Rgba& colour) {
+  if (std::isnan(front) || std::isnan(back)) return false;
+  const auto place = [&](float value) {
+    return std::clamp((value - pairs.low()) * pairs.scale(), 0.0F, pairs.last());
+  };
+  const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
+  const float x = place(front), y = place(back);
+  const std::size_t i = entry(x), j = entry(y);
+  const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
+  const float* upper = lower + 4 * std::size_t(pairs.edge());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto along = [&](const float* row) { return row[k] + (x - float(i)) * (row[4 + k] - row[k]); };
+    colour[k] = along(lower) + (y - float(j)) * (along(upper) - along(lower));
+  }
+  if (pairs.multiply_by_alpha())
+    for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
+  return true;
+}
+
+/// Colours have no table of pairs.
+bool classify(const PairLookup&, const Rgba&, const Rgba&, Rgba&) {
+  return false;
+}
+
 /// What the fog at lattice position p leaves of a colour.
 void lay_in_fog(const FogTable& fog, const std::array<float, 3>& p, Rgba& colour) {
   const std::array<float, 3>& gradient = fog.gradient();
@@ -106,20 +131,21 @@ class RayWalk {
   }
 
   void move_to(int k) {
-    block_ = 0;
-    corner_ = 0;
-    std::size_t block_stride = 1;
-    int texel_stride = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       position_[axis] = float(k) * step_[axis] + start_[axis];
       clamped_[axis] = std::clamp(position_[axis], 0.0F, scene_.top[axis]);
-      const int cell = int(clamped_[axis]);
-      fraction_[axis] = clamped_[axis] - float(cell);
-      block_ += std::size_t(cell / BrickStore::block_cells - scene_.store->first_block()[axis]) * block_stride;
-      corner_ += cell % BrickStore::block_cells * texel_stride;
-      block_stride *= std::size_t(scene_.store->block_counts()[axis]);
-      texel_stride *= BrickStore::block_row;
     }
+    find_cell();
+  }
+
+  /// To the back of the slab whose front lies at sample k.
+  void move_behind(int k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float on_ray = (float(k) + scene_.samples_on) * step_[axis] + start_[axis];
+      position_[axis] = on_ray + scene_.cells_away[axis];
+      clamped_[axis] = std::clamp(position_[axis], scene_.held_low[axis], scene_.held_high[axis]);
+    }
+    find_cell();
   }
 
   const std::array<float, 3>& position() const { return position_; }
@@ -163,6 +189,22 @@ class RayWalk {
   }
 
  private:
+  /// Where the texels around the clamped position are.
+  void find_cell() {
+    block_ = 0;
+    corner_ = 0;
+    std::size_t block_stride = 1;
+    int texel_stride = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int cell = int(clamped_[axis]);
+      fraction_[axis] = clamped_[axis] - float(cell);
+      block_ += std::size_t(cell / BrickStore::block_cells - scene_.store->first_block()[axis]) * block_stride;
+      corner_ += cell % BrickStore::block_cells * texel_stride;
+      block_stride *= std::size_t(scene_.store->block_counts()[axis]);
+      texel_stride *= BrickStore::block_row;
+    }
+  }
+
   const Scene& scene_;
   std::array<float, 3> start_, step_, position_, clamped_, fraction_;
   std::size_t block_ = 0;  // among those held
@@ -185,7 +227,15 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
       }
       ++counts.samples_taken;
       Rgba colour;
-      if (classify(scene, walk.sample(), colour)) {
+      bool shows = false;
+      if (scene.pairs != nullptr) {
+        const auto front = walk.sample();
+        walk.move_behind(k);
+        shows = classify(*scene.pairs, front, walk.sample(), colour);
+      } else {
+        shows = classify(scene, walk.sample(), colour);
+      }
+      if (shows) {
         if (scene.fog != nullptr) lay_in_fog(*scene.fog, walk.position(), colour);
         compose(scene.op, colour, pixel);
       }

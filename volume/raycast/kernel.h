@@ -7,6 +7,7 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/raycast/fog_table.h"
+#include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
@@ -14,13 +15,20 @@
 
 namespace understudy::volume {
 
-/// Everything a kernel reads beside its rays. Either `table` or `map` is set.
+/// Everything a kernel reads beside its rays. One of `table`, `map` and `pairs` is set.
 struct Scene {
   const BrickStore* store = nullptr;
   const SkipMap* skip = nullptr;
   const TransferTable* table = nullptr;
   const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds); null: not known
   const LinearMap* map = nullptr;
+  const PairLookup* pairs = nullptr;
+  /// With pairs: the second sample of a slab lies so many samples on, and then away by a vector of cells; it is
+  /// clamped to what the store holds.
+  float samples_on = 0;
+  std::array<float, 3> cells_away{};
+  std::array<float, 3> held_low{};
+  std::array<float, 3> held_high{};
   const FogTable* fog = nullptr;  ///< null: the air is clear
   Operator op = Operator::over;
   Filter filter = Filter::linear;

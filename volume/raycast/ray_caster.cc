@@ -52,6 +52,16 @@ void validate_classification(const VolumeDescription& volume, const Classificati
       refuse("the transfer function spans values {} to {}", function->low, function->high);
     for (const Rgba& entry : function->entries)
       if (!all_finite(entry)) refuse("the transfer function holds a value that is not finite");
+  } else if (const auto* pairs = std::get_if<PairTable>(&classification)) {
+    if (volume.type == TexelType::rgba8) refuse("a volume of colours needs a linear map, not a table of pairs");
+    if (pairs->edge < 2 || pairs->edge > max_pair_edge ||
+        pairs->entries.size() != std::size_t(pairs->edge) * std::size_t(pairs->edge))
+      refuse("the table of pairs has {} entries and an edge of {} (2 to {} are possible)",
+             pairs->entries.size(), pairs->edge, max_pair_edge);
+    if (!std::isfinite(pairs->low) || !std::isfinite(pairs->high) || !(pairs->low < pairs->high))
+      refuse("the table of pairs spans values {} to {}", pairs->low, pairs->high);
+    for (const Rgba& entry : pairs->entries)
+      if (!all_finite(entry)) refuse("the table of pairs holds a value that is not finite");
   } else {
     const LinearMap& map = std::get<LinearMap>(classification);
     if (volume.type != TexelType::rgba8)
@@ -80,6 +90,27 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t k = 0; k < 3; ++k) most += std::abs(steps.metric[3 * r + k] * across[k]);
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
+}
+
+void validate_slab(const VolumeDescription& volume, const RenderRequest& request) {
+  const bool pairs = std::holds_alternative<PairTable>(request.classification);
+  if (pairs && !request.slab) refuse("a table of pairs needs slabs");
+  if (!pairs && request.slab) refuse("slabs need a table of pairs");
+  if (!pairs) return;
+  if (request.steps) refuse("slabs lie on planes, not on steps along rays");
+  if (request.fog) refuse("there is no fog with slabs");
+  const Slab& slab = *request.slab;
+  if (!std::isfinite(slab.planes) || !all_finite(slab.offset) || !all_finite(slab.reach))
+    refuse("the slabs hold a value that is not finite");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cells = slab.reach[axis] * volume.size[axis];
+    if (!(cells >= 0 && cells <= volume.margin))
+      refuse("slabs of {} texels along axis {} in a volume that was sent with a margin of {}: send it again",
+             cells, axis, volume.margin);
+    if (volume.wrap[axis] == Wrap::repeat && cells > 0 &&
+        (request.region.low[axis] - slab.reach[axis] < 0 || request.region.high[axis] + slab.reach[axis] > 1))
+      refuse("slabs reach beyond a repeating texture along axis {}", axis);
+  }
 }
 
 void validate_fog(const Fog& fog, Operator op) {
@@ -146,15 +177,41 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
            request.depth->rect.width, request.depth->rect.height);
   validate_classification(volume, request.classification);
+  validate_slab(volume, request);
   if (request.fog) validate_fog(*request.fog, request.op);
 }
 
+/// So many blocks away from its front the back of a slab may lie.
+std::array<int, 3> blocks_in_reach(const VolumeDescription& volume, const std::optional<Slab>& slab) {
+  std::array<int, 3> blocks{};
+  for (std::size_t axis = 0; slab && axis < 3; ++axis) {
+    constexpr double rounding = 1e-2;  // of positions, in cells
+    blocks[axis] = int(std::ceil((slab->reach[axis] * volume.size[axis] + rounding) / BrickStore::block_cells));
+  }
+  return blocks;
+}
+
+/// The way from the first to the second sample, in the store's cells.
+void set_slab(const Slab& slab, Scene& scene) {
+  const BrickStore& store = *scene.store;
+  scene.samples_on = float(slab.planes);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    scene.cells_away[axis] = float(slab.offset[axis] * store.description().size[axis]);
+    const auto low = float(store.first_block()[axis] * BrickStore::block_cells);
+    const float high = low + float(store.block_counts()[axis] * BrickStore::block_cells);
+    scene.held_low[axis] = low;
+    scene.held_high[axis] = std::min(scene.top[axis], std::nextafter(high, low));
+  }
+}
+
 /// What depends on the classification alone (and on whether the operator is `min`, to which clear samples
-/// matter).
+/// matter, and on how many blocks slabs reach).
 struct RayCaster::Prepared {
   Classification classification;
   bool keeps_clear_samples = false;
+  std::array<int, 3> reach{};
   std::optional<TransferTable> table;
+  std::optional<PairLookup> pairs;
   SkipMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
 
@@ -166,12 +223,19 @@ struct RayCaster::Prepared {
   }
 
   SkipMap skip_map(const BrickStore& store) const {
+    if (pairs)
+      return SkipMap(store.block_counts(), blocks_with_slabs(store, *pairs, reach, keeps_clear_samples));
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) all[b] = visible(store, b);
     return SkipMap(store.block_counts(), std::move(all));
   }
 
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
+    if (pairs) {
+      // A slab's far end may lie blocks away.
+      skip = skip_map(store);
+      return;
+    }
     if (bounds && !bounds->empty())
       for (const std::size_t b : blocks) (*bounds)[b] = block_bound(store, *table, b);
     // Distances reach far, but depend on nothing but which blocks show something.
@@ -192,10 +256,21 @@ struct RayCaster::Prepared {
                          neutral_value(keeps_clear_samples ? Operator::min : Operator::over));
   }
 
-  Prepared(const BrickStore& store, const Classification& from, bool keeps_clear)
+  static std::optional<PairLookup> make_pairs(const BrickStore& store, const Classification& classification,
+                                              bool keeps_clear_samples) {
+    const auto* pairs = std::get_if<PairTable>(&classification);
+    if (!pairs) return std::nullopt;
+    return PairLookup(*pairs, store.description().type,
+                      neutral_value(keeps_clear_samples ? Operator::min : Operator::over));
+  }
+
+  Prepared(const BrickStore& store, const Classification& from, bool keeps_clear,
+           const std::array<int, 3>& slab_reach)
       : classification(from),
         keeps_clear_samples(keeps_clear),
+        reach(slab_reach),
         table(make_table(store, classification, keeps_clear)),
+        pairs(make_pairs(store, classification, keeps_clear)),
         skip(skip_map(store)) {}
 };
 
@@ -219,13 +294,14 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   if (store.empty()) return;
 
   const bool keeps_clear_samples = request.op == Operator::min;
+  const std::array<int, 3> reach = blocks_in_reach(store.description(), request.slab);
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
-    return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
+    return prepared && prepared->keeps_clear_samples == keeps_clear_samples && prepared->reach == reach &&
            prepared->classification == request.classification;
   };
   if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
   if (!fits(prepared_[0]))
-    prepared_[0] = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples);
+    prepared_[0] = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples, reach);
   const Prepared& prepared = *prepared_[0];
   counts.blocks += store.blocks();
   counts.blocks_empty += prepared.skip.empty_blocks();
@@ -251,6 +327,10 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.termination = request.termination;
   scene.top = setup.top;
   scene.rounding = setup.rounding;
+  if (request.slab) {
+    scene.pairs = &*prepared.pairs;
+    set_slab(*request.slab, scene);
+  }
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 

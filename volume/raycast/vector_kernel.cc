@@ -163,14 +163,33 @@ struct Constants {
       fog_offset = hn::Set(f, scene.fog->offset());
       fog_last = hn::Set(f, scene.fog->last());
     }
+    alignas(16) static constexpr float colour_lanes[4] = {1, 1, 1, 0};
     if constexpr (Source::scalar) {
-      const TransferTable& table = *scene.table;
-      entries = table.rows();
-      table_low = hn::Set(f, Source::factor * (table.low() - Source::zero));
-      table_scale = hn::Set(f, table.scale() / Source::factor);
-      table_last = hn::Set(f, table.last());
-      neutral_entry = hn::Set(d, std::int32_t(table.entries()));
+      const auto take = [&](const auto& table) {
+        table_low = hn::Set(f, Source::factor * (table.low() - Source::zero));
+        table_scale = hn::Set(f, table.scale() / Source::factor);
+        table_last = hn::Set(f, table.last());
+      };
       border = hn::Set(f, border_texel[0]);
+      if (scene.pairs != nullptr) {
+        const PairLookup& pairs = *scene.pairs;
+        take(pairs);
+        entries = pairs.entries();
+        neutral_entry = hn::Set(d, std::int32_t(pairs.neutral_entry()));
+        pair_row = std::size_t(pairs.edge());
+        last_corner = hn::Set(d, pairs.edge() - 2);
+        scaled_by_alpha = pairs.multiply_by_alpha() ? hn::LoadDup128(f, colour_lanes) : hn::Zero(f);
+        samples_on = hn::Set(f, scene.samples_on);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          cells_away[axis] = hn::Set(f, scene.cells_away[axis]);
+          held_low[axis] = hn::Set(f, scene.held_low[axis]);
+          held_high[axis] = hn::Set(f, scene.held_high[axis]);
+        }
+      } else {
+        take(*scene.table);
+        entries = scene.table->rows();
+        neutral_entry = hn::Set(d, std::int32_t(scene.table->entries()));
+      }
     } else {
       const LinearMap& map = *scene.map;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -179,7 +198,6 @@ struct Constants {
           column[row] = map.matrix[4 * row + k] / (255 * Source::factor);
         map_columns[k] = hn::LoadDup128(f, column);
       }
-      alignas(16) const float colour_lanes[4] = {1, 1, 1, 0};
       scaled_by_alpha = map.multiply_by_alpha ? hn::LoadDup128(f, colour_lanes) : hn::Zero(f);
       alpha_above = hn::Set(f, map.alpha_above);
       border = hn::LoadDup128(f, border_texel.data());
@@ -196,12 +214,18 @@ struct Constants {
   Ints blocks_x, blocks_y, first_block;
   Floats neutral, termination, border;
 
-  const float* entries = nullptr;  // of the transfer function
+  const float* entries = nullptr;  // of the transfer function, or of the table of pairs
   Floats table_low, table_scale, table_last;
   Ints neutral_entry;
 
+  std::size_t pair_row = 0;  // entries from one of the back to the next
+  Ints last_corner;
+  Floats samples_on;
+  std::array<Floats, 3> cells_away, held_low, held_high;
+
   std::array<Floats, 4> map_columns;  // of the map of colours; components side by side
-  Floats scaled_by_alpha, alpha_above;
+  Floats scaled_by_alpha;             // of colours and pairs: the components that alpha multiplies
+  Floats alpha_above;
 
   const float* fog_rows = nullptr;  // null: the air is clear
   std::array<Floats, 3> fog_gradient;
@@ -310,11 +334,10 @@ struct Located {
   Floats x, y, z, border_weight;
 };
 
-HWY_INLINE void locate(const Packet& rays, const Constants& constants, Located& out) {
+HWY_INLINE void locate(const Position& p, const Constants& constants, Located& out) {
   const FloatTag f;
   const IntTag d;
   const hn::RebindToUnsigned<IntTag> u;
-  const Position p = position_of(rays, constants);
   std::array<Ints, 3> cell;
   std::array<Floats, 3> fraction;
 #pragma GCC unroll 3
@@ -532,6 +555,8 @@ HWY_INLINE Floats colour_at(const Colours& at, const Constants&) {
   return at[q];
 }
 
+#include "volume/raycast/vector_slabs-inl.h"
+
 /// `colour` after the row of fog (added colour, weight): components side by side.
 HWY_INLINE Floats fogged(Floats colour, Floats row) {
   const FloatTag f;
@@ -618,7 +643,7 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
   const Packet before = rays;
   Packet ahead = rays;
   for (Located& at : located) {
-    locate(ahead, constants, at);
+    locate(position_of(ahead, constants), constants, at);
     ahead.k = hn::Add(ahead.k, one);
   }
   for (std::size_t i = 0; i < located.size(); ++i) {
@@ -633,6 +658,25 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
     behind.k = hn::Add(behind.k, one);
   }
   compose(seen, constants, pixels);
+}
+
+/// Eight slabs of every ray, as take_samples() takes samples.
+template <typename Source>
+HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
+  const Floats one = hn::Set(FloatTag(), 1.0F);
+  std::array<Located, samples_between_tests> front, back;
+  std::array<PairPlace, samples_between_tests> classified;
+  Packet ahead = rays;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    locate(position_of(ahead, constants), constants, front[i]);
+    locate(behind(ahead, constants), constants, back[i]);
+    ahead.k = hn::Add(ahead.k, one);
+  }
+  for (std::size_t i = 0; i < classified.size(); ++i) {
+    classify_slab(front[i], back[i], rays, constants, source, classified[i]);
+    rays.k = hn::Add(rays.k, one);
+  }
+  compose(classified, constants, pixels);
 }
 
 /// Alpha of every ray, from the blended layout to one lane per ray.
@@ -677,7 +721,7 @@ HWY_INLINE Packet packet_of(const RayStrip& strip, std::size_t x, std::size_t y)
   return rays;
 }
 
-template <typename Source>
+template <bool slabs, typename Source>
 void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float* rgba, KernelCounts& counts) {
   const FloatTag f;
   const IntTag d;
@@ -709,7 +753,11 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
           const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
           const Floats block = hn::Set(f, float(samples_between_tests));
           taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
-          take_samples(rays, constants, source, pixels[g]);
+          if constexpr (slabs) {
+            take_slabs(rays, constants, source, pixels[g]);
+          } else {
+            take_samples(rays, constants, source, pixels[g]);
+          }
           const Floats room = hn::Sub(one, alphas(pixels[g]));
           const auto opaque = hn::And(hn::Lt(room, constants.termination), hn::Le(rays.k, rays.last));
           counts.rays_terminated += hn::CountTrue(f, opaque);
@@ -735,15 +783,19 @@ const char* target_name() {
 }
 
 void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  const auto walk = [&](auto source) {
+    if (scene.pairs != nullptr) return walk_strip<true>(scene, strip, source, rgba, counts);
+    walk_strip<false>(scene, strip, source, rgba, counts);
+  };
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_strip(scene, strip, Bytes8(), rgba, counts);
+      return walk(Bytes8());
     case TexelType::u16:
-      return walk_strip(scene, strip, Shorts16(), rgba, counts);
+      return walk(Shorts16());
     case TexelType::f32:
-      return walk_strip(scene, strip, Floats32(), rgba, counts);
+      return walk(Floats32());
     case TexelType::rgba8:
-      return walk_strip(scene, strip, Colours8(), rgba, counts);
+      return walk_strip<false>(scene, strip, Colours8(), rgba, counts);
   }
 }
 

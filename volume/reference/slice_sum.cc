@@ -148,6 +148,28 @@ bool fragment(const Classification& classification, const Sample& sample, Sample
   return true;
 }
 
+/// The fragment that a slab becomes, premultiplied; false when there is none.
+bool slab_fragment(const PairTable& table, double front, double back, Sample& colour) {
+  if (std::isnan(front) || std::isnan(back)) return false;
+  const double last = table.edge - 1;
+  const auto place = [&](double value) {
+    return std::clamp((value - table.low) / (double(table.high) - table.low) * last, 0.0, last);
+  };
+  const double x = place(front), y = place(back);
+  colour = {};
+  for (int j = 0; j < table.edge; ++j)
+    for (int i = 0; i < table.edge; ++i) {
+      // Of every entry its share: a tent of one entry's width.
+      const double share = std::max(0.0, 1 - std::abs(x - i)) * std::max(0.0, 1 - std::abs(y - j));
+      if (share == 0) continue;
+      const Rgba& entry = table.entries[std::size_t(j) * std::size_t(table.edge) + std::size_t(i)];
+      for (int k = 0; k < 4; ++k) colour[k] += share * double(entry[k]);
+    }
+  if (table.multiply_by_alpha)
+    for (int k = 0; k < 3; ++k) colour[k] *= colour[3];
+  return true;
+}
+
 void lay_in_fog(const Fog& fog, const Vec3& t, Sample& colour) {
   const double last = double(fog.entries.size() - 1);
   const double place = std::clamp((dot(fog.normal, t) + fog.offset) * last, 0.0, last);
@@ -183,7 +205,8 @@ bool cut_away(const RenderRequest& request, const Vec3& t) {
   return false;
 }
 
-/// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back.
+/// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back, and with the far
+/// end of its slab.
 template <typename SampleAt>
 void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far, int x, int y,
                  SampleAt sample_at) {
@@ -202,7 +225,17 @@ void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far
     for (int k = 0; k < 3; ++k) kept = kept && t[k] >= request.region.low[k] && t[k] <= request.region.high[k];
     // In clip coordinates both points have w = 1, so depth is linear between them.
     const double depth = request.depth_range[0] + s * (request.depth_range[1] - request.depth_range[0]);
-    if (kept && nearer(request.depth, x, y, depth)) sample_at(t);
+    if (!kept || !nearer(request.depth, x, y, depth)) continue;
+    Vec3 behind = t;
+    if (request.slab) {
+      // The same pixel's point on the plane of the slab's far end.
+      const double further = plane + request.slab->planes * request.planes.spacing;
+      const auto to_end = [&](const Vec4& p) {
+        return dot(request.planes.normal, {p[0], p[1], p[2]}) - further * p[3];
+      };
+      behind = add(between(near, far, to_end(near) / (to_end(near) - to_end(far))), request.slab->offset);
+    }
+    sample_at(t, behind);
   }
 }
 
@@ -252,7 +285,7 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
     };
     const double depth_s = s - rule.past_depth * part;
     if (s < 0 || s > 1 || s > leave || cut_away(request, point(s))) continue;
-    if (visible(depth_s) && visible(enter)) sample_at(point(s));
+    if (visible(depth_s) && visible(enter)) sample_at(point(s), point(s));
   }
 }
 
@@ -279,9 +312,13 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
       const Vec4 near = transform(*clip_to_texture, {X, Y, -1, 1}),
                  far = transform(*clip_to_texture, {X, Y, 1, 1});
       double* pixel = image.rgba.data() + (image.at(x, y) - image.rgba.data());
-      const auto sample_at = [&](const Vec3& t) {
+      const auto sample_at = [&](const Vec3& t, const Vec3& behind) {
         Sample colour;
-        if (!fragment(request.classification, field(t), colour)) return;
+        if (const auto* pairs = std::get_if<PairTable>(&request.classification)) {
+          if (!slab_fragment(*pairs, field(t)[0], field(behind)[0], colour)) return;
+        } else if (!fragment(request.classification, field(t), colour)) {
+          return;
+        }
         if (request.fog) lay_in_fog(*request.fog, t, colour);
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "spu/volume/classification/pairs.h"
 #include "spu/volume/saved_state.h"
 
 namespace understudy::spu {
@@ -145,9 +146,10 @@ bool finite(const Picture& picture) {
 /// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
 /// for about its value.
 bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescription& texture,
-                     const std::array<float, 2>& range, const InputValues& inputs, const Picture& table) {
+                     const std::array<float, 2>& range, const InputValues& inputs, const Picture& table,
+                     bool stack) {
   constexpr int weight_error = 32;  // entries: hardware may weight texels by 8 bits
-  constexpr std::array<double, 3> slope{1.0 / 6, 2.0 / 6, 3.0 / 6};
+  const std::array<double, 3> slope{1.0 / 6, 2.0 / 6, stack ? 0 : 3.0 / 6};
   const double extent = double(range[1]) - range[0];
   std::vector<float> texels;
   for (int i = 0; i < 8; ++i) {
@@ -320,6 +322,143 @@ std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, co
   return fog;
 }
 
+/// Shows the probe program slabs whose ends are known: the coordinate runs through the middle layer of three,
+/// and the input that may address the volume a second time through the lowest.
+class SlabProbe {
+ public:
+  SlabProbe(Bench& bench, const GlContext& context, const TextureDescription& texture,
+            const FragmentInputs& fragment, std::size_t end)
+      : bench_(bench), context_(context), texture_(texture), fragment_(fragment), end_(end) {}
+
+  Picture pairs(const PairValues& front, const PairValues& back, const InputValues& inputs) {
+    std::vector<float> texels(back.begin(), back.end());
+    texels.insert(texels.end(), front.begin(), front.end());
+    texels.insert(texels.end(), front.begin(), front.end());
+    show({edge, 1, 3}, texels, GL_NEAREST);
+    return draw(inputs, {0, 0.5F, in_lowest_layer, 1}, {}, {1, 0, 0, 0});
+  }
+  /// One pair, at coordinates all over the volume.
+  Picture everywhere(float front, float back, const InputValues& inputs) {
+    show({1, 1, 3}, {back, front, front}, GL_NEAREST);
+    return draw(inputs, {0, 0, in_lowest_layer, 1}, {0.7F, 0.2F, 0, 0}, {0.1F, 0.8F, 0, 0});
+  }
+  /// Texels that rise along all axes; the second sample lies `off` the first.
+  Picture slope(const std::vector<float>& texels, const std::array<float, 3>& off) {
+    show({2, 2, 2}, texels, GL_LINEAR);
+    return draw(fragment_.first, {off[0], off[1], 0.5F + off[2], 1}, {1, 0, 0, 0}, {0, 1, 0, 0});
+  }
+
+ private:
+  static constexpr float in_lowest_layer = 1.0F / 6;
+
+  void show(const std::array<int, 3>& size, const std::vector<float>& texels, GLenum filter) {
+    bench_.show(probe_format(texture_.base), upload_format(texture_.base), size, texels, filter,
+                texture_.swizzle, context_.version >= 330);
+  }
+  Picture draw(InputValues inputs, const std::array<float, 4>& end, const std::array<float, 4>& end_across,
+               const std::array<float, 4>& end_up) {
+    InputValues across(inputs.size());
+    InputValues up(inputs.size());
+    inputs[end_] = end;
+    across[end_] = end_across;
+    up[end_] = end_up;
+    return bench_.draw(without_coordinate(fragment_, inputs), true, {}, without_coordinate(fragment_, across),
+                       without_coordinate(fragment_, up));
+  }
+
+  Bench& bench_;
+  const GlContext& context_;
+  const TextureDescription& texture_;
+  const FragmentInputs& fragment_;
+  std::size_t end_;
+};
+
+/// Whether colours between the ends of slabs are those of the table where the field has a slope.
+bool slabs_see_neighbours(SlabProbe& probe, const volume::PairTable& table) {
+  constexpr double weight_error = 4.0 / 510;  // hardware may weight texels by 8 bits
+  constexpr std::array<double, 3> slope{1.0 / 6, 2.0 / 6, 3.0 / 6};
+  constexpr std::array<float, 3> off{0.03F, -0.05F, 0.04F};
+  const double extent = double(table.high) - table.low;
+  std::vector<float> texels;
+  for (int i = 0; i < 8; ++i) {
+    const double place = (i & 1) * slope[0] + (i >> 1 & 1) * slope[1] + (i >> 2) * slope[2];
+    texels.push_back(float(table.low + place * extent));
+  }
+  const Picture picture = probe.slope(texels, off);
+  constexpr int rim = edge / 4 + 6;
+  for (int y = rim; y < edge - rim; ++y) {
+    for (int x = rim; x < edge - rim; ++x) {
+      const auto place = [&](double away) {
+        const std::array<double, 3> at{(x + 0.5) / edge + away * off[0], (y + 0.5) / edge + away * off[1],
+                                       0.5 + away * off[2]};
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) sum += slope[k] * (2 * at[k] - 0.5);
+        return sum;
+      };
+      const auto [low, high] = colours_around(table, place(0), place(1), weight_error * (table.edge - 1));
+      const volume::Rgba& colour = picture[std::size_t(y) * edge + std::size_t(x)];
+      for (std::size_t c = 0; c < 4; ++c) {
+        if (!(colour[c] >= low[c] - same_fogged_colour && colour[c] <= high[c] + same_fogged_colour))
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// The table of pairs that explains the colours, where input `end` addresses the volume a second time; null
+/// when they depend on more.
+std::optional<Probed> probe_slabs(SlabProbe& probe, const Pipeline& pipeline, const FragmentInputs& fragment,
+                                  const std::array<float, 2>& range, std::size_t end) {
+  if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min)
+    return std::nullopt;
+  PairValues spread{};
+  for (std::size_t i = 0; i < spread.size(); ++i) {
+    const double place = double(i) / double(spread.size() - 1);
+    spread[i] = float(range[0] + place * (double(range[1]) - range[0]));
+  }
+  const Picture some = probe.pairs(spread, spread, fragment.first);
+  const auto same_everywhere = [&](const InputValues& inputs) {
+    for (const std::size_t front : {std::size_t(0), pair_tile / 5, pair_tile / 2, pair_tile - 1}) {
+      for (const std::size_t back : {std::size_t(0), pair_tile / 3, 4 * pair_tile / 5, pair_tile - 1}) {
+        for (const volume::Rgba& colour : probe.everywhere(spread[front], spread[back], inputs)) {
+          if (!(largest_difference(colour, some[back * pair_tile + front]) <= same_colour)) return false;
+        }
+      }
+    }
+    return true;
+  };
+  if (!finite(some) || !same_everywhere(fragment.first) || !same_everywhere(fragment.last)) return std::nullopt;
+  Probed probed;
+  const std::vector<Number> varying = varying_numbers(fragment);
+  probed.range = widened(fragment.range, varying);
+  for (const Number& number : varying) {
+    if (number.input == end) continue;
+    for (const InputValues* bound : {&probed.range.low, &probed.range.high}) {
+      InputValues inputs = fragment.first;
+      inputs[number.input][number.component] = (*bound)[number.input][number.component];
+      if (!(largest_difference(probe.pairs(spread, spread, inputs), some) <= same_colour)) return std::nullopt;
+    }
+  }
+  volume::PairTable table = measure_pairs(
+      [&](const PairValues& front, const PairValues& back) { return probe.pairs(front, back, fragment.first); },
+      range, pipeline.blending.premultiplied);
+  if (!finite(table.entries) || slabs_see_neighbours(probe, table)) return std::nullopt;
+  for (volume::Rgba& entry : table.entries) {
+    if (pipeline.target.floating) {
+      if (*std::min_element(entry.begin(), entry.end()) < 0 || entry[3] > 1) return std::nullopt;
+    } else {
+      for (float& component : entry) component = std::clamp(component, 0.0F, 1.0F);
+    }
+  }
+  // Where the second sample lies is the geometry's matter, and may change.
+  probed.range.low[end].fill(std::numeric_limits<float>::lowest());
+  probed.range.high[end].fill(std::numeric_limits<float>::max());
+  probed.slab_end = end;
+  probed.classification = std::move(table);
+  return probed;
+}
+
 ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline& pipeline,
                          const TextureDescription& texture, const FragmentInputs& fragment,
                          const std::array<float, 2>& range) {
@@ -374,8 +513,9 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   InputValues tabled = fragment.first;
   if (probed.fog) tabled[probed.fog->input][probed.fog->component] = probed.fog->reference;
   // The fixed function of a stack's slices looks at one place only.
-  if (!pipeline.stack &&
-      sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table))
+  const bool one_place = pipeline.stack && pipeline.program == 0;
+  if (!one_place && sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table,
+                                    pipeline.stack))
     return "the colour depends on the field around the sample (gradient, lighting)";
 
   volume::TransferFunction function;
@@ -420,10 +560,17 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
   // Black, then each component alone: the columns of the map.
   std::fill_n(texels.begin(), 20, 0.0F);
   for (std::size_t c = 0; c < 4; ++c) texels[4 * (c + 1) + c] = 1.0F;
-  bench.show(GL_RGBA32F, GL_RGBA, edge, edge, texels, texture.swizzle, context.version >= 330);
+  // Colours without alpha have one everywhere, and what black gives is that alpha's column.
+  for (std::size_t i = 3; texture.opaque && i < texels.size(); i += 4) texels[i] = 1.0F;
+  const GLenum format = texture.opaque ? GL_RGB32F : GL_RGBA32F;
+  bench.show(format, GL_RGBA, edge, edge, texels, texture.swizzle, context.version >= 330);
   const Picture mapped = bench.draw(without_coordinate(fragment, fragment.first), false);
   for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) map.matrix[4 * row + column] = mapped[column + 1][row];
+    for (std::size_t column = 0; column < 4; ++column) {
+      const float of_alpha = texture.opaque ? mapped[0][row] : 0.0F;
+      map.matrix[4 * row + column] =
+          texture.opaque && column == 3 ? of_alpha : mapped[column + 1][row] - of_alpha;
+    }
   }
   for (std::size_t i = 0; i < pixels; ++i) {
     volume::Rgba expected{};
@@ -437,11 +584,12 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
   }
   if (pipeline.target.floating && leaves_unit_interval(map.matrix))
     return "the colours leave [0,1] in a float framebuffer";
-  bench.show(GL_RGBA32F, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, 0.5F}, texture.swizzle, context.version >= 330);
+  const float alpha = texture.opaque ? 1.0F : 0.5F;
+  bench.show(format, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, alpha}, texture.swizzle, context.version >= 330);
   const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
   for (std::size_t row = 0; row < 4; ++row) {
     const float* m = &map.matrix[4 * row];
-    const float expected = 0.25F * m[0] + 0.5F * m[1] + 0.75F * m[2] + 0.5F * m[3];
+    const float expected = 0.25F * m[0] + 0.5F * m[1] + 0.75F * m[2] + alpha * m[3];
     for (const volume::Rgba& colour : constant) {
       if (!(std::abs(colour[row] - expected) <= same_colour)) {
         return "the colour depends on more than the sample (position, lighting)";
@@ -491,7 +639,13 @@ ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipe
   if (bench.program() == 0) return trouble;
   if (fragment.record != nullptr) copy_uniforms(context, fragment.application, bench.program());
   if (texture.base == BaseFormat::rgba) return probe_map(bench, context, pipeline, texture, fragment);
-  return probe_table(bench, context, pipeline, texture, fragment, range);
+  ProbeFinding finding = probe_table(bench, context, pipeline, texture, fragment, range);
+  for (const std::size_t end : fragment.slab_ends) {
+    if (std::holds_alternative<Probed>(finding)) break;
+    SlabProbe slabs(bench, context, texture, fragment, end);
+    if (auto pairs = probe_slabs(slabs, pipeline, fragment, range, end)) finding = *std::move(pairs);
+  }
+  return finding;
 }
 
 }  // namespace understudy::spu

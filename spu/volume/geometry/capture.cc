@@ -1,6 +1,7 @@
 #include "spu/volume/geometry/capture.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace understudy::spu {
@@ -89,10 +90,29 @@ InputValues values_at(const float* vertex, const ProgramStages& stages,
   return values;
 }
 
-bool within_texture(std::span<const ObservedVertex> vertices) {
+/// Triangles that join strips or fill up a buffer paint nothing, and their vertices need not make sense.
+void drop_degenerate_triangles(std::vector<float>& data, std::size_t stride) {
+  const auto position = [&](std::size_t vertex) {
+    return std::array{data[vertex * stride], data[vertex * stride + 1], data[vertex * stride + 2],
+                      data[vertex * stride + 3]};
+  };
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v + 2 < data.size() / stride; v += 3) {
+    const auto a = position(v);
+    const auto b = position(v + 1);
+    const auto c = position(v + 2);
+    if (a == b || b == c || c == a) continue;
+    std::copy_n(data.begin() + std::ptrdiff_t(v * stride), 3 * stride, data.begin() + std::ptrdiff_t(kept));
+    kept += 3 * stride;
+  }
+  data.resize(kept);
+}
+
+/// On the first `axes` axes.
+bool within_texture(std::span<const ObservedVertex> vertices, std::size_t axes) {
   constexpr double slack = 1e-4;
-  return std::all_of(vertices.begin(), vertices.end(), [](const ObservedVertex& vertex) {
-    return std::all_of(vertex.texture.begin(), vertex.texture.end(),
+  return std::all_of(vertices.begin(), vertices.end(), [&](const ObservedVertex& vertex) {
+    return std::all_of(vertex.texture.begin(), vertex.texture.begin() + std::ptrdiff_t(axes),
                        [](double t) { return t >= -slack && t <= 1 + slack; });
   });
 }
@@ -155,6 +175,8 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
     gl.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
   }
 
+  drop_degenerate_triangles(data, stride);
+  if (data.empty()) return capture;
   const std::size_t vertices = data.size() / stride;
   const auto vertex = [&](std::size_t v) { return std::span<const float>(data).subspan(v * stride, stride); };
   capture.first = values_at(vertex(0).data(), stages, capture.offsets);
@@ -168,20 +190,26 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
 
   // Of several that are affine maps of the position (a place in the world, a second coordinate), the one that
   // stays within the texture addresses it.
+  const bool stack = run.pipeline().stack;
+  const std::size_t axes = stack ? 2 : 3;
+  const std::size_t slices = stack ? run.slices().size() : 1;
+  // Whoever draws slices of a stack draws the same with each; if not, nothing will fit.
+  if (vertices % (3 * slices) != 0) return capture;
   const auto take_coordinates = [&](std::size_t at) {
     for (std::size_t v = 0; v < vertices; ++v) {
-      for (std::size_t c = 0; c < 3; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
+      for (std::size_t c = 0; c < axes; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
+      if (stack) polygons.vertices[v].texture[2] = double(v / (vertices / slices));
     }
   };
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
     const StageInput& input = stages.inputs[i];
-    if (input.integer || !input.written || input.components < 3) continue;
+    if (input.integer || !input.written || std::size_t(input.components) < axes) continue;
     if (!coordinate.empty() && input.name != coordinate) continue;
     take_coordinates(capture.offsets[i]);
     const auto fit = fit_camera(polygons.vertices);
     if (!fit || fit->residual > max_fit_residual) continue;
-    const bool inside = within_texture(polygons.vertices);
+    const bool inside = within_texture(polygons.vertices, axes);
     if (!capture.fit || inside) {
       capture.coordinate = input.name;
       capture.fit = fit;

@@ -40,7 +40,8 @@ struct Capture {
 };
 
 /// Draws `run` with `stages.observer`; uniforms are copied from the run's program. An empty capture when
-/// nothing was drawn or the primitives would exceed 64 MiB. With a `coordinate` no other input is tried.
+/// nothing was drawn or the primitives would exceed 64 MiB. With a `coordinate` no other input is tried. The
+/// third coordinate of a stack's slices is their number.
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
                          const std::string& coordinate = {});
 

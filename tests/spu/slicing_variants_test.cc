@@ -1,0 +1,110 @@
+// Less usual ways of slicing above a real driver, judged in float framebuffers against the application's own
+// drawing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "colour_target.h"
+#include "slice_scenes.h"
+#include "spu/report/counters.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+std::vector<float> frame(GlApplication& app, const ColourTarget& target, const SliceScene& scene, double angle,
+                         bool under) {
+  app.use_chain(under);
+  target.clear({0, 0, 0, 0});
+  scene.slices_and_tidy_up(app, angle);
+  app.end_frame();
+  return target.read();
+}
+
+struct Variant {
+  const char* name;
+  std::function<SliceScene()> scene;
+  std::vector<double> angles;
+  double least_psnr;  ///< dB, in float
+  const char* told;   ///< what its explanation holds
+};
+
+class SlicingVariants : public ::testing::TestWithParam<Variant> {};
+
+TEST_P(SlicingVariants, GiveTheApplicationsPictureInFloat) {
+  const SliceScene scene = GetParam().scene();
+  auto app = GlApplication::start(scene.profile);
+  if (!app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
+  scene.set_up(*app);
+  const ColourTarget target(*app, GL_RGBA32F);
+  ASSERT_TRUE(target.complete());
+  std::uint64_t drawn = 0;
+  for (const double angle : GetParam().angles) {
+    const auto under = frame(*app, target, scene, angle, true);
+    EXPECT_EQ(app->substituted(), ++drawn) << angle << ": " << app->last_reason();
+    const auto bare = frame(*app, target, scene, angle, false);
+    EXPECT_GT(*std::max_element(bare.begin(), bare.end()), 0.2F) << "there is something to see";
+    std::printf("%s, %g degrees: %.1f dB\n", scene.name.c_str(), angle, psnr(under, bare));
+    EXPECT_GE(psnr(under, bare), GetParam().least_psnr) << angle;
+    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+  }
+  const ProcessCounters& counters = process_counters();
+  const std::string explanation =
+      counters.volume[std::min<std::uint32_t>(counters.volumes, max_counted_volumes) - 1].explanation;
+  EXPECT_NE(explanation.find(GetParam().told), std::string::npos) << explanation;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, SlicingVariants,
+    ::testing::Values(
+        Variant{"Slabs", [] { return pre_integrated_slabs(false); }, {0, 15, -40, 55}, 60, "table of pairs"},
+        Variant{
+            "SlabsAlongRays", [] { return pre_integrated_slabs(true); }, {0, 15, -40}, 60, "table of pairs"},
+        Variant{"LinearFog", [] { return fixed_function_fog(GL_LINEAR); }, {0, 15, -40}, 45, "fog"},
+        Variant{"ExponentialFog", [] { return fixed_function_fog(GL_EXP); }, {0, 15, -40}, 45, "fog"},
+        Variant{"SquaredFog", [] { return fixed_function_fog(GL_EXP2); }, {0, 15, -40}, 45, "fog"},
+        Variant{"StackUnderGlsl",
+                [] { return texture_stack_program(Profile::compatibility, GL_R8); },
+                {10, 170, -30},
+                45,
+                "table probed from the program"},
+        Variant{"StackOfFloats",
+                [] { return texture_stack_program(Profile::compatibility, GL_R32F); },
+                {10, 170, -30},
+                60,
+                "float texels"},
+        Variant{"StackOfSixteenBits",
+                [] { return texture_stack_program(Profile::core, GL_R16); },
+                {10, 170, -30},
+                45,
+                "16-bit texels"},
+        Variant{"StackInACoreProfile",
+                [] { return texture_stack_program(Profile::core, GL_R8); },
+                {10, 170, -30},
+                45,
+                "table probed from the program"},
+        Variant{"ViewSpace", [] { return view_space_slices(); }, {0, 15, -40}, 45, "perspective"},
+        Variant{"DegenerateStrip", [] { return degenerate_strip(); }, {0, 15, -40}, 45, "perspective"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+/// The program's table changes, and so does what is probed.
+TEST(Slabs, OfAnotherTableAreProbedAgain) {
+  const SliceScene scene = pre_integrated_slabs(false);
+  auto app = GlApplication::start(scene.profile);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  scene.set_up(*app);
+  const ColourTarget target(*app, GL_RGBA32F);
+  const auto before = frame(*app, target, scene, 15, true);
+  std::vector<float> red;
+  for (int i = 0; i < 256 * 256; ++i) red.insert(red.end(), {1, 0, 0, i % 256 > 128 ? 0.05F : 0.0F});
+  app->gl().ActiveTexture(GL_TEXTURE1);
+  app->gl().TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 256, 256, GL_RGBA, GL_FLOAT, red.data());
+  app->gl().ActiveTexture(GL_TEXTURE0);
+  const auto under = frame(*app, target, scene, 15, true);
+  EXPECT_EQ(app->substituted(), 2U) << app->last_reason();
+  const auto bare = frame(*app, target, scene, 15, false);
+  EXPECT_LT(psnr(before, bare), 30) << "the new table changes nothing: the test tests nothing";
+  EXPECT_GE(psnr(under, bare), 45);
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

@@ -35,7 +35,7 @@ struct VolumeUnit::Substitution {
   std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end
   SliceSet slices{};
   volume::RenderRequest request{};
-  std::optional<Difference> difference{};  ///< from the application's picture, where that was drawn already
+  std::optional<ApplicationPicture> drawn{};  ///< the application's own, where that was drawn already
 };
 
 }  // namespace understudy::spu

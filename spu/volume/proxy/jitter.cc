@@ -28,11 +28,14 @@ std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& textu
   gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
   Tile tile;
+  GLint type = 0;
+  gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_RED_TYPE, &type);
   gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &tile.width);
   gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &tile.height);
   gl.ActiveTexture(GLenum(active));
   const bool table = tile.width < 2 || tile.height < 2;
-  if (table || tile.width > largest_tile || tile.height > largest_tile) return std::nullopt;
+  const bool integers = type == GL_INT || type == GL_UNSIGNED_INT;
+  if (table || integers || tile.width > largest_tile || tile.height > largest_tile) return std::nullopt;
   return tile;
 }
 

@@ -1,6 +1,7 @@
 #include "spu/volume/draw_slots.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <numeric>
 #include <span>
@@ -228,6 +229,104 @@ void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count,
     unit.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
 
+/// As OpenGL lays draws out in a buffer.
+struct ArraysCommand {
+  GLuint count, instances, first, base_instance;
+};
+struct ElementsCommand {
+  GLuint count, instances, first_index;
+  GLint base_vertex;
+  GLuint base_instance;
+};
+
+/// The draws that `indirect` points at; none where they cannot be read, are in error, or have instances.
+template <class Command>
+std::vector<Command> indirect_commands(VolumeUnit& unit, const void* indirect, GLsizei draws, GLsizei stride) {
+  constexpr GLsizei most_draws = 1 << 16;
+  const DispatchTable& gl = unit.next();
+  const std::size_t step = stride != 0 ? std::size_t(stride) : sizeof(Command);
+  if (draws <= 0 || draws > most_draws || stride < 0 || step % 4 != 0) return {};
+  const std::size_t bytes = step * std::size_t(draws - 1) + sizeof(Command);
+  std::vector<std::byte> memory(bytes);
+  GLint buffer = 0;
+  gl.GetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
+  if (buffer != 0) {
+    GLint size = 0;
+    GLint mapped = 0;
+    gl.GetBufferParameteriv(GL_DRAW_INDIRECT_BUFFER, GL_BUFFER_SIZE, &size);
+    gl.GetBufferParameteriv(GL_DRAW_INDIRECT_BUFFER, GL_BUFFER_MAPPED, &mapped);
+    const auto offset = reinterpret_cast<std::uintptr_t>(indirect);
+    if (mapped != 0 || offset % 4 != 0 || offset > std::size_t(size) || bytes > std::size_t(size) - offset)
+      return {};
+    gl.GetBufferSubData(GL_DRAW_INDIRECT_BUFFER, GLintptr(offset), GLsizeiptr(bytes), memory.data());
+  } else if (!unit.context().core && indirect != nullptr) {
+    std::memcpy(memory.data(), indirect, bytes);
+  } else {
+    return {};
+  }
+  std::vector<Command> commands(static_cast<std::size_t>(draws));
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    std::memcpy(&commands[i], memory.data() + i * step, sizeof(Command));
+  const bool plain = std::all_of(commands.begin(), commands.end(), [](const Command& command) {
+    return command.instances == 1 && command.base_instance == 0 && command.count <= GLuint(most_elements);
+  });
+  return plain ? commands : std::vector<Command>{};
+}
+
+bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
+  if (joins_run(unit)) {
+    std::vector<GLint> first;
+    std::vector<GLsizei> count;
+    for (const auto& command : indirect_commands<ArraysCommand>(unit, indirect, draws, stride)) {
+      first.push_back(GLint(command.first));
+      count.push_back(GLsizei(command.count));
+    }
+    if (!count.empty() && defer_arrays(unit, mode, first, count)) return true;
+  }
+  unit.close_run();
+  return false;
+}
+
+bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, GLenum type, const void* indirect, GLsizei draws,
+                          GLsizei stride) {
+  if (joins_run(unit)) {
+    std::vector<ElementPart> parts;
+    for (const auto& command : indirect_commands<ElementsCommand>(unit, indirect, draws, stride)) {
+      const std::uintptr_t offset = std::uintptr_t(command.first_index) * index_size(type);
+      parts.push_back({GLsizei(command.count), reinterpret_cast<const void*>(offset), command.base_vertex});
+    }
+    GLint element_buffer = 0;
+    unit.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+    if (element_buffer != 0 && !parts.empty() && defer_elements(unit, mode, parts, type)) return true;
+  }
+  unit.close_run();
+  return false;
+}
+
+void APIENTRY draw_arrays_indirect(GLenum mode, const void* indirect) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, indirect, 1, 0)) unit.next().DrawArraysIndirect(mode, indirect);
+}
+
+void APIENTRY draw_elements_indirect(GLenum mode, GLenum type, const void* indirect) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, type, indirect, 1, 0))
+    unit.next().DrawElementsIndirect(mode, type, indirect);
+}
+
+void APIENTRY multi_draw_arrays_indirect(GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, indirect, draws, stride))
+    unit.next().MultiDrawArraysIndirect(mode, indirect, draws, stride);
+}
+
+void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void* indirect, GLsizei draws,
+                                           GLsizei stride) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, type, indirect, draws, stride))
+    unit.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
+}
+
 /// More textures in a row than this are no stack.
 constexpr std::size_t most_slices = 4096;
 
@@ -252,6 +351,10 @@ void fill_draws(DispatchTable& table) {
   table.DrawRangeElementsEXT = draw_range_elements;
   table.DrawElementsBaseVertex = draw_elements_base_vertex;
   table.DrawRangeElementsBaseVertex = draw_range_elements_base_vertex;
+  table.DrawArraysIndirect = draw_arrays_indirect;
+  table.DrawElementsIndirect = draw_elements_indirect;
+  table.MultiDrawArraysIndirect = multi_draw_arrays_indirect;
+  table.MultiDrawElementsIndirect = multi_draw_elements_indirect;
   table.MultiDrawElements = multi_draw_elements;
   table.MultiDrawElementsEXT = multi_draw_elements;
   table.MultiDrawElementsBaseVertex = multi_draw_elements_base_vertex;

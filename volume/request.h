@@ -66,9 +66,23 @@ struct SlicePlanes {
   int count = 0;
 };
 
+/// How far into its first step every ray begins, as a tile of numbers that repeats over the window: some ray
+/// casters hide the rings of equal steps behind noise.
+struct RayOffsets {
+  int width = 0;
+  int height = 0;
+  std::vector<float> steps;  ///< rows bottom up
+
+  double at(int x, int y) const {
+    const auto column = std::size_t((x % width + width) % width);
+    const auto row = std::size_t((y % height + height) % height);
+    return double(steps[row * std::size_t(width) + column]);
+  }
+};
+
 /// The sample positions of a ray caster: constant steps along every ray, from where it enters the region. The
 /// unit of length is the step: a ray that is in the region from t0 to t1 is L = |metric (t1 - t0)| steps long.
-/// Sample i lies first + i steps from t0, i >= 0, up to L.
+/// Sample i lies first + i steps from t0, i >= 0, up to L; where there are `offsets`, that of the pixel later.
 struct RaySteps {
   std::array<double, 9> metric{};  ///< row-major; texture space to a space whose unit of length is the step
   double first = 0;
@@ -78,6 +92,7 @@ struct RaySteps {
   double rounding = 0.5;
   /// Samples up to so many steps behind the opaque geometry still count.
   double past_depth = 0;
+  std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
 };
 
 /// Where the second sample of a slab lies, whose first one lies on its plane: so many plane spacings further

@@ -20,6 +20,7 @@ constexpr int max_viewport_extent = 1 << 16;                         ///< pixels
 constexpr int max_viewport_offset = 1 << 20;                         ///< of a viewport's corner from the origin
 constexpr std::uint64_t max_window_pixels = std::uint64_t(1) << 26;  ///< 8192 x 8192
 constexpr std::size_t max_clip_planes = 64;
+constexpr int max_ray_offsets = 1 << 20;
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
 
 // Messages.

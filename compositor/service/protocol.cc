@@ -110,6 +110,11 @@ void write(Writer& out, const std::optional<RaySteps>& steps) {
   out.integer(steps->divided);
   out.real(steps->rounding);
   out.real(steps->past_depth);
+  out.integer(steps->offsets.has_value());
+  if (!steps->offsets) return;
+  out.integer(steps->offsets->width);
+  out.integer(steps->offsets->height);
+  write_run(out, steps->offsets->steps);
 }
 
 std::optional<RaySteps> read_steps(Reader& in) {
@@ -120,6 +125,14 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.divided = in.flag("steps.divided");
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
+  if (!in.flag("steps.offsets")) return steps;
+  RayOffsets& offsets = steps.offsets.emplace();
+  constexpr int most = limits::max_ray_offsets;
+  offsets.width = in.small("steps.offsets.width", 1, most);
+  offsets.height = in.small("steps.offsets.height", 1, most);
+  offsets.steps = in.values<float>("steps.offsets", limits::max_ray_offsets);
+  if (std::uint64_t(offsets.width) * std::uint64_t(offsets.height) != offsets.steps.size())
+    in.fail("steps.offsets", "is not a whole rectangle");
   return steps;
 }
 

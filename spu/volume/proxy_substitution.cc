@@ -1,4 +1,6 @@
 // The volume unit's way for ray casters: from the draw of a box to a request.
+#include <algorithm>
+
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/verify.h"
@@ -12,6 +14,32 @@ ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
   const auto box = proxy_box(measured, space);
   if (!box) throw Doubt{"the near plane cuts the ray caster's box, or the eye is inside"};
   return *box;
+}
+
+/// Of the picture's nine parts the one that shows something in most pixels: enough to tell marches by.
+ApplicationPicture fullest_part(const ApplicationPicture& whole) {
+  const volume::Rect& all = whole.rect;
+  const int columns = std::max(1, all.width / 3);
+  const int rows = std::max(1, all.height / 3);
+  ApplicationPicture fullest;
+  std::size_t most = 0;
+  for (int y = 0; y + rows <= all.height; y += rows) {
+    for (int x = 0; x + columns <= all.width; x += columns) {
+      ApplicationPicture part{{all.x + x, all.y + y, columns, rows}, {}};
+      part.rgba.reserve(4 * part.rect.pixels());
+      std::size_t visible = 0;
+      for (int row = y; row < y + rows; ++row) {
+        const auto from = whole.rgba.begin() + 4 * (std::ptrdiff_t(row) * all.width + x);
+        for (auto pixel = from; pixel < from + 4 * std::ptrdiff_t(columns); pixel += 4)
+          visible += pixel[3] > 0 ? 1 : 0;
+        part.rgba.insert(part.rgba.end(), from, from + 4 * std::ptrdiff_t(columns));
+      }
+      if (visible <= most && !fullest.rgba.empty()) continue;
+      most = visible;
+      fullest = std::move(part);
+    }
+  }
+  return fullest;
 }
 
 void show(volume::RenderRequest& request, const March& march) {
@@ -79,9 +107,9 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
   const auto record = chain_.group().programs().program(s.pipeline.program);
   const MarchContext measured{context(), s.run, stages(s.pipeline.program, *record), s.volume.texture,
                               s.volume.range};
-  std::optional<std::vector<float>> drawn;
-  volume::Rect rect;
+  std::optional<ApplicationPicture> looked_at;
   const March* best = nullptr;
+  double least = 0;
   for (const March& march : marches) {
     const auto box = proxy_box(measured, march.space);
     if (!box) continue;
@@ -89,21 +117,22 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.slices.region = box->region;
     compose_request(s);
     show(s.request, march);
-    if (!drawn) {
-      rect = volume::footprint(s.request, s.request.region);
-      drawn = application_picture(context(), s.run, s.request, rect);
-      if (!drawn) break;
+    if (!looked_at) {
+      s.drawn =
+          application_picture(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
+      if (!s.drawn) break;
+      looked_at = fullest_part(*s.drawn);
     }
+    s.request.window = intersection(s.request.window, looked_at->rect);
     const compositor::Rendered rendered = service.render(s.request);
     volume::Image picture;
     picture.rect = rendered.image.rect;
     picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
     if (march.maximum) classify_maxima(march, picture);
-    const Difference difference = difference_between(s.pipeline, rect, *drawn, picture.view());
-    if (best == nullptr || difference.mean_square < s.difference->mean_square) {
-      best = &march;
-      s.difference = difference;
-    }
+    const double difference = difference_between(s.pipeline, *looked_at, picture.view()).mean_square;
+    if (best != nullptr && difference >= least) continue;
+    best = &march;
+    least = difference;
   }
   if (best == nullptr) throw Doubt{"the driver offers no float framebuffer to compare pictures in"};
   return *best;

@@ -55,6 +55,46 @@ void Run::bind_slice(GLuint texture) {
   slices_.push_back({texture, draws});
 }
 
+void Run::draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count) {
+  buffer_draws_.push_back({calls_.words().size(), mode, 0, counts_.size(), count.size()});
+  counts_.insert(counts_.end(), count.begin(), count.end());
+  first_.insert(first_.end(), first.begin(), first.end());
+  base_vertex_.resize(counts_.size());
+  offsets_.resize(counts_.size());
+  reads_arrays = true;
+}
+
+void Run::draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type) {
+  buffer_draws_.push_back({calls_.words().size(), mode, type, counts_.size(), ranges.size()});
+  for (const ElementPart& range : ranges) {
+    counts_.push_back(range.count);
+    offsets_.push_back(range.offset);
+    base_vertex_.push_back(range.base_vertex);
+  }
+  first_.resize(counts_.size());
+  reads_arrays = true;
+}
+
+void Run::draw_kept(const DispatchTable& gl, const BufferDraw& draw) const {
+  const GLsizei* const count = counts_.data() + draw.part;
+  const void* const* const offset = offsets_.data() + draw.part;
+  const GLint* const base = base_vertex_.data() + draw.part;
+  // Contexts that know no base vertices are never asked for one.
+  const bool based = std::any_of(base, base + draw.parts, [](GLint vertex) { return vertex != 0; });
+  const auto parts = GLsizei(draw.parts);
+  if (draw.type == 0) {
+    gl.MultiDrawArrays(draw.mode, first_.data() + draw.part, count, parts);
+  } else if (parts == 1 && based) {
+    gl.DrawElementsBaseVertex(draw.mode, *count, draw.type, *offset, *base);
+  } else if (parts == 1) {
+    gl.DrawElements(draw.mode, *count, draw.type, *offset);
+  } else if (based) {
+    gl.MultiDrawElementsBaseVertex(draw.mode, count, draw.type, offset, parts, base);
+  } else {
+    gl.MultiDrawElements(draw.mode, count, draw.type, offset, parts);
+  }
+}
+
 std::vector<GLuint> Run::slices() const {
   std::vector<GLuint> textures;
   for (const StackSlice& slice : slices_) {
@@ -74,10 +114,10 @@ void Run::replay(const DispatchTable& gl) const {
   if (expanded_arrays) current.emplace(gl);
   const auto words = calls_.words();
   std::size_t done = 0;
-  for (const ElementDraw& draw : elements_) {
+  for (const BufferDraw& draw : buffer_draws_) {
     make_plain_calls(words.subspan(done, draw.position - done), gl);
     done = draw.position;
-    gl.DrawElements(draw.mode, draw.count, draw.type, draw.offset);
+    draw_kept(gl, draw);
   }
   make_plain_calls(words.subspan(done), gl);
 }

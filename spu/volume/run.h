@@ -2,12 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "spu/stream/record.h"
 #include "spu/volume/pipeline.h"
 
 namespace understudy::spu {
+
+/// Elements of one draw from the bound element buffer; `offset` as the application gave it.
+struct ElementPart {
+  GLsizei count = 0;
+  const void* offset = nullptr;
+  GLint base_vertex = 0;
+};
 
 class Run {
  public:
@@ -29,11 +37,10 @@ class Run {
 
   /// Where deferred calls go; all of them are plain.
   Records& calls() { return calls_; }
-  /// glDrawElements whose indices lie in the bound element buffer; `offset` as the application gave it.
-  void draw_elements(GLenum mode, GLsizei count, GLenum type, const void* offset) {
-    elements_.push_back({calls_.words().size(), mode, count, type, offset});
-    reads_arrays = true;
-  }
+  /// Draws from buffers that are more than one plain call: one glMultiDrawArrays, or one draw of elements whose
+  /// indices lie in the bound element buffer.
+  void draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count);
+  void draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type);
   /// Array draws were kept as immediate calls, which move the current attributes; the arrays would not have.
   bool expanded_arrays = false;
   /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
@@ -45,13 +52,15 @@ class Run {
   void replay(const DispatchTable& gl) const;
 
  private:
-  struct ElementDraw {
+  /// One call; its parts stand in the four vectors below from `part` on.
+  struct BufferDraw {
     std::size_t position;  ///< words of deferred calls before it
     GLenum mode;
-    GLsizei count;
-    GLenum type;
-    const void* offset;
+    GLenum type;  ///< of the indices; 0: there are none
+    std::size_t part;
+    std::size_t parts;
   };
+  void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
 
   struct StackSlice {
     GLuint texture;
@@ -61,7 +70,11 @@ class Run {
   Pipeline pipeline_;
   Records& calls_;
   std::vector<StackSlice> slices_;
-  std::vector<ElementDraw> elements_;
+  std::vector<BufferDraw> buffer_draws_;
+  std::vector<GLsizei> counts_;
+  std::vector<GLint> first_;  ///< vertices, where there are no indices
+  std::vector<GLint> base_vertex_;
+  std::vector<const void*> offsets_;
 };
 
 }  // namespace understudy::spu

@@ -38,7 +38,7 @@ struct VolumeUnit::Substitution {
   SliceSet slices{};
   std::vector<ObservedSlab> slabs{};  ///< what may be the second coordinates of slabs
   volume::RenderRequest request{};
-  std::optional<Difference> difference{};  ///< from the application's picture, where that was drawn already
+  std::optional<ApplicationPicture> drawn{};  ///< the application's own, where that was drawn already
 };
 
 }  // namespace understudy::spu

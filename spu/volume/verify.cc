@@ -54,7 +54,7 @@ double Difference::psnr() const {
   return mean_square > 0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity();
 }
 
-std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
                                                       const volume::RenderRequest& request,
                                                       const volume::Rect& rect) {
   const DispatchTable& gl = *context.gl;
@@ -75,19 +75,21 @@ std::optional<std::vector<float>> application_picture(const GlContext& context, 
     const ColourBlending blending(gl, pipeline.blending);
     run.replay(gl);
   }
-  std::vector<float> drawn = framebuffer.pixels(rect);
+  ApplicationPicture drawn{rect, framebuffer.pixels(rect)};
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
 
   return drawn;
 }
 
-Difference difference_between(const Pipeline& pipeline, const volume::Rect& rect, std::span<const float> drawn,
+Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,
                               const volume::ImageView& image) {
+  const volume::Rect& rect = drawn.rect;
   const volume::Operator op = pipeline.blending.op;
   const bool minimum = op == volume::Operator::min;
   const bool floating = pipeline.target.floating;
-  const float largest = floating ? std::max(1.0F, *std::max_element(drawn.begin(), drawn.end())) : 1.0F;
+  const float largest =
+      floating ? std::max(1.0F, *std::max_element(drawn.rgba.begin(), drawn.rgba.end())) : 1.0F;
   const auto shown = [&](float value) {
     const float seen = minimum ? std::min(value, 1.0F) : value;
     return floating ? double(seen) / largest : double(std::clamp(seen, 0.0F, 1.0F));
@@ -102,7 +104,7 @@ Difference difference_between(const Pipeline& pipeline, const volume::Rect& rect
     const std::size_t at = 4 * (std::size_t(y) * std::size_t(inside.width) + std::size_t(x));
     for (std::size_t c = 0; c < 4; ++c) {
       const float ours = known ? image.rgba[at + c] : (minimum ? 1.0F : 0.0F);
-      const double d = std::abs(shown(drawn[4 * pixel + c]) - shown(ours));
+      const double d = std::abs(shown(drawn.rgba[4 * pixel + c]) - shown(ours));
       difference.max = std::max(difference.max, d);
       squares[pixel] += d * d;
     }
@@ -120,7 +122,7 @@ std::optional<Difference> compare_with_application(const GlContext& context, con
                                                    const volume::ImageView& image) {
   const auto drawn = application_picture(context, run, request, image.rect);
   if (!drawn) return std::nullopt;
-  return difference_between(run.pipeline(), image.rect, *drawn, image);
+  return difference_between(run.pipeline(), *drawn, image);
 }
 
 }  // namespace understudy::spu

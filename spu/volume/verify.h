@@ -21,15 +21,21 @@ struct Difference {
   double psnr() const;     ///< dB; infinite when equal
 };
 
-/// What `run` draws over transparent black (white for a minimum), over `rect`: four floats a pixel, alpha going
-/// the way of the colour. Null when the driver cannot provide the framebuffer.
-std::optional<std::vector<float>> application_picture(const GlContext& context, const Run& run,
+/// Four floats a pixel of `rect`.
+struct ApplicationPicture {
+  volume::Rect rect;
+  std::vector<float> rgba;
+};
+
+/// What `run` draws over transparent black (white for a minimum), over `rect`: alpha going the way of the
+/// colour. Null when the driver cannot provide the framebuffer.
+std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
                                                       const volume::RenderRequest& request,
                                                       const volume::Rect& rect);
 
 /// Between that and `image`, which is empty outside of its rectangle, both as the application's framebuffer
 /// could show them: clamped to [0,1], or, where it is float, as parts of the largest value.
-Difference difference_between(const Pipeline& pipeline, const volume::Rect& rect, std::span<const float> drawn,
+Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,
                               const volume::ImageView& image);
 
 /// Both of these. Null when the driver cannot provide the framebuffer.

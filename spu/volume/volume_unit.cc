@@ -255,9 +255,14 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
   for (std::size_t k = 0; k < 3; ++k) {
     a_texel[k] = volume::length({steps.metric[k], steps.metric[3 + k], steps.metric[6 + k]}) / size[k];
   }
-  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}",
+  std::string jitter;
+  if (steps.offsets) {
+    jitter = fmt::format(", every ray later by a {} x {} texture of the program", steps.offsets->width,
+                         steps.offsets->height);
+  }
+  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
-                     request.op == volume::Operator::max ? ", maximum" : "");
+                     jitter, request.op == volume::Operator::max ? ", maximum" : "");
 }
 
 template <std::size_t N>
@@ -709,8 +714,8 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
   if (!first && !due) return;
   const TimedShare timed(clock_, &FrameShares::verification);
-  const auto difference =
-      s.difference ? s.difference : compare_with_application(context(), s.run, s.request, image);
+  const auto difference = s.drawn ? std::optional(difference_between(s.pipeline, *s.drawn, image))
+                                  : compare_with_application(context(), s.run, s.request, image);
   if (!difference) return;
   VolumeCounters& counters = *s.volume.counters;
   counters.verify_max = std::max(counters.verify_max, difference->max);

@@ -1,6 +1,7 @@
 #include "box_ray_caster.h"
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace understudy::spu::testing {
@@ -13,10 +14,10 @@ constexpr const char* vertex_source =
 
 constexpr const char* fragment_source =
     "#version 330\n"
-    "uniform sampler3D field; uniform sampler1D table; uniform sampler2D opaque;\n"
+    "uniform sampler3D field; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
-    "uniform int composition; uniform bool straight, divided, lit, jittered, reads_depth; uniform vec2 "
-    "window;\n"
+    "uniform int composition; uniform bool straight, divided, lit, jittered, noisy, reads_depth;\n"
+    "uniform vec2 window;\n"
     "in vec3 place; out vec4 colour;\n"
     "vec4 classified(vec3 at) {\n"
     "  vec4 c = texture(table, texture(field, at).r);\n"
@@ -38,7 +39,8 @@ constexpr const char* fragment_source =
     "  float first = 1.0, count = floor(steps);\n"
     "  if (divided) { count = floor(steps + 0.5); step *= steps / count; first = 0.0; }\n"
     "  if (jittered) first = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5) + 0.5;\n"
-    "  count = jittered ? floor(steps - first) + 1.0 : count;\n"
+    "  if (noisy) first = texture(noise, gl_FragCoord.xy / vec2(textureSize(noise, 0))).r;\n"
+    "  count = jittered || noisy ? floor(steps - first) + 1.0 : count;\n"
     "  if (count < 1.0) discard;\n"
     "  if (reads_depth) {\n"
     "    vec4 end = vec4(2.0 * gl_FragCoord.xy / window - 1.0, 0.0, 1.0);\n"
@@ -192,6 +194,18 @@ void BoxRayCaster::set_table(GlApplication& app, float opacity) const {
   app.gl().ActiveTexture(GL_TEXTURE0);
 }
 
+void BoxRayCaster::set_noise(GlApplication& app, unsigned seed) const {
+  constexpr GLsizei width = 16;
+  constexpr GLsizei height = 8;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<float> noise(std::size_t(width) * height);
+  for (float& number : noise) number = uniform(random);
+  app.gl().ActiveTexture(GL_TEXTURE3);
+  app.gl().TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, width, height, 0, GL_RED, GL_FLOAT, noise.data());
+  app.gl().ActiveTexture(GL_TEXTURE0);
+}
+
 void BoxRayCaster::set_up(GlApplication& app) {
   const DispatchTable& gl = app.gl();
   const auto texture = [&](GLenum unit, GLenum target, GLint filter) {
@@ -211,6 +225,10 @@ void BoxRayCaster::set_up(GlApplication& app) {
   const std::vector<GLfloat> far(std::size_t(GlApplication::size) * GlApplication::size, 1.0F);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, GlApplication::size, GlApplication::size, 0,
                 GL_DEPTH_COMPONENT, GL_FLOAT, far.data());
+  texture(GL_TEXTURE3, GL_TEXTURE_2D, GL_NEAREST);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl.TexParameteri(GL_TEXTURE_2D, axis, GL_REPEAT);
+  set_noise(app, 1);
   texture(GL_TEXTURE0, GL_TEXTURE_3D, GL_LINEAR);
   const Blob blob;
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -267,11 +285,13 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("field"), 0);
   gl().Uniform1i(at("table"), 1);
   gl().Uniform1i(at("opaque"), 2);
+  gl().Uniform1i(at("noise"), 3);
   gl().Uniform1i(at("composition"), int(style.composition));
   gl().Uniform1i(at("straight"), style.premultiplied ? 0 : 1);
   gl().Uniform1i(at("divided"), style.divided ? 1 : 0);
   gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
+  gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
   gl().DrawArrays(GL_TRIANGLES, 0, 36);
   gl().Disable(GL_BLEND);

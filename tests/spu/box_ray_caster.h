@@ -18,7 +18,8 @@ struct MarchStyle {
   bool parallel = false;      ///< the projection
   bool lit = false;           ///< brightness by the gradient
   bool jittered = false;      ///< every ray starts at a place of its own
-  bool reads_depth = false;   ///< rays end at the depth of a texture
+  bool noisy = false;        ///< every ray starts later by the number of a texture that repeats over the window
+  bool reads_depth = false;  ///< rays end at the depth of a texture
   std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
   float step = 0.02F;
   double distance = 3;  ///< of the eye from the middle of the box
@@ -33,6 +34,7 @@ class BoxRayCaster {
   /// Clears, draws a wall where `wall` says so (window depth), and the volume.
   void draw(GlApplication& app, double angle, float wall = 0);
   void set_table(GlApplication& app, float opacity) const;
+  void set_noise(GlApplication& app, unsigned seed) const;
 
   MarchStyle style;
 

@@ -1,6 +1,7 @@
 // Ray casters in a fragment shader, recognised by what they draw: the same picture, or the application's own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -46,6 +47,7 @@ std::vector<Kind> kinds() {
           {"over, straight colours, a way in equal parts",
            {.premultiplied = false, .divided = true, .extent = stretched}},
           {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
+          {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
           {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
           {"maximum, parallel projection",
            {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
@@ -83,6 +85,27 @@ TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
   EXPECT_LT(psnr(dense, coarse), 30) << "the table changes nothing: the test tests nothing";
   EXPECT_GE(psnr(dense, scene.frame(false, 30)), 38);
   EXPECT_EQ(scene.app->substituted(), 3U) << scene.app->last_reason();
+}
+
+TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
+  for (const bool reads_depth : {false, true}) {
+    ProxyScene scene(MarchStyle{.noisy = true, .reads_depth = reads_depth, .step = 0.08F});
+    if (!scene.app) GTEST_SKIP() << "no EGL context here";
+    scene.caster().set_table(*scene.app, 0.9F);
+    const auto first = scene.frame(true, 30);
+    const auto bare = scene.frame(false, 30);
+    const double likeness = psnr(first, bare);
+    scene.app->use_chain(true);
+    scene.caster().set_noise(*scene.app, 2);
+    const auto second = scene.frame(true, 50);
+    const double other_likeness = psnr(second, scene.frame(false, 50));
+    std::printf("noise: %.1f dB, other noise: %.1f dB\n", likeness, other_likeness);
+    EXPECT_GE(likeness, 58);
+    EXPECT_GE(other_likeness, 58);
+    EXPECT_EQ(scene.app->substituted(), 2U) << scene.app->last_reason();
+    EXPECT_EQ(scene.app->error(), GLenum(GL_NO_ERROR));
+    EXPECT_LT(psnr(scene.frame(false, 30), bare), 55) << "the noise changes nothing: the test tests nothing";
+  }
 }
 
 TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
@@ -184,10 +207,12 @@ TEST(StepFit, RaysOfNearlyOneDirectionTellTheStepInTexels) {
 }
 
 TEST(ProxyBox, IsWholeOrNone) {
-  const auto faces = [](std::size_t left_out) {
+  // A parallel one that looks along (-1, -2, -3).
+  const volume::Matrix4 camera{2, -1, 0, 0, 3, 6, -5, 0, -1, -2, -3, 0, 0, 0, 0, 1};
+  const auto faces = [](const std::vector<std::size_t>& left_out) {
     ObservedPolygons polygons;
     for (std::size_t face = 0; face < 6; ++face) {
-      if (face == left_out) continue;
+      if (std::find(left_out.begin(), left_out.end(), face) != left_out.end()) continue;
       for (const auto& [a, b] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
         ObservedVertex v;
         v.texture[face / 2] = double(face % 2);
@@ -199,11 +224,14 @@ TEST(ProxyBox, IsWholeOrNone) {
     }
     return polygons;
   };
-  EXPECT_TRUE(box_of(faces(6)));
-  EXPECT_FALSE(box_of(faces(2))) << "one face is missing";
-  auto dented = faces(6);
+  EXPECT_TRUE(box_of(faces({}), camera));
+  EXPECT_FALSE(box_of(faces({2}), camera)) << "one face is missing";
+  EXPECT_TRUE(box_of(faces({0, 2, 4}), camera)) << "the eye sees only the other three";
+  EXPECT_FALSE(box_of(faces({1, 2, 4}), camera)) << "a face that the eye sees is missing";
+  EXPECT_FALSE(box_of(faces({0, 1, 2, 4}), camera)) << "a face that the eye sees is missing";
+  auto dented = faces({});
   dented.vertices[5].texture = {0.5, 0.5, 0.5};
-  EXPECT_FALSE(box_of(dented));
+  EXPECT_FALSE(box_of(dented, camera));
 }
 
 }  // namespace

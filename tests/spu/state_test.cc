@@ -179,8 +179,8 @@ State dump(const DispatchTable& gl, Profile profile) {
 }
 
 SliceScene box_of_a_ray_caster() {
-  SliceScene scene{"the box of a ray caster that reads depth", Profile::core};
-  auto caster = std::make_shared<BoxRayCaster>(MarchStyle{.reads_depth = true});
+  SliceScene scene{"the box of a ray caster that reads noise and depth", Profile::core};
+  auto caster = std::make_shared<BoxRayCaster>(MarchStyle{.noisy = true, .reads_depth = true});
   scene.set_up = [caster](GlApplication& app) { caster->set_up(app); };
   scene.slices = [caster](GlApplication& app, double angle) { caster->draw(app, angle); };
   scene.tidy_up = [](GlApplication&) {};

@@ -30,6 +30,7 @@ struct Case {
   double first;
   bool divided;
   Operator op;
+  bool offset = false;  ///< every ray begins at a place of its own
 };
 
 std::vector<Case> cases() {
@@ -39,7 +40,9 @@ std::vector<Case> cases() {
           {"perspective, divided", usual, 0, true, Operator::over},
           {"perspective, divided, middles", usual, 0.5, true, Operator::add},
           {"parallel, half a step in", parallel_camera(), 0.5, false, Operator::over},
-          {"parallel, divided, maximum", parallel_camera(), 0, true, Operator::max}};
+          {"parallel, divided, maximum", parallel_camera(), 0, true, Operator::max},
+          {"perspective, noise at the entry", usual, 0, false, Operator::over, true},
+          {"parallel, noise half a step in", parallel_camera(), 0.5, false, Operator::add, true}};
 }
 
 RenderRequest request_of(const Texture& texture, const Case& c) {
@@ -47,6 +50,7 @@ RenderRequest request_of(const Texture& texture, const Case& c) {
   request.steps = steps_of(0.031);
   request.steps->first = c.first;
   request.steps->divided = c.divided;
+  if (c.offset) request.steps->offsets = RayOffsets{3, 2, {0.1F, 0.9F, 0.4F, 0.7F, 0, 0.3F}};
   request.op = c.op;
   request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
   return request;
@@ -184,6 +188,11 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   bad = good;
   bad.steps->first = -1;
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument);
+  bad = good;
+  bad.steps->offsets = RayOffsets{3, 2, {0, 0, 0, 0, 0}};
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "no rectangle";
+  bad.steps->offsets = RayOffsets{1, 1, {-1.5F}};
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "before the entry";
 }
 
 }  // namespace

@@ -85,6 +85,16 @@ void validate_steps(const RaySteps& steps, const Box& region) {
         steps.first <= max_planes && steps.past_depth <= max_planes))
     refuse("rays begin {} steps from their entry, end {} behind opaque geometry, and are rounded by {}",
            steps.first, steps.past_depth, steps.rounding);
+  if (const auto& offsets = steps.offsets) {
+    const bool rectangle =
+        offsets->width > 0 && offsets->height > 0 &&
+        offsets->steps.size() / std::size_t(offsets->width) == std::size_t(offsets->height) &&
+        offsets->steps.size() % std::size_t(offsets->width) == 0;
+    if (!rectangle) refuse("the offsets of the rays' first samples are no rectangle");
+    for (const float offset : offsets->steps)
+      if (!(steps.first + offset >= 0 && offset <= max_planes))
+        refuse("a ray begins {} steps from its entry", steps.first + offset);
+  }
   const Vec3 across = subtract(region.high, region.low);
   double most = 0;
   for (std::size_t r = 0; r < 3; ++r)

@@ -20,8 +20,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t region_bounds = 6;
 
 /// One row of rays, before samples outside the owned cells are dropped. `depth` has one value per pixel, or
-/// is null.
-void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
+/// is null; so has `begins`, with steps: the place of the first sample.
+void set_up_row(const RaySetup& setup, const double* depth, const double* begins, bool depth_or_equal,
                 std::array<double, 2> depth_range, int x, int y, int width, std::size_t offset,
                 RayStrip& strip) {
   const hn::ScalableTag<double> d;
@@ -89,7 +89,7 @@ void set_up_row(const RaySetup& setup, const double* depth, bool depth_or_equal,
         speed = hn::Add(speed, hn::Mul(along, along));
       }
       part = hn::Div(hn::Abs(det), hn::Sqrt(speed));
-      const V offset = hn::Set(d, setup.steps->first);
+      const V offset = hn::LoadU(d, begins + column);
       V parts = hn::Set(d, infinity);
       if (setup.steps->divided) {
         const V way = hn::Sub(exit, entry);
@@ -323,7 +323,8 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
 bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
                   RayStrip& strip) {
   constexpr double beyond_every_depth = 2;
-  std::array<double, tile_width> depth;
+  std::array<double, tile_width> depth, begins;
+  begins.fill(setup.steps ? setup.steps->first : 0.0);
   for (int row = 0; row < strip_height; ++row) {
     const bool inside = row < height;
     if (inside && request.depth) {
@@ -335,8 +336,11 @@ bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, in
         depth[column] = known ? double(image.depth[std::size_t(v) * image.rect.width + u]) : beyond_every_depth;
       }
     }
+    if (setup.steps && setup.steps->offsets)
+      for (int column = 0; column < tile_width; ++column)
+        begins[column] = setup.steps->first + setup.steps->offsets->at(x + column, y + row);
     HWY_DYNAMIC_DISPATCH(set_up_row)
-    (setup, request.depth ? depth.data() : nullptr, request.depth && request.depth->or_equal,
+    (setup, request.depth ? depth.data() : nullptr, begins.data(), request.depth && request.depth->or_equal,
      request.depth_range, x, y + row, inside ? width : 0, std::size_t(row) * tile_width, strip);
   }
   bool any_bound = false;

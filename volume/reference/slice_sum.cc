@@ -268,14 +268,15 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
     return length(m);
   };
   double steps = steps_between(enter, leave), part = (leave - enter) / steps;
-  int count = int(std::floor(steps - rule.first)) + 1;
+  const double first = rule.first + (rule.offsets ? rule.offsets->at(x, y) : 0);
+  int count = int(std::floor(steps - first)) + 1;
   if (rule.divided) {
     count = int(std::floor(steps + rule.rounding));
     if (count < 1) return;
     part = (leave - enter) / count;
   }
   for (int i = 0; i < count; ++i) {
-    const double s = enter + (rule.first + i) * part;
+    const double s = enter + (first + i) * part;
     // Of the opaque geometry's depth, which the samples may pass by a few steps but the entry may not.
     const auto visible = [&](double at) {
       if (!request.depth) return true;

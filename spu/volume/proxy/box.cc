@@ -14,9 +14,28 @@ using volume::subtract;
 using volume::Vec3;
 using volume::Vec4;
 
-std::optional<volume::Box> box_of(const ObservedPolygons& polygons) {
+namespace {
+
+/// Whether a camera sees the box's faces from outside: low and high of each axis.
+std::array<bool, 6> seen_faces(const volume::Matrix4& camera, const volume::Box& box) {
+  // The eye is where clip coordinates are a multiple of (0, 0, 1, 0): w tells it from a direction of view.
+  const volume::Matrix4 back = volume::inverse(camera).value_or(volume::identity());
+  const Vec4 eye = volume::transform(back, {0, 0, -1, 0});
+  const double rounding = 1e-9 * (std::abs(eye[0]) + std::abs(eye[1]) + std::abs(eye[2]));
+  const double side = eye[3] < -rounding ? -1 : 1;
+  std::array<bool, 6> seen{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    seen[2 * k] = side * eye[k] < side * eye[3] * box.low[k];
+    seen[2 * k + 1] = side * eye[k] > side * eye[3] * box.high[k];
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::optional<volume::Box> box_of(const ObservedPolygons& polygons, const volume::Matrix4& camera) {
   constexpr double same_place = 1e-4;  // of the box's edge
-  if (polygons.count() < 6) return std::nullopt;
+  if (polygons.count() < 2) return std::nullopt;
   volume::Box box{polygons.vertices.front().texture, polygons.vertices.front().texture};
   for (const ObservedVertex& v : polygons.vertices) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -52,9 +71,13 @@ std::optional<volume::Box> box_of(const ObservedPolygons& polygons) {
     }
     covered[*face] += twice_area / (2 * edge[u] * edge[v]);
   }
-  for (const double part : covered) {
-    if (!(std::abs(part - 1) <= 1e-3)) return std::nullopt;
+  std::array<bool, 6> drawn{};
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    drawn[i] = covered[i] > 0;
+    if (drawn[i] && !(std::abs(covered[i] - 1) <= 1e-3)) return std::nullopt;
   }
+  const bool all = std::count(drawn.begin(), drawn.end(), true) == 6;
+  if (!all && drawn != seen_faces(camera, box)) return std::nullopt;
   return box;
 }
 

@@ -9,9 +9,9 @@
 
 namespace understudy::spu {
 
-/// The box (in units of the observed coordinate) whose six faces, whole and once each, are what was drawn; null
-/// when the polygons are anything else.
-std::optional<volume::Box> box_of(const ObservedPolygons& polygons);
+/// The box (in units of the observed coordinate) whose faces, whole and once each, are what was drawn: all six,
+/// or, where `camera` looks at two or three of them, these. Null when the polygons are anything else.
+std::optional<volume::Box> box_of(const ObservedPolygons& polygons, const volume::Matrix4& camera);
 
 /// True when all of the box lies before the eye and behind the near plane: then every ray enters at a face.
 bool wholly_in_view(const volume::Matrix4& texture_to_clip, const volume::Box& box);

@@ -10,6 +10,14 @@ namespace {
 
 constexpr int finest_viewport = 4096;
 
+std::array<GLint, 4> rectangle(const DispatchTable& gl, GLenum name) {
+  std::array<GLint, 4> value{};
+  gl.GetIntegerv(name, value.data());
+  return value;
+}
+
+}  // namespace
+
 bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
   if (texture.target != GL_TEXTURE_2D || texture.texture == 0) return false;
   GLint active = 0;
@@ -20,14 +28,6 @@ bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
   gl.ActiveTexture(GLenum(active));
   return bits > 0;
 }
-
-std::array<GLint, 4> rectangle(const DispatchTable& gl, GLenum name) {
-  std::array<GLint, 4> value{};
-  gl.GetIntegerv(name, value.data());
-  return value;
-}
-
-}  // namespace
 
 bool samples_depth(const GlContext& context, const Pipeline& pipeline) {
   return std::any_of(pipeline.others.begin(), pipeline.others.end(),
@@ -148,6 +148,34 @@ std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<con
     colours.insert(colours.end(), read_back.begin(), read_back.begin() + std::ptrdiff_t(count));
   }
   return colours;
+}
+
+void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,
+                              std::span<const float> texels) {
+  if (std::find(tiled_units_.begin(), tiled_units_.end(), texture.unit) == tiled_units_.end()) {
+    saved_.borrow_texture(GL_TEXTURE_2D, texture.unit);
+    tiled_units_.push_back(texture.unit);
+  }
+  GLuint name = 0;
+  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
+  gl_.GenTextures(1, &name);
+  textures_.push_back(name);
+  gl_.BindTexture(GL_TEXTURE_2D, name);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    gl_.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    gl_.TexParameteri(GL_TEXTURE_2D, axis, GL_REPEAT);
+  // The same number in every component, whichever the program reads.
+  std::vector<float> colours;
+  colours.reserve(4 * texels.size());
+  for (const float number : texels) colours.insert(colours.end(), 4, number);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, colours.data());
+}
+
+void FieldProbe::show_own(const SampledTexture& texture) {
+  if (std::find(tiled_units_.begin(), tiled_units_.end(), texture.unit) == tiled_units_.end()) return;
+  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
+  gl_.BindTexture(GL_TEXTURE_2D, texture.texture);
 }
 
 void FieldProbe::clear() {

@@ -38,6 +38,14 @@ class FieldProbe {
   /// The fragment of one pixel of the application's viewport, over the field of `value`.
   volume::Rgba pixel(int column, int row, float value);
 
+  /// From now on the program reads this tile of numbers from `texture`, which is 2-D; rows bottom up, repeated.
+  void show_instead(const SampledTexture& texture, int width, int height, std::span<const float> texels);
+  /// It reads its own again.
+  void show_own(const SampledTexture& texture);
+
+  /// The application's viewport in its window.
+  int left() const { return viewport_[0]; }
+  int bottom() const { return viewport_[1]; }
   int width() const { return viewport_[2]; }
   int height() const { return viewport_[3]; }
 
@@ -55,10 +63,14 @@ class FieldProbe {
   int fine_ = 0;  ///< edge of the viewport that rays are picked from
   SavedState saved_;
   std::vector<GLuint> textures_;
+  std::vector<int> tiled_units_;  ///< whose 2-D texture is borrowed for tiles
   GLuint colour_ = 0;
   GLuint framebuffer_ = 0;
   bool complete_ = false;
 };
+
+/// Whether `texture` is a 2-D texture of depths.
+bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture);
 
 /// Whether the program samples a depth texture: it ends its rays at opaque geometry.
 bool samples_depth(const GlContext& context, const Pipeline& pipeline);

@@ -114,7 +114,7 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
 std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
                                                                 const RaysThroughBox& rays, float value) {
   const bool already = measured.run.pipeline().blending.premultiplied;
-  std::vector<Vec3> ways;
+  std::vector<CountedRay> counted;
   std::vector<double> opacities;
   std::vector<Rgba> colours;
   for (int band = 0; band < bands; ++band) {
@@ -126,25 +126,24 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
       const int row = y + int(i) / probe.width();
       const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
       if (!way) continue;
-      ways.push_back(*way);
+      counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});
       colours.push_back(premultiplied(fragments[i], already));
       opacities.push_back(colours.back()[3]);
     }
   }
-  if (ways.size() < 64) return "too little of the box is in view to measure its rays";
+  if (counted.size() < 64) return "too little of the box is in view to measure its rays";
   const auto most = std::max_element(opacities.begin(), opacities.end());
-  std::vector<CountedRay> counted;
   const std::vector<double> counts = counts_from_opacities(opacities);
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
   // Colour over opacity stays what it is for one sample.
   const std::size_t longest = std::size_t(most - opacities.begin());
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  for (std::size_t i = 0; i < counted.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double expected = double(colours[longest][c]) / *most * opacities[i];
       if (std::abs(colours[i][c] - expected) > 0.01)
         return "the colours of a ray's samples are not composed by over";
     }
-    counted.push_back({ways[i], counts[i]});
+    counted[i].samples = counts[i];
   }
   return counted;
 }
@@ -201,6 +200,11 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
     if (march.maximum) break;
   }
   return std::nullopt;
+}
+
+/// Noise at the rays' beginnings, where there is any, is taken away.
+bool held_still(const MarchContext& measured, FieldProbe& probe, const March& march) {
+  return !march.jitter || hold_still(measured.run, probe, *march.jitter);
 }
 
 bool is_scalar(GLenum type) {
@@ -270,11 +274,11 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
 bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen) {
   constexpr std::size_t most_triangles = 4096;  // of a box
   if (seen.polygons.count() > most_triangles) return false;
-  if (box_of(seen.polygons)) return true;
+  if (seen.fit && box_of(seen.polygons, seen.fit->texture_to_clip)) return true;
   return std::any_of(stages.inputs.begin(), stages.inputs.end(), [&](const StageInput& input) {
     if (input.integer || input.components < 3 || input.name == seen.coordinate) return false;
     const Capture capture = capture_vertices(context, run, stages, input.name);
-    return capture.fit && box_of(capture.polygons);
+    return capture.fit && box_of(capture.polygons, capture.fit->texture_to_clip);
   });
 }
 
@@ -285,7 +289,7 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
     if (input.integer || input.components < 3) continue;
     const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, input.name);
     if (!capture.fit) continue;
-    const auto box = box_of(capture.polygons);
+    const auto box = box_of(capture.polygons, capture.fit->texture_to_clip);
     if (!box) continue;
     bool unit = true;
     bool texels = true;
@@ -309,7 +313,7 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space) {
   const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, space.input);
   if (!capture.fit || capture.fit->residual > max_fit_residual) return std::nullopt;
-  auto box = box_of(capture.polygons);
+  auto box = box_of(capture.polygons, capture.fit->texture_to_clip);
   if (!box || !wholly_in_view(capture.fit->texture_to_clip, *box)) return std::nullopt;
   ProxyBox proxy{*box, *capture.fit};
   volume::Matrix4 to_input = volume::identity();
@@ -374,15 +378,23 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   if (march.maximum) {
     rules = rules_for_maximum(size);
   } else {
-    const auto counted = counted_rays(measured, probe, rays, march.translucent);
+    const auto count = [&] { return counted_rays(measured, probe, rays, march.translucent); };
+    const auto counted = count();
     if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
     const auto& all = std::get<std::vector<CountedRay>>(counted);
-    const auto fits = fit_steps(all, size);
+    auto fits = fit_steps(all, size);
     if (fits.empty()) return "too few rays of several samples are in view to tell the step";
+    if (fits.front().unexplained > most_unexplained) {
+      auto finding = find_jitter(measured.context, measured.run, probe, count, all, size);
+      if (!finding) return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
+      march.jitter = finding->jitter;
+      fits = std::move(finding->fits);
+    }
     for (const StepFit& fit : fits) {
-      if (fit.unexplained > most_unexplained)
-        return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
-      for (const volume::RaySteps& rule : rules_of(fit)) rules.push_back(rule);
+      std::vector<volume::RaySteps> of_fit = rules_of(fit);
+      // A way in equal parts has as many wherever the first one begins.
+      if (march.jitter) of_fit.resize(1);
+      rules.insert(rules.end(), of_fit.begin(), of_fit.end());
     }
   }
 
@@ -390,6 +402,11 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   march.table.high = measured.range[1];
   if (auto reason = measure_table(measured, probe, rays, rules.front(), march)) return *reason;
 
+  if (march.jitter) {
+    const auto offsets = ray_offsets(measured.context, measured.run, *march.jitter);
+    if (!offsets) return "the texture of noise at the rays' beginnings cannot be read back";
+    for (volume::RaySteps& rule : rules) rule.offsets = offsets;
+  }
   std::vector<March> marches;
   const bool ends_at_depth = samples_depth(measured.context, measured.run.pipeline());
   for (const CoordinateSpace& space : spaces) {
@@ -411,7 +428,12 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   {
     FieldProbe probe(measured.context, measured.run, measured.texture);
-    if (!probe.complete() || measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+    if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
+    if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+  }
+  if (march.jitter) {
+    changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);
+    if (!changed.steps.offsets) return std::nullopt;
   }
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
@@ -431,7 +453,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr float same_colour = 5e-3F;
   FieldProbe probe(measured.context, measured.run, measured.texture);
-  if (!probe.complete()) return false;
+  if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   const double wanted = march.maximum ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);

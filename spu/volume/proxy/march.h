@@ -13,6 +13,7 @@
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/program_stages.h"
 #include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/jitter.h"
 #include "spu/volume/texels.h"
 #include "volume/classification.h"
 #include "volume/image.h"
@@ -38,6 +39,7 @@ struct March {
   volume::RaySteps steps;
   /// Samples are not composed: the largest value of the ray is classified by `table`.
   bool maximum = false;
+  std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
   float translucent = 0;           ///< a value whose field lets a long ray through
 };

@@ -13,6 +13,8 @@ namespace understudy::spu {
 struct CountedRay {
   volume::Vec3 way{};
   double samples = 0;
+  int x = 0;  ///< the pixel, in the window
+  int y = 0;
 };
 
 /// samples = round(|metric way| + offset), where |metric way| is the length of the way in steps.

@@ -1,0 +1,166 @@
+#include "spu/volume/proxy/jitter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <utility>
+
+namespace understudy::spu {
+namespace {
+
+constexpr int largest_tile = 1024;  ///< edge, in texels
+
+/// More rays than that beside what a pattern says, and it was read in another way.
+constexpr double most_strayed = 0.01;
+
+struct Tile {
+  int width = 0;
+  int height = 0;
+  std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
+};
+
+/// The size of a texture that may hold noise; none of tables, depths and pictures.
+std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& texture) {
+  if (texture.target != GL_TEXTURE_2D || texture.texture == 0 || is_depth_texture(gl, texture))
+    return std::nullopt;
+  GLint active = 0;
+  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
+  Tile tile;
+  GLint type = 0;
+  gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_RED_TYPE, &type);
+  gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &tile.width);
+  gl.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &tile.height);
+  gl.ActiveTexture(GLenum(active));
+  const bool table = tile.width < 2 || tile.height < 2;
+  const bool integers = type == GL_INT || type == GL_UNSIGNED_INT;
+  if (table || integers || tile.width > largest_tile || tile.height > largest_tile) return std::nullopt;
+  return tile;
+}
+
+/// The texture's own numbers, whatever is shown in its place.
+std::optional<volume::RayOffsets> numbers_of(const GlContext& context, const SampledTexture& texture) {
+  const DispatchTable& gl = *context.gl;
+  SavedState saved(context);
+  saved.borrow_texture(GL_TEXTURE_2D, texture.unit);
+  gl.BindTexture(GL_TEXTURE_2D, texture.texture);
+  const auto tile = tile_of(gl, texture);
+  if (!tile) return std::nullopt;
+  volume::RayOffsets numbers{tile->width, tile->height, std::vector<float>(tile->texels())};
+  gl.GetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, numbers.steps.data());
+  return numbers;
+}
+
+const SampledTexture* sampled_at(const Run& run, GLint sampler_location) {
+  for (const SampledTexture& texture : run.pipeline().others) {
+    if (texture.sampler_location == sampler_location) return &texture;
+  }
+  return nullptr;
+}
+
+/// Counts by pixel; no count where a ray made no fragment.
+class Counts {
+ public:
+  explicit Counts(const std::vector<CountedRay>& rays) {
+    for (const CountedRay& ray : rays) samples_[{ray.x, ray.y}] = ray.samples;
+  }
+  double at(const CountedRay& ray) const {
+    const auto found = samples_.find({ray.x, ray.y});
+    return found == samples_.end() ? 0 : found->second;
+  }
+
+ private:
+  std::map<std::pair<int, int>, double> samples_;
+};
+
+/// The rays with `texels` in the place of the texture; none where they cannot be counted.
+std::vector<CountedRay> counted_under(FieldProbe& probe, const SampledTexture& texture,
+                                      const volume::RayOffsets& texels, const RayCounting& count) {
+  probe.show_instead(texture, texels.width, texels.height, texels.steps);
+  auto counted = count();
+  auto* all = std::get_if<std::vector<CountedRay>>(&counted);
+  return all != nullptr ? std::move(*all) : std::vector<CountedRay>{};
+}
+
+/// What `texture` does to the rays that it moves; `own` were counted under its own numbers.
+std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& probe,
+                                       const SampledTexture& texture, const RayCounting& count,
+                                       const std::vector<CountedRay>& own, const std::array<int, 3>& size) {
+  constexpr double rounding = 0.6;      // half a step, and what the fit and the texture's own precision leave
+  constexpr double fewest_samples = 4;  // some programs take one where there is room for none
+  const auto tile = tile_of(*context.gl, texture);
+  if (!tile) return std::nullopt;
+  volume::RayOffsets shown{tile->width, tile->height, std::vector<float>(tile->texels(), 0.0F)};
+  std::vector<CountedRay> zeros = counted_under(probe, texture, shown, count);
+  const auto fits = fit_steps(zeros, size);
+  const bool alike = !fits.empty() && std::all_of(fits.begin(), fits.end(), [](const StepFit& fit) {
+    return fit.unexplained <= most_unexplained;
+  });
+  if (!alike) return std::nullopt;
+  std::erase_if(zeros, [](const CountedRay& ray) { return ray.samples < fewest_samples; });
+  const auto strayed = [&](double tolerance, const auto& difference) {
+    const auto off = std::count_if(zeros.begin(), zeros.end(), [&](const CountedRay& ray) {
+      return std::abs(difference(ray)) > tolerance;
+    });
+    return double(off) / double(std::max(zeros.size(), std::size_t(1)));
+  };
+
+  std::fill(shown.steps.begin(), shown.steps.end(), 1.0F);
+  const Counts ones(counted_under(probe, texture, shown, count));
+  double lost = 0;
+  for (const CountedRay& ray : zeros) lost += ray.samples - ones.at(ray);
+  double steps = lost / double(std::max(zeros.size(), std::size_t(1)));
+  if (std::abs(steps - std::round(steps)) < 0.02) steps = std::round(steps);
+  if (steps == 0) return std::nullopt;
+
+  std::mt19937 random(1);
+  for (float& texel : shown.steps) texel = float(random() & 1U);
+  const Counts mixed(counted_under(probe, texture, shown, count));
+  const double by_another_texel = strayed(0, [&](const CountedRay& ray) {
+    return mixed.at(ray) - (shown.at(ray.x, ray.y) > 0 ? ones.at(ray) : ray.samples);
+  });
+  if (by_another_texel > most_strayed) return std::nullopt;
+
+  const auto numbers = numbers_of(context, texture);
+  if (!numbers) return std::nullopt;
+  const Counts counted(own);
+  const StepFit& fit = fits.front();
+  const volume::RaySteps rule = rules_of(fit).front();
+  const double by_another_number = strayed(rounding, [&](const CountedRay& ray) {
+    return counted.at(ray) - (steps_of_way(rule, ray.way) + fit.offset - steps * numbers->at(ray.x, ray.y));
+  });
+  if (by_another_number > most_strayed) return std::nullopt;
+  return JitterFinding{{texture.sampler_location, steps}, fits};
+}
+
+}  // namespace
+
+std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
+                                         const RayCounting& count, const std::vector<CountedRay>& own,
+                                         const std::array<int, 3>& size) {
+  for (const SampledTexture& texture : run.pipeline().others) {
+    auto finding = jitter_by(context, probe, texture, count, own, size);
+    if (finding && hold_still(run, probe, finding->jitter)) return finding;
+    probe.show_own(texture);
+  }
+  return std::nullopt;
+}
+
+bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter) {
+  const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
+  if (texture == nullptr || texture->target != GL_TEXTURE_2D) return false;
+  constexpr float zero = 0;
+  probe.show_instead(*texture, 1, 1, {&zero, 1});
+  return true;
+}
+
+std::optional<volume::RayOffsets> ray_offsets(const GlContext& context, const Run& run, const Jitter& jitter) {
+  const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
+  auto offsets = texture != nullptr ? numbers_of(context, *texture) : std::nullopt;
+  if (!offsets) return std::nullopt;
+  for (float& offset : offsets->steps) offset = float(offset * jitter.steps_per_unit);
+  return offsets;
+}
+
+}  // namespace understudy::spu

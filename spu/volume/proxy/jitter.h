@@ -1,0 +1,45 @@
+// Ray casters that begin every ray a part of a step later than its neighbours, by a texture of noise.
+//
+// Which texture that is, and what its numbers mean, is found by showing others in its place: under a texture of
+// one number all rays begin alike, under zeros and ones the counts of samples tell by how much, and a random
+// pattern of both, whether the pixel (x, y) reads the texel (x mod width, y mod height).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu {
+
+/// Where a program reads by how much of a step a ray begins later: linear in the texel's number.
+struct Jitter {
+  GLint sampler_location = -1;
+  double steps_per_unit = 1;
+};
+
+/// Counted rays, in the same order every time, or why they cannot be counted.
+using RayCounting = std::function<std::variant<std::vector<CountedRay>, std::string>()>;
+
+struct JitterFinding {
+  Jitter jitter;
+  std::vector<StepFit> fits;  ///< of rays that begin at the texture's zero
+};
+
+/// The texture among those of `run` that moves the samples, where there is one; `own` was counted under its own
+/// numbers. Afterwards `probe` shows zeros in its place.
+std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
+                                         const RayCounting& count, const std::vector<CountedRay>& own,
+                                         const std::array<int, 3>& size);
+
+/// Makes all rays of `probe` begin alike, at the jitter's zero. False when the program has no such texture.
+bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter);
+
+/// What the program's own texture says of every pixel.
+std::optional<volume::RayOffsets> ray_offsets(const GlContext& context, const Run& run, const Jitter& jitter);
+
+}  // namespace understudy::spu

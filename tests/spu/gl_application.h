@@ -8,6 +8,7 @@
 
 #include "spu/chain.h"
 #include "spu/options.h"
+#include "spu/report/counters.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu::testing {
@@ -45,6 +46,8 @@ class GlApplication {
   std::uint64_t substituted() const;
   std::uint64_t left() const;
   std::string last_reason() const;
+  /// The figures of the last volume that this process has seen.
+  static const VolumeCounters& last_volume();
 
  private:
   GlApplication() = default;

@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <new>
+#include <utility>
 
 namespace understudy::spu {
 namespace {
@@ -87,7 +89,69 @@ void add(volume::FrameCounts& total, const volume::FrameCounts& frame) {
   add(total.composite_ms, frame.composite_ms);
 }
 
+template <std::size_t N>
+void put(char (&to)[N], std::string_view text) {
+  const std::size_t length = std::min(text.size(), N - 1);
+  std::copy_n(text.begin(), length, to);
+  std::fill(to + length, to + N, char(0));
+}
+
+/// Moves the figures of a volume that is gone into the last place, and leaves its own as new.
+void hand_on(VolumeCounters& volume, VolumeCounters& last) {
+  last.draws_substituted.fetch_add(volume.draws_substituted.exchange(0));
+  last.draws_left.fetch_add(volume.draws_left.exchange(0));
+  last.probes.fetch_add(volume.probes.exchange(0));
+  for (ReasonCount& reason : volume.left_because) {
+    if (const std::uint64_t times = reason.count.exchange(0); times > 0)
+      count_reason(last, reason.reason, times);
+    put(reason.reason, "");
+  }
+  last.verified_frames.fetch_add(volume.verified_frames.exchange(0));
+  last.verify_max = std::max(last.verify_max, std::exchange(volume.verify_max, 0));
+  add(last.verify_sum_sq, std::exchange(volume.verify_sum_sq, 0));
+  put(volume.explanation, "");
+  put(volume.texture_format, "");
+  std::fill(std::begin(volume.size), std::end(volume.size), 0);
+  put(last.explanation, "all volumes that found no place of their own any more, together");
+}
+
 }  // namespace
+
+VolumeCounters& count_volume(std::uint64_t texture) {
+  ProcessCounters& process = process_counters();
+  const std::uint32_t number = process.volumes.fetch_add(1) + 1;
+  VolumeCounters& last = process.volume[max_counted_volumes - 1];
+  VolumeCounters* found = &last;
+  for (const VolumePlace wanted : {VolumePlace::free, VolumePlace::left_behind}) {
+    for (int i = 0; i < max_counted_volumes - 1 && found == &last; ++i) {
+      VolumePlace place = wanted;
+      if (process.volume[i].place.compare_exchange_strong(place, VolumePlace::held)) found = &process.volume[i];
+    }
+    if (found == &last) continue;
+    if (wanted == VolumePlace::left_behind) hand_on(*found, last);
+    break;
+  }
+  found->texture = texture;
+  found->number = number;
+  return *found;
+}
+
+void leave_behind(VolumeCounters& volume) {
+  VolumePlace held = VolumePlace::held;
+  volume.place.compare_exchange_strong(held, VolumePlace::left_behind);
+}
+
+void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times) {
+  const std::string_view known = reason.substr(0, sizeof ReasonCount::reason - 1);
+  ReasonCount& last = volume.left_because[max_counted_reasons - 1];
+  for (ReasonCount& slot : volume.left_because) {
+    if (slot.reason[0] == 0) put(slot.reason, &slot == &last ? "other reasons" : known);
+    if (&slot == &last || std::string_view(slot.reason) == known) {
+      slot.count.fetch_add(times, std::memory_order_relaxed);
+      return;
+    }
+  }
+}
 
 ProcessCounters& process_counters() {
   static const bool opened = open_counters();

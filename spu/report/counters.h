@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string_view>
 
 #include "volume/request.h"
 
@@ -24,8 +25,12 @@ struct ReasonCount {
   std::atomic<std::uint64_t> count;
 };
 
+enum class VolumePlace : std::uint32_t { free, held, left_behind };
+
 struct VolumeCounters {
-  std::uint64_t texture;  ///< the application's texture name
+  std::atomic<VolumePlace> place;
+  std::atomic<std::uint32_t> number;  ///< the how many-th volume of the process, from 1
+  std::uint64_t texture;              ///< the application's texture name
   std::int32_t size[3];
   char texture_format[32];
   std::atomic<std::uint64_t> draws_substituted;
@@ -79,14 +84,26 @@ struct ProcessCounters {
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   std::atomic<std::uint32_t> volumes;
-  VolumeCounters volume[max_counted_volumes];
-  FrameRecord frame[max_frame_records];  ///< ring: frame f is at f % max_frame_records
+  VolumeCounters volume[max_counted_volumes];  ///< the last one: see count_volume()
+  FrameRecord frame[max_frame_records];        ///< ring: frame f is at f % max_frame_records
 };
 
 /// This process's counters: mapped from UNDERSTUDY_RUN_DIR when the launcher gave one, else private memory.
 /// Never fails, and the address stays the same for the life of the process; a child after fork() counts for
 /// itself.
 ProcessCounters& process_counters();
+
+/// Counts one more volume, and finds its figures a place: an unused one; else that of a volume that is gone,
+/// whose figures are added to the last place; else the last place itself, which is shared by all volumes beyond
+/// max_counted_volumes - 1 that live at once. Any thread.
+VolumeCounters& count_volume(std::uint64_t texture);
+
+/// The volume is gone: its figures stay until their place is needed.
+void leave_behind(VolumeCounters& volume);
+
+/// Counts one more run that was left to the application. A volume knows max_counted_reasons; the last of them
+/// is "other reasons" once there are more.
+void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times = 1);
 
 /// Counts one finished frame: its ring slot, and the totals.
 void count_frame(const FrameRecord& frame);

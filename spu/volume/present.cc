@@ -79,7 +79,7 @@ void Presenter::show(const volume::ImageView& image) const {
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView& image,
+void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView& image, const Target& target,
                                       const std::array<GLboolean, 4>& mask) const {
   const DispatchTable& gl = *context_.gl;
   gl.BlendEquation(GL_FUNC_ADD);
@@ -87,6 +87,11 @@ void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView&
     gl.BlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
   } else {
     gl.BlendFuncSeparate(GL_DST_ALPHA, GL_ONE, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+  }
+  if (target.floating) {
+    gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
+    show(image);
+    return;
   }
   // A framebuffer that is not float clamps colours before it weights them by the room left. Colours that shine
   // above 1 go in portions, and alpha with the last of them.
@@ -110,7 +115,7 @@ void Presenter::present_alpha(const AlphaBlending& alpha, const volume::ImageVie
   show(image);
 }
 
-void Presenter::present(const volume::ImageView& image, const Blending& blending,
+void Presenter::present(const volume::ImageView& image, const Blending& blending, const Target& target,
                         const volume::ImageView* alpha) {
   const DispatchTable& gl = *context_.gl;
   // The application's scissor and colour mask hold for its slices, so they hold for the picture.
@@ -137,7 +142,7 @@ void Presenter::present(const volume::ImageView& image, const Blending& blending
       set_blending(gl, blending.op);
       show(image);
     } else {
-      present_front_to_back(blending.front_to_back, image, mask);
+      present_front_to_back(blending.front_to_back, image, target, mask);
     }
   }
   if (!apart || !mask[3]) return;

@@ -18,12 +18,13 @@ class Presenter {
 
   /// Colour and alpha as the slices would have left them. `alpha` is the picture of alpha_as_colour() where
   /// `blending.alpha_stands_apart()`.
-  void present(const volume::ImageView& image, const Blending& blending, const volume::ImageView* alpha);
+  void present(const volume::ImageView& image, const Blending& blending, const Target& target,
+               const volume::ImageView* alpha);
 
  private:
   bool prepare();
   void show(const volume::ImageView& image) const;
-  void present_front_to_back(FrontToBack kind, const volume::ImageView& image,
+  void present_front_to_back(FrontToBack kind, const volume::ImageView& image, const Target& target,
                              const std::array<GLboolean, 4>& mask) const;
   void present_alpha(const AlphaBlending& alpha, const volume::ImageView& image) const;
 

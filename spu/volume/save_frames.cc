@@ -25,9 +25,9 @@ std::string write_pfm(const std::string& path, const char* kind, const volume::R
 }  // namespace
 
 std::string save_frame(const std::string& folder, std::uint64_t number, const volume::Rect& viewport,
-                       const volume::ImageView& image) {
-  std::vector<float> colour(3 * viewport.pixels(), 0.0F);
-  std::vector<float> alpha(viewport.pixels(), 0.0F);
+                       const volume::ImageView& image, float outside) {
+  std::vector<float> colour(3 * viewport.pixels(), outside);
+  std::vector<float> alpha(viewport.pixels(), outside);
   const volume::Rect shared = intersection(viewport, image.rect);
   for (int y = shared.y; y < shared.y + shared.height; ++y) {
     for (int x = shared.x; x < shared.x + shared.width; ++x) {

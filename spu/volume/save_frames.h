@@ -8,8 +8,8 @@
 namespace understudy::spu {
 
 /// Writes FOLDER/frame_NNNN.pfm (colour, premultiplied) and FOLDER/frame_NNNN_alpha.pfm over the whole of
-/// `viewport`, transparent where the image ends. Returns what went wrong, or an empty string.
+/// `viewport`, `outside` where the image ends. Returns what went wrong, or an empty string.
 std::string save_frame(const std::string& folder, std::uint64_t number, const volume::Rect& viewport,
-                       const volume::ImageView& image);
+                       const volume::ImageView& image, float outside);
 
 }  // namespace understudy::spu

@@ -20,6 +20,7 @@
 #include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
+#include "volume/raycast/ray_caster.h"
 
 namespace understudy::spu {
 namespace {
@@ -272,22 +273,14 @@ void put(char (&to)[N], std::string_view text) {
   to[length] = 0;
 }
 
-void count_reason(VolumeCounters& counters, const std::string& reason) {
-  for (ReasonCount& slot : counters.left_because) {
-    if (slot.reason[0] == 0) put(slot.reason, reason);
-    if (std::string_view(slot.reason) == std::string_view(reason).substr(0, sizeof slot.reason - 1)) {
-      slot.count.fetch_add(1, std::memory_order_relaxed);
-      return;
-    }
-  }
-}
-
 }  // namespace
 
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
     : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {}
 
 VolumeUnit::~VolumeUnit() {
+  for (auto& [texture, volume] : known_)
+    if (volume.counters != nullptr) leave_behind(*volume.counters);
   if (session_) session_->ledger().forget(this);
 }
 
@@ -310,11 +303,7 @@ KnownVolume& VolumeUnit::known(GLuint texture) {
   KnownVolume& volume = known_[texture];
   if (volume.counters == nullptr) {
     chain_.group().remember(texture);
-    ProcessCounters& process = process_counters();
-    const std::uint32_t index = process.volumes.fetch_add(1, std::memory_order_relaxed);
-    // Past the last slot the counts of further volumes are shared; the drawing is not affected.
-    volume.counters = &process.volume[std::min<std::uint32_t>(index, max_counted_volumes - 1)];
-    volume.counters->texture = texture;
+    volume.counters = &count_volume(texture);
   }
   return volume;
 }
@@ -800,7 +789,8 @@ void VolumeUnit::substitute(const Run& run) {
   verify(s, shown);
   volume::FrameCounts counts = rendered.counts;
   if (!options.save_frames.empty()) {
-    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown);
+    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown,
+                                           volume::neutral_value(blending.op));
     if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
   }
   if (options.debug_tint) tint(picture);
@@ -815,7 +805,7 @@ void VolumeUnit::substitute(const Run& run) {
       alpha.rgba[i + 3] = a;
     }
     const volume::ImageView view = alpha.view();
-    presenter_->present(shown, blending, &view);
+    presenter_->present(shown, blending, s.pipeline.target, &view);
   } else if (blending.alpha_stands_apart()) {
     s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
     s.request.op = blending.alpha.op;
@@ -824,9 +814,9 @@ void VolumeUnit::substitute(const Run& run) {
     if (s.pipeline.target.alpha_bits <= 8) s.request.termination = 1e-3F;
     const compositor::Rendered alpha = render();
     counts += alpha.counts;
-    presenter_->present(shown, blending, &alpha.image);
+    presenter_->present(shown, blending, s.pipeline.target, &alpha.image);
   } else {
-    presenter_->present(shown, blending, nullptr);
+    presenter_->present(shown, blending, s.pipeline.target, nullptr);
   }
   settle_depth(s);
   if (s.volume.frames == 0 || options.explain) explain(s);
@@ -873,6 +863,7 @@ void VolumeUnit::forget_deleted_volumes() {
   std::erase_if(known_, [&](auto& entry) {
     auto& [texture, volume] = entry;
     if (chain_.group().remembers(texture)) return false;
+    if (volume.counters != nullptr) leave_behind(*volume.counters);
     if (volume.generation != 0) {
       const auto lock = session_->lock();
       if (volume.generation == session_->generation()) session_->forget(volume.description.id);
@@ -886,6 +877,7 @@ void VolumeUnit::abandon() {
   stop_watching_stacks();
   stages_.clear();
   for (auto& [texture, volume] : known_) {
+    if (volume.counters != nullptr) leave_behind(*volume.counters);
     const auto lock = session_->lock();
     if (volume.generation != 0 && volume.generation == session_->generation())
       session_->forget(volume.description.id);

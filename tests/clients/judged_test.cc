@@ -10,51 +10,21 @@
 
 #include "apps/understudy/picture.h"
 #include "tests/clients/stage.h"
+#include "tests/emulation/precision.h"
 #include "tests/emulation/viewer_frame.h"
 
 namespace clients {
 namespace {
 
-using emulation::Precision;
-using emulation::Rounding;
 using understudy::launcher::read_picture;
 
-// Half a step of floats just below 1, the relative error of one rounding.
-constexpr double float_step = 1.0 / (1 << 24);
-// A byte's step, of colours in [0,1].
-constexpr double byte_step = 1.0 / 255;
+using emulation::drivers;
+using emulation::float_step;
+using emulation::ours;
+using emulation::ray_termination;
 
-constexpr double ray_termination = 5e-6;  // of RenderRequest: the colours behind are no brighter than 1
-
-/// What the nodes are told, and how they sample. Texture coordinates reach them as floats, through the camera
-/// that is fitted to float clip positions (each good for one rounding in every of x, y and w), and a sample's
-/// place among the texels is a float that was rounded three times: eight roundings in all, texture coordinates
-/// being at most 1. Bytes are interpolated with weights of 15 bits. The table is measured at 16 * 255 + 1
-/// values. Slices are compared with a depth buffer of 24 bits, whose triangles' vertices the rasteriser puts on
-/// a grid of 1/256 pixel (GL_SUBPIXEL_BITS is 8); depth is interpolated in float.
-constexpr Precision ours{.coordinate = 8 * float_step,
-                         .texel = 1.0 / (1 << 15),
-                         .value = float_step,
-                         .solid = 1.0 / 256,
-                         .depth = 4 * float_step,
-                         .table_cells = 16 * 255};
-
-/// The driver's own slices. Their vertices lie on the rasteriser's grid, too. It filters textures of bytes in
-/// bytes: weights of 8 bits, and each of the three levels of a trilinear interpolation may lose a step.
-constexpr Precision drivers{.coordinate = 8 * float_step,
-                            .window = 1.0 / 256,
-                            .texel = 1.0 / 256,
-                            .value = 3 * byte_step,
-                            .solid = 1.0 / 256,
-                            .depth = 4 * float_step};
-
-/// Blending bytes: the fragment's channels are rounded to bytes, half a step each; of the two products one half
-/// step each, and one more because a product of bytes need not be rounded to the nearest.
-constexpr Rounding bytes{.source = 0.5 * byte_step,
-                         .result = 2 * byte_step,
-                         .alpha_source = 0.5 * byte_step,
-                         .alpha_result = 2 * byte_step};
-constexpr Rounding none{};
+constexpr emulation::Rounding bytes = emulation::normalised(8, 8);
+constexpr emulation::Rounding none{};
 
 struct Scene {
   const char* name;
@@ -118,6 +88,14 @@ class Judged : public Stage, public testing::WithParamInterface<Scene> {
                what, verdict.rms, verdict.max, verdict.beyond, verdict.outside, drawn.size(), verdict.width);
     EXPECT_EQ(verdict.outside, 0) << what;
   }
+
+  /// A volume's own picture, had its slices lain a little elsewhere.
+  static std::vector<double> moved(const emulation::Frame& frame, std::size_t number) {
+    emulation::Volume volume = frame.volumes[number];
+    const double distance = volume.offsets[1] - volume.offsets[0];
+    for (double& offset : volume.offsets) offset += distance / 4;
+    return emulation::meant(emulation::draw_alone(frame, volume, {}), 4);
+  }
 };
 
 TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
@@ -130,7 +108,7 @@ TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
   expect_within("the viewer alone", emulation::draw(frame, drivers, bytes, none), screenshot(png("bare.png")),
                 3, 1e-9);
 
-  const emulation::Picture shown = emulation::draw(frame, ours, none, bytes);
+  const emulation::Picture shown = emulation::draw(frame, ours, none, emulation::presented(bytes));
   std::vector<emulation::Picture> alone;
   for (const emulation::Volume& volume : frame.volumes)
     alone.push_back(emulation::draw_alone(frame, volume, ours));
@@ -149,9 +127,11 @@ TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
       double brightest = 1;
       for (const float value : saved.rgba)
         if (value < 1e30F) brightest = std::max<double>(brightest, value);
+      const double slack = ray_termination + 2 * slices * float_step * brightest;
       expect_within(fmt::format("{}, float frame {}", name, number), alone[number],
-                    {saved.rgba.begin(), saved.rgba.end()}, 4,
-                    ray_termination + 2 * slices * float_step * brightest);
+                    {saved.rgba.begin(), saved.rgba.end()}, 4, slack);
+      EXPECT_GT(emulation::judge(alone[number], moved(frame, number), 4, slack).outside, 100)
+          << "slices a quarter of their distance away would go unnoticed";
     }
   }
 }

@@ -136,6 +136,8 @@ Fragment fragment(const Volume& volume, const Source& value, const Precision& pr
   const double place = value[0].meant;
   for (int c = 0; c < 4; ++c)
     result.table_error[c] = std::abs(at(place - cell, c) + at(place + cell, c) - 2 * at(place, c)) / 2;
+  // Where it is the square that is tabled.
+  result.table_error[3] *= std::max(1.0, 2 * result.colour[3].high);
   return result;
 }
 
@@ -204,11 +206,15 @@ void blend(const Blending& blending, Fragment source, const Rounding& rounding, 
   }
 }
 
+/// Blends what came of a whole volume: `pixel` is that already, and becomes what may be stored.
 void store(const Rounding& rounding, const Blending& blending, Source& pixel) {
   for (int c = 0; c < 4; ++c) {
     const BlendFunction& function = c == 3 ? blending.alpha : blending.colour;
     double error = c == 3 ? rounding.alpha_source : rounding.source;
     if (function.equation == Equation::add) error += c == 3 ? rounding.alpha_result : rounding.result;
+    // The rounded alpha weights what was there, which is 1 at most.
+    if (c < 3 && function.equation == Equation::add && function.destination == Factor::one_minus_source_alpha)
+      error += rounding.alpha_source;
     if (pixel[c].high < no_sample) error += rounding.relative * std::abs(pixel[c].high);
     pixel[c] = within(error, pixel[c]);
     if (rounding.clamps) pixel[c] = clamped(pixel[c]);
@@ -411,57 +417,92 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return c;
 }
 
+namespace {
+
+bool is_front_to_back(const Blending& blending) {
+  return blending.colour.source == Factor::one_minus_destination_alpha ||
+         blending.colour.source == Factor::destination_alpha;
+}
+
+bool rounds(const Rounding& rounding) {
+  return rounding.source > 0 || rounding.result > 0 || rounding.relative > 0;
+}
+
+/// What one volume's slices make of nothing.
+Source alone(const PixelRay& ray, const Surface* surface, const Blending& own, const Precision& precision) {
+  const bool weighted = own.colour.source == Factor::source_alpha;
+  Blending blending{own.colour, own.colour};
+  if (weighted) blending.alpha.source = Factor::one;
+  const Rounding none{.clamps = false};
+  Source pixel{};
+  if (own.colour.equation == Equation::min) pixel.fill(exactly(no_sample));
+  struct Met {
+    Fragment fragment;
+    bool sure, meant;
+  };
+  std::vector<Met> met;
+  ray.meet(precision, surface, weighted, [&](const Fragment& fragment, bool sure, bool meant) {
+    met.push_back({fragment, sure, meant});
+  });
+  if (is_front_to_back(own)) {
+    // The same from the back, where every operation is of one sample's alpha alone: the bounds stay narrow.
+    blending.colour = blending.alpha = {Equation::add, Factor::one, Factor::one_minus_source_alpha};
+    std::reverse(met.begin(), met.end());
+  }
+  for (const Met& m : met) lay_on(blending, m.fragment, m.sure, m.meant, none, pixel);
+  return pixel;
+}
+
+}  // namespace
+
 Picture draw(const Frame& frame, const Precision& precision, const Rounding& each_slice,
              const Rounding& each_volume) {
   std::vector<const Volume*> volumes;
   for (const Volume& volume : frame.volumes) volumes.push_back(&volume);
   const bool weighted = frame.blending.colour.source == Factor::source_alpha;
-  return for_each_pixel(
-      frame, volumes, precision, [&](const std::vector<PixelRay>& rays, const Surface* surface) {
-        Source pixel{};
-        const Fragment behind = solid_colour(frame, surface);
-        if (!frame.background_last) pixel = behind.colour;
-        if (each_slice.source > 0 || each_volume.source > 0)  // it was stored before anything was drawn onto it
-          for (Bounded& channel : pixel)
-            channel = clamped(within(std::max(each_slice.source, each_volume.source), channel));
-        for (const PixelRay& ray : rays) {
-          bool drawn = false;
-          ray.meet(precision, surface, weighted, [&](const Fragment& fragment, bool sure, bool meant) {
-            lay_on(frame.blending, fragment, sure, meant, each_slice, pixel);
-            drawn = true;
-          });
-          if (drawn) store(each_volume, frame.blending, pixel);
-        }
-        if (frame.background_last) {
-          blend(frame.blending, behind, each_slice, pixel);
-          store(each_volume, frame.blending, pixel);
-        }
-        return pixel;
-      });
+  const bool in_one = is_front_to_back(frame.blending) && !rounds(each_slice);
+  const auto pixel_before = [&](const std::vector<PixelRay>& rays, const Surface* surface) {
+    Source pixel{};
+    const Fragment behind = solid_colour(frame, surface);
+    if (!frame.background_last) {
+      pixel = behind.colour;
+      // It was stored before anything was drawn onto it.
+      const double absolute = std::max(each_slice.source, each_volume.source);
+      const double relative = std::max(each_slice.relative, each_volume.relative);
+      for (Bounded& channel : pixel) channel = clamped(within(absolute + relative * channel.meant, channel));
+    }
+    for (const PixelRay& ray : rays) {
+      if (in_one) {
+        // No slice is brighter than 1, but all of them together may be.
+        blend(frame.blending, {alone(ray, surface, frame.blending, precision), {}}, {.clamps = false}, pixel);
+      } else {
+        ray.meet(precision, surface, weighted, [&](const Fragment& fragment, bool sure, bool meant) {
+          lay_on(frame.blending, fragment, sure, meant, each_slice, pixel);
+        });
+      }
+      store(each_volume, frame.blending, pixel);
+    }
+    if (frame.background_last) {
+      blend(frame.blending, behind, each_slice, pixel);
+      store(each_volume, frame.blending, pixel);
+    }
+    return pixel;
+  };
+  return for_each_pixel(frame, volumes, precision, pixel_before);
 }
 
 Picture draw_alone(const Frame& frame, const Volume& volume, const Precision& precision) {
-  const Blending& own = frame.blending;
-  const bool weighted = own.colour.source == Factor::source_alpha;
-  const bool under = own.colour.source == Factor::one_minus_destination_alpha ||
-                     own.colour.source == Factor::destination_alpha;
-  Blending blending = own;
-  blending.alpha = own.colour;
-  if (own.colour.equation == Equation::add && under) {
-    blending.colour = blending.alpha = {Equation::add, Factor::one_minus_destination_alpha, Factor::one};
-  } else if (own.colour.equation == Equation::add) {
-    blending.alpha.source = Factor::one;
-  }
-  const Rounding none{.clamps = false};
-  return for_each_pixel(
-      frame, {&volume}, precision, [&](const std::vector<PixelRay>& rays, const Surface* surface) {
-        Source pixel{};
-        if (own.colour.equation == Equation::min) pixel.fill(exactly(no_sample));
-        rays[0].meet(precision, surface, weighted, [&](const Fragment& fragment, bool sure, bool meant) {
-          lay_on(blending, fragment, sure, meant, none, pixel);
-        });
-        return pixel;
-      });
+  return for_each_pixel(frame, {&volume}, precision,
+                        [&](const std::vector<PixelRay>& rays, const Surface* surface) {
+                          return alone(rays[0], surface, frame.blending, precision);
+                        });
+}
+
+std::vector<double> meant(const Picture& picture, int channels) {
+  std::vector<double> values;
+  for (const auto& pixel : picture.pixels)
+    for (int c = 0; c < channels; ++c) values.push_back(pixel[c].meant);
+  return values;
 }
 
 Verdict judge(const Picture& picture, const std::vector<double>& drawn, int channels, double slack) {

@@ -122,6 +122,9 @@ Picture draw(const Frame& frame, const Precision& precision, const Rounding& eac
 constexpr double no_sample = 3.4028234663852886e38;
 Picture draw_alone(const Frame& frame, const Volume& volume, const Precision& precision);
 
+/// So many channels of each pixel, in exact arithmetic.
+std::vector<double> meant(const Picture& picture, int channels);
+
 /// How a picture lies to its bounds; channels in the order of Picture, so many of each pixel as `channels`.
 struct Verdict {
   double rms = 0;     ///< to what is meant

@@ -1,5 +1,6 @@
 #include "tests/emulation/viewer_frame.h"
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -47,6 +48,27 @@ Matrix matrix_of(const Json& scale_and_translate) {
   return {scale[0], 0, 0, 0, 0, scale[1], 0, 0, 0, 0, scale[2], 0, translate[0], translate[1], translate[2], 1};
 }
 
+/// Mode `time` shows another step of the volume in every frame: a share of each voxel's value, in whole 256ths,
+/// that swings once in twelve frames.
+void step_in_time(int frame, std::vector<double>& values) {
+  const int share = static_cast<int>(std::lround(256 * (0.8 + 0.2 * std::cos(2 * M_PI * (frame % 12) / 12))));
+  for (double& value : values) value = static_cast<int>(std::lround(255 * value)) * share / 256 / 255.0;
+}
+
+/// Mode `stacks` has a slice in each layer of voxels, across the axis that is nearest to the direction of view.
+void lay_across_axis(const Vec3& direction, bool front_to_back, Volume& volume) {
+  int axis = 0;
+  for (const int other : {1, 2})
+    if (std::abs(direction[other]) > std::abs(direction[axis])) axis = other;
+  volume.normal = {};
+  volume.normal[axis] = 1;
+  volume.offsets.clear();
+  const int layers = volume.field.size[axis];
+  const bool highest_first = (direction[axis] > 0) != front_to_back;
+  for (int i = 0; i < layers; ++i)
+    volume.offsets.push_back(((highest_first ? layers - 1 - i : i) + 0.5) / layers);
+}
+
 std::vector<Triangle> triangles_of(const Json& solid, const Matrix& clip_from_object) {
   std::vector<Triangle> triangles;
   const auto places = solid.at("positions").get<std::vector<Vec3>>();
@@ -83,7 +105,8 @@ Frame viewer_frame(const Json& description) {
       product(matrices.at("projection").get<Matrix>(), matrices.at("modelview").get<Matrix>());
   const std::string mode = description.at("mode");
   const bool per_voxel = mode == "rgba" || mode == "stacks";
-  const std::vector<double> values = read_values(description.at("volume"));
+  std::vector<double> values = read_values(description.at("volume"));
+  if (mode == "time") step_in_time(description.at("frame"), values);
   for (const Json& placed : description.at("volumes")) {
     Volume volume;
     volume.field.size = description.at("texture").at("size").get<std::array<int, 3>>();
@@ -102,6 +125,8 @@ Frame viewer_frame(const Json& description) {
     volume.clip_from_texture = product(clip_from_object, matrix_of(placed.at("object_from_texture")));
     volume.normal = slices.at("normal_texture").get<Vec3>();
     volume.offsets = slices.at("offsets").get<std::vector<double>>();
+    if (mode == "stacks")
+      lay_across_axis(slices.at("normal_object").get<Vec3>(), frame.background_last, volume);
     frame.volumes.push_back(std::move(volume));
   }
   frame.solid = triangles_of(description.at("solid"), clip_from_object);
@@ -109,10 +134,9 @@ Frame viewer_frame(const Json& description) {
 }
 
 std::vector<double> emulate(const Json& description) {
-  std::vector<double> picture;
   const Rounding none{.clamps = false};
-  for (const auto& pixel : draw(viewer_frame(description), {}, none, none).pixels)
-    for (std::size_t channel = 0; channel < 3; ++channel) picture.push_back(255 * pixel[channel].meant);
+  std::vector<double> picture = meant(draw(viewer_frame(description), {}, none, none), 3);
+  for (double& channel : picture) channel *= 255;
   return picture;
 }
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Records the bundled viewer into traces/ and the pictures of a native replay into expected/.
 
-    record_traces.py BUILD/bin [NAME...]     NAME: rgba, table, core; without names all of them
+    record_traces.py BUILD/bin [NAME...]     without names all of them (WAYS below)
 
-The volume is made here. version_1.ust is not touched: see README.md.
+The volumes are made here. Of those that traces_test.cc judges by a drawing in double precision, the volume is kept:
+traces/judged.14x14x14. version_1.ust is not touched: see README.md.
 """
 import math
 import os
@@ -14,30 +15,55 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-SIDE = 20
+
+FIRST_WAYS = {name: ["--mode", name, "--window-size", "160", "128", "--frames", "3"] for name in ("rgba", "table", "core")}
+# As traces_test.cc knows them.
+JUDGED_WAYS = {
+    "under": ["--mode", "table", "--operator", "under"],
+    "max": ["--mode", "core", "--operator", "max"],
+    "min": ["--mode", "rgba", "--operator", "min"],
+    "add": ["--mode", "table", "--operator", "add"],
+    "opaque": ["--mode", "core", "--opaque"],
+    "second": ["--mode", "rgba", "--second"],
+    "stacks": ["--mode", "stacks"],
+    "time": ["--mode", "time"],
+}
+JUDGED = ["--preset", "engine", "--no-frame", "--background", "0.2", "0.4", "0.6", "--window-size", "96", "80",
+          "--slices", "20", "--frames", "2"]
 
 
-def texel(i, j, k):
+def texel(i, j, k, side, least):
     """A shell with a bump: smooth, and different from all sides."""
-    x, y, z = ((c + 0.5) / SIDE - 0.5 for c in (i, j, k))
+    x, y, z = ((c + 0.5) / side - 0.5 for c in (i, j, k))
     radius = math.sqrt(x * x + 1.3 * y * y + z * z)
-    return int(255 * math.exp(-60 * (radius - 0.3) ** 2) * (0.6 + 0.4 * math.sin(9 * x + 4 * z)))
+    shell = math.exp(-60 * (radius - 0.3) ** 2) * (0.6 + 0.4 * math.sin(9 * x + 4 * z))
+    return int(least + (255 - least) * shell)
+
+
+def volume(side, least=0):
+    axis = range(side)
+    return bytes(texel(i, j, k, side, least) for k in axis for j in axis for i in axis)
 
 
 def main():
     programs = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as folder:
-        volume = pathlib.Path(folder) / f"shell.{SIDE}x{SIDE}x{SIDE}"
-        volume.write_bytes(bytes(texel(i, j, k) for k in range(SIDE) for j in range(SIDE) for i in range(SIDE)))
-        for name in sys.argv[2:] or ("rgba", "table", "core"):
+        shell = pathlib.Path(folder) / "shell.20x20x20"
+        shell.write_bytes(volume(20))
+        judged = HERE / "traces" / "judged.14x14x14"
+        if not judged.exists():
+            judged.write_bytes(volume(14, least=30))
+        ways = {name: [shell, *options] for name, options in FIRST_WAYS.items()}
+        ways.update({name: [judged, *options, *JUDGED] for name, options in JUDGED_WAYS.items()})
+        for name in sys.argv[2:] or ways:
             trace = HERE / "traces" / f"{name}.ust"
             subprocess.run([programs / "understudy", "run", "--chain", "driver", "--trace", trace, "--",
-                            programs / "understudy-viewer", volume, "--mode", name, "--offscreen",
-                            "--window-size", "160", "128", "--frames", "3", "--orbit", "25"], check=True)
+                            programs / "understudy-viewer", *ways[name], "--offscreen", "--orbit", "25"], check=True)
             frames = pathlib.Path(folder) / name
             subprocess.run([programs / "understudy", "replay", "--native", "--save-frames", frames, trace], check=True)
-            for number in range(1, 4):
-                shutil.copyfile(frames / f"frame_{number:04}.png", HERE / "expected" / f"{name}_{number}.png")
+            for picture in sorted(frames.glob("frame_*.png")):
+                number = int(picture.stem.removeprefix("frame_"))
+                shutil.copyfile(picture, HERE / "expected" / f"{name}_{number}.png")
 
 
 if __name__ == "__main__":

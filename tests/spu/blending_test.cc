@@ -1,37 +1,79 @@
-// Slices under every blending that the nodes know, into framebuffers of several formats, against the driver's
-// own drawing of the same slices.
+// Slices under every blending that the nodes know, into framebuffers of several formats, against the same
+// slices in double precision; every channel has its own bound (`tests/emulation/precision.h`).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "colour_target.h"
+#include "emulated_scenes.h"
 #include "slice_scenes.h"
 
 namespace understudy::spu::testing {
 namespace {
 
+/// How slices blend, for the driver and for the judge.
+struct Blend : SliceBlending {
+  emulation::Blending meant;
+};
+
 struct Case {
   const char* name;
-  SliceBlending blending;
+  Blend blending;
   std::array<float, 4> background{0.1F, 0.2F, 0.3F, 0.0F};
 };
 
-SliceBlending factors(GLenum colour_source, GLenum colour_destination, GLenum alpha_source,
-                      GLenum alpha_destination, bool front_to_back = false) {
-  return {[=](const DispatchTable& gl) {
-            gl.BlendFuncSeparate(colour_source, colour_destination, alpha_source, alpha_destination);
-          },
-          front_to_back};
+emulation::Factor factor(GLenum name) {
+  switch (name) {
+    case GL_ONE:
+      return emulation::Factor::one;
+    case GL_SRC_ALPHA:
+      return emulation::Factor::source_alpha;
+    case GL_ONE_MINUS_SRC_ALPHA:
+      return emulation::Factor::one_minus_source_alpha;
+    case GL_DST_ALPHA:
+      return emulation::Factor::destination_alpha;
+    case GL_ONE_MINUS_DST_ALPHA:
+      return emulation::Factor::one_minus_destination_alpha;
+    default:
+      return emulation::Factor::zero;
+  }
 }
 
-SliceBlending equations(GLenum colour, GLenum alpha) {
-  return {[=](const DispatchTable& gl) {
-    gl.BlendEquationSeparate(colour, alpha);
-    gl.BlendFunc(GL_ONE, GL_ONE);
-  }};
+emulation::Equation equation(GLenum name) {
+  return name == GL_MAX   ? emulation::Equation::max
+         : name == GL_MIN ? emulation::Equation::min
+                          : emulation::Equation::add;
+}
+
+struct Function {
+  GLenum equation = GL_FUNC_ADD;
+  GLenum source = GL_ONE;
+  GLenum destination = GL_ONE;
+
+  emulation::BlendFunction meant() const {
+    return {testing::equation(equation), factor(source), factor(destination)};
+  }
+};
+
+Blend separate(const Function& colour, const Function& alpha, bool front_to_back = false) {
+  return {{[=](const DispatchTable& gl) {
+             gl.BlendEquationSeparate(colour.equation, alpha.equation);
+             gl.BlendFuncSeparate(colour.source, colour.destination, alpha.source, alpha.destination);
+           },
+           front_to_back},
+          {colour.meant(), alpha.meant()}};
+}
+
+Blend factors(GLenum colour_source, GLenum colour_destination, GLenum alpha_source, GLenum alpha_destination,
+              bool front_to_back = false) {
+  return separate({GL_FUNC_ADD, colour_source, colour_destination},
+                  {GL_FUNC_ADD, alpha_source, alpha_destination}, front_to_back);
+}
+
+Blend equations(GLenum colour, GLenum alpha) {
+  return separate({colour}, {alpha});
 }
 
 std::vector<Case> cases() {
@@ -46,10 +88,8 @@ std::vector<Case> cases() {
       {"over, alpha kept", factors(GL_SRC_ALPHA, out, GL_ZERO, GL_ONE), bright},
       {"over, alpha summed", factors(GL_SRC_ALPHA, out, GL_ONE, GL_ONE)},
       {"over, squares of alpha summed", factors(GL_SRC_ALPHA, out, GL_SRC_ALPHA, GL_ONE)},
-      {"over, greatest alpha", {[](const DispatchTable& gl) {
-         gl.BlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
-         gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-       }}},
+      {"over, greatest alpha", separate({GL_FUNC_ADD, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA},
+                                        {GL_MAX, GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA})},
       {"under", factors(room, GL_ONE, room, GL_ONE, true), {0.1F, 0.2F, 0.3F, 0.4F}},
       {"under, alpha as coverage", factors(room, GL_ONE, GL_ONE, out, true)},
       {"under, alpha as transparency",
@@ -69,19 +109,27 @@ std::vector<Case> cases() {
 struct Format {
   const char* name;
   GLenum internal_format;
-  double likeness;  ///< dB that the driver's own arithmetic in this format allows
+  emulation::Rounding rounding;
+  int alpha_bits;
 };
 
-/// PSNR of pictures whose peak is their largest value, without the fiftieth of the pixels that differ most:
-/// along their edges, the rasteriser counts samples to neighbouring pixels by its last bit.
-double likeness(const std::vector<float>& a, const std::vector<float>& b) {
-  const double peak = std::max(1.0F, *std::max_element(b.begin(), b.end()));
-  std::vector<double> squares(a.size() / 4, 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i) squares[i / 4] += std::pow((double(a[i]) - b[i]) / peak, 2);
-  std::sort(squares.begin(), squares.end());
-  squares.resize(squares.size() - squares.size() / 50);
-  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-  return sum > 0 ? -10 * std::log10(sum / double(4 * squares.size())) : std::numeric_limits<double>::infinity();
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all = {{"RGBA32F", GL_RGBA32F, emulation::floating(23), 32},
+                                          {"RGBA16F", GL_RGBA16F, emulation::floating(10), 16},
+                                          {"RGBA16", GL_RGBA16, emulation::normalised(16, 16), 16},
+                                          {"RGBA8", GL_RGBA8, emulation::normalised(8, 8), 8}};
+  return all;
+}
+
+/// What one picture of all slices may be off in a framebuffer of the format: it is blended once; alpha that
+/// stands apart is made by itself, and goes there in two steps.
+emulation::Rounding once(const Format& format) {
+  emulation::Rounding rounding = emulation::presented(format.rounding);
+  rounding.alpha_result *= 2;
+  if (format.alpha_bits <= 8) rounding.alpha_result += emulation::alpha_termination;
+  // The picture itself: two roundings for each of the slices.
+  rounding.relative += 2 * 40 * emulation::float_step;
+  return rounding;
 }
 
 class EveryBlending : public ::testing::TestWithParam<Case> {
@@ -95,12 +143,21 @@ class EveryBlending : public ::testing::TestWithParam<Case> {
     app.end_frame();
     return target.read();
   }
+
+  static emulation::Frame meant(bool colours) {
+    const Case& way = GetParam();
+    const bool front_to_back = way.blending.front_to_back;
+    const auto& [r, g, b, a] = way.background;
+    return frame_of({colours ? colour_cube(blob_colours(), 25, front_to_back)
+                             : table_cube(blob_values(), 25, front_to_back)},
+                    {r, g, b, a}, way.blending.meant);
+  }
 };
 
-TEST_P(EveryBlending, GivesTheDriversPictureInEveryColourFormat) {
+TEST_P(EveryBlending, LiesWithinItsArithmeticsBoundsInEveryColourFormat) {
   for (const bool colours : {false, true}) {
-    for (const Format& format : {Format{"RGBA32F", GL_RGBA32F, 45}, Format{"RGBA16F", GL_RGBA16F, 45},
-                                 Format{"RGBA16", GL_RGBA16, 50}, Format{"RGBA8", GL_RGBA8, 44}}) {
+    const emulation::Frame exact = meant(colours);
+    for (const Format& format : formats()) {
       auto app = GlApplication::start(Profile::compatibility);
       if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
       const SliceScene scene =
@@ -108,17 +165,23 @@ TEST_P(EveryBlending, GivesTheDriversPictureInEveryColourFormat) {
       scene.set_up(*app);
       const ColourTarget target(*app, format.internal_format);
       ASSERT_TRUE(target.complete()) << format.name;
+      const std::string what =
+          fmt::format("{}, {}, {}", GetParam().name, colours ? "colours" : "table", format.name);
       const auto bare = frame(*app, target, scene, false);
-      app->use_chain(false);
-      target.clear(GetParam().background);
-      const auto empty = target.read();
+      expect_within(
+          (what + ", driver").c_str(),
+          emulation::draw(exact, emulation::drivers, format.rounding, {.clamps = format.rounding.clamps}),
+          bare);
       const auto under = frame(*app, target, scene, true);
       EXPECT_EQ(app->substituted(), 1U) << format.name << ": " << app->last_reason();
-      EXPECT_LT(likeness(empty, bare), 30) << "there is nothing to be seen";
-      const double alike = likeness(under, bare);
-      std::printf("%s, %s, %s: %.1f dB\n", GetParam().name, colours ? "colours" : "table", format.name, alike);
-      EXPECT_GE(alike, format.likeness) << format.name;
+      const emulation::Picture shown =
+          emulation::draw(exact, emulation::ours, {.clamps = format.rounding.clamps}, once(format));
+      expect_within(what.c_str(), shown, under);
       EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+      // The judge is not blind.
+      app->use_chain(false);
+      target.clear(GetParam().background);
+      EXPECT_GT(channels_outside(shown, target.read()), 500) << "there is nothing to be seen";
     }
   }
 }
@@ -181,52 +244,71 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 struct Destination {
-  const char* name;
-  GLenum internal_format;
-  int samples;
-  bool srgb;  ///< GL_FRAMEBUFFER_SRGB
-  double likeness;
+  Format format;
+  int channels;
+  int samples = 0;
+  bool srgb = false;  ///< GL_FRAMEBUFFER_SRGB
 };
 
 class Destinations : public ::testing::TestWithParam<Destination> {};
 
-TEST_P(Destinations, ShowTheDriversPicture) {
+/// The intensity of a colour that is stored as sRGB (IEC 61966-2-1).
+float intensity(float stored) {
+  return stored <= 0.04045F ? stored / 12.92F : std::pow((stored + 0.055F) / 1.055F, 2.4F);
+}
+
+TEST_P(Destinations, ShowThePictureWithinTheirBounds) {
+  const Destination& destination = GetParam();
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = client_arrays_table();
   scene.set_up(*app);
-  const ColourTarget target(*app, GetParam().internal_format, GetParam().samples);
+  const ColourTarget target(*app, destination.format.internal_format, destination.samples);
   if (!target.complete()) GTEST_SKIP() << "the driver does not draw into this format";
+  const bool intensities = destination.srgb && destination.format.internal_format == GL_SRGB8_ALPHA8;
   const auto frame = [&](bool under, bool volume) {
     app->use_chain(under);
     app->gl().Disable(GL_MULTISAMPLE);
-    if (GetParam().srgb) app->gl().Enable(GL_FRAMEBUFFER_SRGB);
+    if (destination.srgb) app->gl().Enable(GL_FRAMEBUFFER_SRGB);
     target.clear({0.1F, 0.2F, 0.3F, 0.4F});
     if (volume) scene.slices_and_tidy_up(*app, 25);
     app->end_frame();
-    return target.read();
+    std::vector<float> pixels = target.read();
+    for (std::size_t i = 0; intensities && i < pixels.size(); ++i)
+      if (i % 4 != 3) pixels[i] = intensity(pixels[i]);
+    return pixels;
   };
   const auto under = frame(true, true);
   EXPECT_EQ(app->substituted(), 1U) << app->last_reason();
-  const auto bare = frame(false, true);
-  std::printf("%s: %.1f dB\n", GetParam().name, likeness(under, bare));
-  EXPECT_GE(likeness(under, bare), GetParam().likeness);
-  EXPECT_LT(likeness(frame(false, false), bare), 30) << "there is nothing to be seen";
+  const emulation::Picture shown =
+      emulation::draw(frame_of({table_cube(blob_values(), 25)}, {0.1F, 0.2F, 0.3F, 0.4F}), emulation::ours,
+                      {.clamps = destination.format.rounding.clamps}, once(destination.format));
+  expect_within(destination.format.name, shown, under, destination.channels);
+  EXPECT_GT(channels_outside(shown, frame(false, false), destination.channels), 500)
+      << "there is nothing to be seen";
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Blending, Destinations,
-    ::testing::Values(Destination{"RGBA8", GL_RGBA8, 0, false, 40}, Destination{"RGB8", GL_RGB8, 0, false, 40},
-                      // Two bits of alpha: the driver's own slices are mostly rounded away.
-                      Destination{"RGB10_A2", GL_RGB10_A2, 0, false, 25},
-                      Destination{"R11F_G11F_B10F", GL_R11F_G11F_B10F, 0, false, 26},
-                      Destination{"R8", GL_R8, 0, false, 40}, Destination{"RG16F", GL_RG16F, 0, false, 45},
-                      Destination{"SrgbConverted", GL_SRGB8_ALPHA8, 0, true, 36},
-                      Destination{"SrgbAsItIs", GL_SRGB8_ALPHA8, 0, false, 40},
-                      Destination{"LinearUnderSrgb", GL_RGBA8, 0, true, 40},
-                      Destination{"SamplesAllAlike", GL_RGBA8, 4, false, 40}),
-    [](const auto& info) { return info.param.name; });
+std::vector<Destination> destinations() {
+  const emulation::Rounding bytes = emulation::normalised(8, 8);
+  // The slope of intensity() is greatest at 1: 2.4 / 1.055.
+  emulation::Rounding intensities = bytes;
+  for (double* error : {&intensities.source, &intensities.result}) *error *= 2.4 / 1.055;
+  return {{{"RGBA8", GL_RGBA8, bytes, 8}, 4},
+          {{"RGB8", GL_RGB8, bytes, 0}, 3},
+          {{"RGB10_A2", GL_RGB10_A2, emulation::normalised(10, 2), 2}, 4},
+          // Blue has the fewest bits of mantissa: five.
+          {{"R11F_G11F_B10F", GL_R11F_G11F_B10F, emulation::floating(5), 0}, 3},
+          {{"R8", GL_R8, bytes, 0}, 1},
+          {{"RG16F", GL_RG16F, emulation::floating(10), 0}, 2},
+          {{"SrgbConverted", GL_SRGB8_ALPHA8, intensities, 8}, 4, 0, true},
+          {{"SrgbAsItIs", GL_SRGB8_ALPHA8, bytes, 8}, 4},
+          {{"LinearUnderSrgb", GL_RGBA8, bytes, 8}, 4, 0, true},
+          {{"SamplesAllAlike", GL_RGBA8, bytes, 8}, 4, 4}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Blending, Destinations, ::testing::ValuesIn(destinations()),
+                         [](const auto& info) { return std::string(info.param.format.name); });
 
 INSTANTIATE_TEST_SUITE_P(Blending, EveryBlending, ::testing::ValuesIn(cases()), [](const auto& info) {
   std::string name = info.param.name;

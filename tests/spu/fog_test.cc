@@ -111,13 +111,11 @@ TEST(MeasureFog, EndsWhereColoursAreClampedAndNoneIsNeeded) {
 }
 
 std::string explanation() {
-  const ProcessCounters& counters = process_counters();
-  return counters.volume[std::min<std::uint32_t>(counters.volumes, max_counted_volumes) - 1].explanation;
+  return GlApplication::last_volume().explanation;
 }
 
 std::uint64_t probes() {
-  const ProcessCounters& counters = process_counters();
-  return counters.volume[std::min<std::uint32_t>(counters.volumes, max_counted_volumes) - 1].probes;
+  return GlApplication::last_volume().probes;
 }
 
 TEST(Fog, IsProbedOnceWhileTheViewTurns) {

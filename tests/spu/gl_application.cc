@@ -3,6 +3,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -40,8 +41,7 @@ const DispatchTable& real_driver() {
 
 /// All volumes of this process so far; each application of the tests adds its own.
 std::span<VolumeCounters> volumes() {
-  ProcessCounters& counters = process_counters();
-  return std::span(counters.volume).first(std::min<std::uint32_t>(counters.volumes, max_counted_volumes));
+  return process_counters().volume;
 }
 
 }  // namespace
@@ -185,11 +185,16 @@ std::uint64_t GlApplication::texel_bytes_left_out() const {
 
 std::string GlApplication::last_reason() const {
   std::string reason;
-  if (volumes().empty()) return reason;
-  for (const ReasonCount& slot : volumes().back().left_because) {
+  for (const ReasonCount& slot : last_volume().left_because) {
     if (slot.reason[0] != 0) reason = slot.reason;
   }
   return reason;
+}
+
+const VolumeCounters& GlApplication::last_volume() {
+  return *std::max_element(
+      volumes().begin(), volumes().end(),
+      [](const VolumeCounters& a, const VolumeCounters& b) { return a.number < b.number; });
 }
 
 std::vector<std::uint8_t> Blob::texels() const {

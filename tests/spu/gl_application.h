@@ -8,6 +8,7 @@
 
 #include "spu/chain.h"
 #include "spu/options.h"
+#include "spu/report/counters.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu::testing {
@@ -48,6 +49,8 @@ class GlApplication {
   /// Bytes of texels since this application started, and what was left out of them.
   std::uint64_t texel_bytes_sent() const;
   std::uint64_t texel_bytes_left_out() const;
+  /// The figures of the last volume that this process has seen.
+  static const VolumeCounters& last_volume();
 
  private:
   GlApplication() = default;

@@ -23,6 +23,8 @@ constexpr double same_plane = 2e-6;
 constexpr double even_spacing = 0.02;
 /// A coordinate this close to the texture's edge is the edge.
 constexpr double snap = 1e-4;
+/// Slices whose normal has so large a component along an axis lie across it.
+constexpr double across_axis = 0.999;
 /// Observed and expected area may differ by this part.
 constexpr double same_area = 5e-3;
 
@@ -193,6 +195,12 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
     expected_area += length(area_vector(polygon));
   }
   if (std::abs(expected_area - observed_area) > same_area * expected_area) return "slices do not fill a box";
+  // Slices across an axis begin and end on the box's own faces: rounding must not lose the outermost two.
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(normal[k]) < across_axis) continue;
+    set.region.low[k] -= same_plane / 2;
+    set.region.high[k] += same_plane / 2;
+  }
   return set;
 }
 

@@ -1,0 +1,59 @@
+// What a process remembers of its volumes, when there are more of them than places.
+#include "spu/report/counters.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace understudy::spu {
+namespace {
+
+std::uint64_t runs_left() {
+  std::uint64_t sum = 0;
+  for (const VolumeCounters& volume : process_counters().volume) sum += volume.draws_left;
+  return sum;
+}
+
+std::uint64_t reasons_counted() {
+  std::uint64_t sum = 0;
+  for (const VolumeCounters& volume : process_counters().volume)
+    for (const ReasonCount& reason : volume.left_because) sum += reason.count;
+  return sum;
+}
+
+VolumeCounters& new_volume_that_is_left(int texture) {
+  VolumeCounters& volume = count_volume(std::uint64_t(texture));
+  volume.draws_left.fetch_add(1);
+  count_reason(volume, "reason of " + std::to_string(texture));
+  return volume;
+}
+
+TEST(VolumesPlaces, GoToNewVolumesWhenTheOldOnesAreGone) {
+  const std::uint64_t before = runs_left();
+  for (int texture = 1; texture <= 100; ++texture) {
+    VolumeCounters& volume = new_volume_that_is_left(texture);
+    EXPECT_NE(&volume, &process_counters().volume[max_counted_volumes - 1]);
+    EXPECT_EQ(volume.texture, std::uint64_t(texture));
+    EXPECT_EQ(volume.draws_left, 1U);
+    EXPECT_EQ(volume.left_because[0].reason, "reason of " + std::to_string(texture));
+    leave_behind(volume);
+  }
+  EXPECT_EQ(runs_left(), before + 100) << "the figures of volumes that are gone still count";
+  EXPECT_EQ(reasons_counted(), runs_left());
+}
+
+TEST(VolumesPlaces, OfMoreVolumesThanThereArePlacesAreShared) {
+  std::vector<VolumeCounters*> living;
+  for (int texture = 1; texture <= 2 * max_counted_volumes; ++texture)
+    living.push_back(&new_volume_that_is_left(texture));
+  const VolumeCounters& last = process_counters().volume[max_counted_volumes - 1];
+  EXPECT_EQ(living.back(), &last);
+  EXPECT_EQ(std::string(last.left_because[max_counted_reasons - 1].reason), "other reasons");
+  EXPECT_EQ(reasons_counted(), runs_left());
+  for (VolumeCounters* volume : living) leave_behind(*volume);
+  EXPECT_NE(&count_volume(1), &last) << "there are places again";
+}
+
+}  // namespace
+}  // namespace understudy::spu

@@ -2,7 +2,9 @@
 // drawing.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <utility>
 
 #include "colour_target.h"
 #include "slice_scenes.h"
@@ -104,6 +106,87 @@ TEST(Slabs, OfAnotherTableAreProbedAgain) {
   const auto bare = frame(*app, target, scene, 15, false);
   EXPECT_LT(psnr(before, bare), 30) << "the new table changes nothing: the test tests nothing";
   EXPECT_GE(psnr(under, bare), 45);
+}
+
+/// Draws once under Understudy and once without it: nothing may be substituted, and no bit differ.
+void expect_left(GlApplication& app, const SliceScene& scene, const std::string& reason) {
+  const ColourTarget target(app, GL_RGBA32F);
+  const auto under = frame(app, target, scene, 15, true);
+  EXPECT_EQ(app.substituted(), 0U);
+  EXPECT_EQ(app.last_reason(), reason);
+  EXPECT_EQ(under, frame(app, target, scene, 15, false));
+  EXPECT_GT(*std::max_element(under.begin(), under.end()), 0.2F) << "there is something to see";
+  EXPECT_EQ(app.error(), GLenum(GL_NO_ERROR));
+}
+
+TEST(Slabs, ThatReachIntoARepetitionAreLeft) {
+  const SliceScene scene = pre_integrated_slabs(false);
+  auto app = GlApplication::start(scene.profile);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  scene.set_up(*app);
+  app->gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_REPEAT);
+  expect_left(*app, scene, "slabs reach beyond a repeating texture along axis 2");
+}
+
+TEST(Slabs, WhoseColourDependsOnTheirPlaceAreLeft) {
+  const SliceScene scene = pre_integrated_slabs(false);
+  auto app = GlApplication::start(scene.profile);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  scene.set_up(*app);
+  const char* source =
+      "#version 120\n"
+      "uniform sampler3D field; uniform sampler2D table; varying vec3 front; varying vec3 back;\n"
+      "void main() {\n"
+      "  vec2 ends = vec2(texture3D(field, front).r, texture3D(field, back).r);\n"
+      "  gl_FragColor = texture2D(table, (ends * 255.0 + 0.5) / 256.0) * (0.5 + 0.5 * back.y);\n"
+      "}\n";
+  std::array<GLuint, 2> shaders{};
+  GLsizei count = 0;
+  app->gl().GetAttachedShaders(1, 2, &count, shaders.data());
+  ASSERT_EQ(count, 2);
+  for (const GLuint shader : shaders) {
+    GLint type = 0;
+    app->gl().GetShaderiv(shader, GL_SHADER_TYPE, &type);
+    if (type != GL_FRAGMENT_SHADER) continue;
+    app->gl().ShaderSource(shader, 1, &source, nullptr);
+    app->gl().CompileShader(shader);
+  }
+  app->gl().LinkProgram(1);
+  app->gl().UseProgram(1);
+  app->gl().Uniform1i(app->gl().GetUniformLocation(1, "table"), 1);
+  app->gl().UseProgram(0);
+  expect_left(*app, scene, "the colour depends on more than the sample (position, lighting)");
+}
+
+/// Many pictures of one size, blended side by side by a program.
+TEST(StacksUnderGlsl, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  SliceScene scene = texture_stack_program(Profile::compatibility, GL_R8);
+  scene.set_up(*app);
+  GLint last = 0;
+  app->driver().GetIntegerv(GL_TEXTURE_BINDING_2D, &last);
+  scene.slices = [last](GlApplication& desktop, double) {
+    desktop.gl().Enable(GL_BLEND);
+    desktop.gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    desktop.gl().UseProgram(1);
+    for (int i = 0; i < 12; ++i) {
+      desktop.gl().BindTexture(GL_TEXTURE_2D, GLuint(last - i));
+      desktop.gl().Begin(GL_QUADS);
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
+        desktop.gl().TexCoord2d(x, y);
+        desktop.gl().Vertex2d(-0.9 + 0.4 * (i % 4 + x), -0.9 + 0.5 * (i / 4 + y));
+      }
+      desktop.gl().End();
+    }
+  };
+  const ColourTarget target(*app, GL_RGBA8);
+  const auto bare = frame(*app, target, scene, 0, false);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(frame(*app, target, scene, 0, true), bare) << "frame " << i;
+  EXPECT_GT(*std::max_element(bare.begin(), bare.end()), 0.1F) << "there is something to see";
+  EXPECT_EQ(app->substituted(), 0U);
+  EXPECT_EQ(app->left(), 0U);
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(Run, ReplaysInOrderWithElementDrawsBetween) {
   Records calls;
   spu::Run run(Pipeline{}, calls);
   append_call(run.calls(), &DispatchTable::CallList, 4);
-  run.draw_elements(GL_TRIANGLES, 6, GL_UNSIGNED_INT, nullptr);
+  run.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 6}}, GL_UNSIGNED_INT);
   append_call(run.calls(), &DispatchTable::CallList, 5);
   run.replay(listening_driver());
   EXPECT_EQ(heard, (std::vector<std::string>{"CallList 4", "DrawElements 6", "CallList 5"}));

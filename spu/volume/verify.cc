@@ -12,9 +12,11 @@
 namespace understudy::spu {
 namespace {
 
-/// Where a slice ends within a pixel's centre by the rasteriser's last bit, that sample may fall into the next
-/// pixel. It is lost in a sum, but may be all that a maximum or minimum shows there: of these, the worst pixels
-/// do not count, one in so many.
+/// The rasteriser puts a slice's vertices on its grid of 1/256 pixel before it decides which pixels' centres
+/// the slice covers: a sample close to an edge may fall into the next pixel. It is lost in a sum, but may be
+/// all that a maximum or minimum shows there: of these, the worst pixels do not count, one in so many. (Drawn
+/// in double precision, the slices have the nodes' extrema with edges where they are, and the driver's with
+/// edges moved by no more than that grid: tests/spu/blending_test.cc.)
 constexpr std::size_t strayed_part = 50;
 
 /// The application's blending with an alpha that goes the way of the colour, as the nodes' pictures have it.

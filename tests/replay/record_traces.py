@@ -25,7 +25,6 @@ JUDGED_WAYS = {
     "add": ["--mode", "table", "--operator", "add"],
     "opaque": ["--mode", "core", "--opaque"],
     "second": ["--mode", "rgba", "--second"],
-    "stacks": ["--mode", "stacks"],
     "time": ["--mode", "time"],
 }
 JUDGED = ["--preset", "engine", "--no-frame", "--background", "0.2", "0.4", "0.6", "--window-size", "96", "80",
@@ -55,6 +54,8 @@ def main():
             judged.write_bytes(volume(14, least=30))
         ways = {name: [shell, *options] for name, options in FIRST_WAYS.items()}
         ways.update({name: [judged, *options, *JUDGED] for name, options in JUDGED_WAYS.items()})
+        # Fewer than sixteen textures in a row are not looked at: its volume is the larger one.
+        ways["stacks"] = [shell, "--mode", "stacks", *JUDGED]
         for name in sys.argv[2:] or ways:
             trace = HERE / "traces" / f"{name}.ust"
             subprocess.run([programs / "understudy", "run", "--chain", "driver", "--trace", trace, "--",

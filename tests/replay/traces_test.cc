@@ -49,7 +49,7 @@ const std::vector<Trace>& traces() {
                                          {"add", 2, "--mode table --operator add"},
                                          {"opaque", 2, "--mode core --opaque"},
                                          {"second", 2, "--mode rgba --second"},
-                                         {"stacks", 2, "--mode stacks"},
+                                         {"stacks", 2, ""},
                                          {"time", 2, "--mode time"}};
   return all;
 }

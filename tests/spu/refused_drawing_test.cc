@@ -121,7 +121,7 @@ std::vector<Drawing> drawings() {
                                      "}\n"));
        },
        cube_in_front},
-      {"PreIntegratedSlabsWithTwoCoordinateSets", more_than_the_sample,
+      {"PreIntegratedSlabsThatFadeWithTheirPlace", more_than_the_sample,
        [](GlApplication& app) {
          load_field(app);
          app.gl().UseProgram(program(app,
@@ -130,7 +130,7 @@ std::vector<Drawing> drawings() {
                                      "varying vec3 front, back;\n"
                                      "void main() {\n"
                                      "  float a = texture3D(field, front).r, b = texture3D(field, back).r;\n"
-                                     "  gl_FragColor = vec4(a, b, 0.5 * (a + b), 0.1 * (a + b));\n"
+                                     "  gl_FragColor = vec4(a, b, 0.5 * (a + b), 0.1 * (a + b) * front.x);\n"
                                      "}\n",
                                      "#version 120\n"
                                      "varying vec3 front, back;\n"

@@ -4,20 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "spu/volume/float_framebuffer.h"
 
 namespace understudy::spu {
 namespace {
-
-/// The rasteriser puts a slice's vertices on its grid of 1/256 pixel before it decides which pixels' centres
-/// the slice covers: a sample close to an edge may fall into the next pixel. It is lost in a sum, but may be
-/// all that a maximum or minimum shows there: of these, the worst pixels do not count, one in so many. (Drawn
-/// in double precision, the slices have the nodes' extrema with edges where they are, and the driver's with
-/// edges moved by no more than that grid: tests/spu/blending_test.cc.)
-constexpr std::size_t strayed_part = 50;
 
 /// The application's blending with an alpha that goes the way of the colour, as the nodes' pictures have it.
 class ColourBlending {
@@ -87,8 +79,7 @@ std::optional<ApplicationPicture> application_picture(const GlContext& context, 
 Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,
                               const volume::ImageView& image) {
   const volume::Rect& rect = drawn.rect;
-  const volume::Operator op = pipeline.blending.op;
-  const bool minimum = op == volume::Operator::min;
+  const bool minimum = pipeline.blending.op == volume::Operator::min;
   const bool floating = pipeline.target.floating;
   const float largest =
       floating ? std::max(1.0F, *std::max_element(drawn.rgba.begin(), drawn.rgba.end())) : 1.0F;
@@ -97,9 +88,9 @@ Difference difference_between(const Pipeline& pipeline, const ApplicationPicture
     return floating ? double(seen) / largest : double(std::clamp(seen, 0.0F, 1.0F));
   };
   Difference difference;
-  std::vector<double> squares(rect.pixels(), 0.0);
+  double sum = 0;
   const volume::Rect& inside = image.rect;
-  for (std::size_t pixel = 0; pixel < squares.size(); ++pixel) {
+  for (std::size_t pixel = 0; pixel < rect.pixels(); ++pixel) {
     const int x = rect.x + int(pixel % std::size_t(rect.width)) - inside.x;
     const int y = rect.y + int(pixel / std::size_t(rect.width)) - inside.y;
     const bool known = x >= 0 && y >= 0 && x < inside.width && y < inside.height;
@@ -108,14 +99,10 @@ Difference difference_between(const Pipeline& pipeline, const ApplicationPicture
       const float ours = known ? image.rgba[at + c] : (minimum ? 1.0F : 0.0F);
       const double d = std::abs(shown(drawn.rgba[4 * pixel + c]) - shown(ours));
       difference.max = std::max(difference.max, d);
-      squares[pixel] += d * d;
+      sum += d * d;
     }
   }
-  const bool extremum = op == volume::Operator::max || op == volume::Operator::min;
-  const std::size_t counted = squares.size() - (extremum ? squares.size() / strayed_part : 0);
-  std::nth_element(squares.begin(), squares.begin() + std::ptrdiff_t(counted) - 1, squares.end());
-  const double sum = std::accumulate(squares.begin(), squares.begin() + std::ptrdiff_t(counted), 0.0);
-  difference.mean_square = sum / (4.0 * double(counted));
+  difference.mean_square = sum / double(4 * rect.pixels());
   return difference;
 }
 

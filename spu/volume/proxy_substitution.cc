@@ -44,7 +44,7 @@ ApplicationPicture fullest_part(const ApplicationPicture& whole) {
 
 void show(volume::RenderRequest& request, const March& march) {
   request.steps = march.steps;
-  request.op = march.maximum ? volume::Operator::max : volume::Operator::over;
+  request.op = march.extreme.value_or(volume::Operator::over);
   request.classification = asked_of_nodes(march);
 }
 
@@ -128,7 +128,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     volume::Image picture;
     picture.rect = rendered.image.rect;
     picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
-    if (march.maximum) classify_maxima(march, picture);
+    if (march.extreme) classify_extremes(march, picture);
     const double difference = difference_between(s.pipeline, *looked_at, picture.view()).mean_square;
     if (best != nullptr && difference >= least) continue;
     best = &march;

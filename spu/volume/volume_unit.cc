@@ -263,7 +263,10 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
   }
   return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
-                     jitter, request.op == volume::Operator::max ? ", maximum" : "");
+                     jitter,
+                     request.op == volume::Operator::max   ? ", maximum"
+                     : request.op == volume::Operator::min ? ", minimum"
+                                                           : "");
 }
 
 template <std::size_t N>
@@ -779,13 +782,13 @@ void VolumeUnit::substitute(const Run& run) {
   const Blending& blending = s.pipeline.blending;
   volume::Image picture;
   volume::ImageView shown = rendered.image;
-  const bool maxima = s.proxy && s.volume.march->maximum;
-  if (options.debug_tint || blending.alpha_stands_apart() || maxima) {
+  const bool extremes = s.proxy && s.volume.march->extreme;
+  if (options.debug_tint || blending.alpha_stands_apart() || extremes) {
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
   }
-  if (maxima) classify_maxima(*s.volume.march, picture);
+  if (extremes) classify_extremes(*s.volume.march, picture);
   verify(s, shown);
   volume::FrameCounts counts = rendered.counts;
   if (!options.save_frames.empty()) {

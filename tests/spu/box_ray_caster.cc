@@ -49,15 +49,18 @@ constexpr const char* fragment_source =
     "    end = inverse_camera * end;\n"
     "    count = min(count, ceil(length((end.xyz / end.w - place) * extent) / one_step));\n"
     "  }\n"
-    "  vec4 sum = vec4(0.0); float largest = 0.0;\n"
+    "  vec4 sum = vec4(0.0); float largest = 0.0, least = 1.0;\n"
     "  for (float i = 0.0; i < count && sum.a < 0.999; ++i) {\n"
     "    vec3 at = place + (first + i) * step;\n"
     "    vec4 sample_colour = classified(at);\n"
     "    if (composition == 0) sum += (1.0 - sum.a) * sample_colour;\n"
     "    if (composition == 2) sum += sample_colour;\n"
     "    largest = max(largest, texture(field, at).r);\n"
+    "    least = min(least, texture(field, at).r);\n"
     "  }\n"
-    "  if (composition == 1) { vec4 c = texture(table, largest); sum = vec4(c.rgb * c.a, c.a); }\n"
+    "  if (composition == 3) largest = least;\n"
+    "  if (composition == 1 || composition == 3) { vec4 c = texture(table, largest); sum = vec4(c.rgb * c.a, "
+    "c.a); }\n"
     "  sum.a = min(sum.a, 1.0);\n"
     "  colour = straight && sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : sum;\n"
     "}\n";
@@ -220,7 +223,10 @@ void BoxRayCaster::set_up(GlApplication& app) {
     return name;
   };
   texture(GL_TEXTURE1, GL_TEXTURE_1D, GL_LINEAR);
-  set_table(app, style.composition == MarchStyle::Composition::maximum ? 0.9F : 0.2F);
+  set_table(app, style.composition == MarchStyle::Composition::maximum ||
+                         style.composition == MarchStyle::Composition::minimum
+                     ? 0.9F
+                     : 0.2F);
   depth_ = texture(GL_TEXTURE2, GL_TEXTURE_2D, GL_NEAREST);
   const std::vector<GLfloat> far(std::size_t(GlApplication::size) * GlApplication::size, 1.0F);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, GlApplication::size, GlApplication::size, 0,
@@ -231,9 +237,13 @@ void BoxRayCaster::set_up(GlApplication& app) {
   set_noise(app, 1);
   texture(GL_TEXTURE0, GL_TEXTURE_3D, GL_LINEAR);
   const Blob blob;
+  std::vector<std::uint8_t> texels = blob.texels();
+  // Around the blob there is nothing, which would be the minimum of all rays.
+  if (style.composition == MarchStyle::Composition::minimum) {
+    for (std::uint8_t& texel : texels) texel = std::uint8_t(255 - texel);
+  }
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE,
-                blob.texels().data());
+  gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
 
   program_ = program_of(gl, vertex_source, fragment_source);

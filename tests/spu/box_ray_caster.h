@@ -10,7 +10,7 @@ namespace understudy::spu::testing {
 
 /// How it marches.
 struct MarchStyle {
-  enum class Composition { over, maximum, sum };
+  enum class Composition { over, maximum, sum, minimum };
 
   Composition composition = Composition::over;
   bool premultiplied = true;  ///< what the shader writes, and the blend function

@@ -49,6 +49,7 @@ std::vector<Kind> kinds() {
           {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
           {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
           {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
+          {"minimum", {.composition = Composition::minimum, .extent = of_cubes}},
           {"maximum, parallel projection",
            {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
 }

@@ -148,17 +148,51 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   return counted;
 }
 
-/// For a maximum, which does not tell how many samples it was taken of: one or two a texel.
-std::vector<volume::RaySteps> rules_for_maximum(const std::array<int, 3>& size) {
-  std::vector<volume::RaySteps> rules;
-  for (const double density : {1.0, 2.0}) {
-    for (const double first : {1.0, 0.0}) {
-      volume::RaySteps steps;
-      for (std::size_t k = 0; k < 3; ++k) steps.metric[4 * k] = density * size[k];
-      steps.first = first;
-      rules.push_back(steps);
+/// The length from which on a ray has a sample, in steps of `texels`: at the box's silhouette rays are as short
+/// as can be, and those that are too short show nothing. `shown` is what the field of `value` looks like.
+double shortest_seen(FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& texels, float value,
+                     const Rgba& shown) {
+  const std::array one{value};
+  const auto middle = rays.middle();
+  const double mx = std::clamp(middle[0], -0.9, 0.9);
+  const double my = std::clamp(middle[1], -0.9, 0.9);
+  std::vector<double> lengths;
+  for (int direction = 0; direction < 5; ++direction) {
+    const double angle = 2 * M_PI / 5 * direction + 0.1;
+    double inside = 0;
+    double outside = 3;
+    double length = 0;
+    for (int halving = 0; halving < 16; ++halving) {
+      const double reach = (inside + outside) / 2;
+      const double x = mx + reach * std::cos(angle);
+      const double y = my + reach * std::sin(angle);
+      const bool in_view = std::abs(x) < 0.99 && std::abs(y) < 0.99;
+      const auto way = rays.way(x, y);
+      const bool seen =
+          in_view && way && largest_difference(probe.at(x, y, one).front(), shown) < 0.01F * shown[3];
+      (seen ? inside : outside) = reach;
+      if (seen) length = steps_of_way(texels, *way);
     }
+    lengths.push_back(length);
   }
+  // Where the window ends before the box does, rays stay long: the shortest of all is the silhouette's.
+  return *std::min_element(lengths.begin(), lengths.end());
+}
+
+/// For an extreme value, which does not tell how many samples it was taken of: one or two a texel, or one for
+/// each length of the shortest ray that has any.
+std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size, double shortest) {
+  constexpr double none = 0.02;  // of a texel
+  std::vector<volume::RaySteps> rules;
+  const auto add = [&](double density) {
+    volume::RaySteps steps;
+    for (std::size_t k = 0; k < 3; ++k) steps.metric[4 * k] = density * size[k];
+    steps.first = shortest < none ? 0 : shortest * density;
+    rules.push_back(steps);
+  };
+  add(1);
+  add(2);
+  if (shortest > 0.25 && shortest < 2) add(1 / shortest);
   return rules;
 }
 
@@ -178,9 +212,9 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
   entries.clear();
   std::vector<float> shortest;  // opacity of the shortest ray
   for (const double samples : {1.0, 6.0, 40.0}) {
-    const double wanted = march.maximum ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
+    const double wanted = march.extreme ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
     const Ray ray = ray_of_length(rays, rule, wanted);
-    const double n = march.maximum ? 1 : samples_of_length(rule, ray.length);
+    const double n = march.extreme ? 1 : samples_of_length(rule, ray.length);
     if (entries.empty() && (n < 1 || n > most_samples_of_shortest))
       return "no short ray is in view: the opacity of one sample cannot be told";
     if (!entries.empty() && std::abs(n - samples) > samples / 2) continue;
@@ -197,7 +231,7 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
         entries[i] = grows ? sample_of(colour, n) : Rgba{};
       }
     }
-    if (march.maximum) break;
+    if (march.extreme) break;
   }
   return std::nullopt;
 }
@@ -348,23 +382,23 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   if (!finite(through) || !finite(briefly)) return "the fragment stage gives colours that are not finite";
   March march;
   // Whatever the way through it, one value has one colour: samples are not composed.
-  march.maximum = true;
+  march.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(largest_difference(through[i], briefly[i]) <= 2e-3F)) march.maximum = false;
+    if (!(largest_difference(through[i], briefly[i]) <= 2e-3F)) march.extreme.reset();
   }
   const auto reference_way = rays.way(middle[0], middle[1]);
-  if (march.maximum && (!reference_way || steps_of_way(texels, *reference_way) < 2 * brief.length))
+  if (march.extreme && (!reference_way || steps_of_way(texels, *reference_way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
 
   // A value that lets about half of the light through the whole box.
   march.translucent = values[tried / 2];
   float nearest = 0.48F;
-  for (std::size_t i = 0; i < through.size() && !march.maximum; ++i) {
+  for (std::size_t i = 0; i < through.size() && !march.extreme; ++i) {
     if (!reached(through[i]) || std::abs(through[i][3] - 0.5F) > nearest) continue;
     nearest = std::abs(through[i][3] - 0.5F);
     march.translucent = values[i];
   }
-  if (nearest == 0.48F && !march.maximum)
+  if (nearest == 0.48F && !march.extreme)
     return "no value is translucent over the whole box: its samples cannot be counted";
 
   // Lighting needs a gradient, however small.
@@ -375,8 +409,14 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   if (!(largest_difference(flat, sloping) <= 0.02F)) return "the colour depends on the gradient (lighting)";
 
   std::vector<volume::RaySteps> rules;
-  if (march.maximum) {
-    rules = rules_for_maximum(size);
+  if (march.extreme) {
+    const auto brightest = std::max_element(through.begin(), through.end(),
+                                            [](const Rgba& a, const Rgba& b) { return a[3] < b[3]; });
+    const double shortest =
+        (*brightest)[3] > 0
+            ? shortest_seen(probe, rays, texels, values[std::size_t(brightest - through.begin())], *brightest)
+            : 0;
+    rules = rules_for_extremes(size, shortest);
   } else {
     const auto count = [&] { return counted_rays(measured, probe, rays, march.translucent); };
     const auto counted = count();
@@ -416,6 +456,10 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
       // The step that reaches the opaque geometry is usually taken before it is noticed.
       march.steps.past_depth = ends_at_depth ? 1 : 0;
       marches.push_back(march);
+      // Fields of one value do not tell which extreme it is.
+      if (!march.extreme) continue;
+      marches.push_back(march);
+      marches.back().extreme = volume::Operator::min;
     }
   }
   return marches;
@@ -440,13 +484,13 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   if (!way) return std::nullopt;
   float nearest = 0.48F;
   const auto& table = changed.table;
-  for (std::size_t i = 0; i < table.entries.size() && !march.maximum; ++i) {
+  for (std::size_t i = 0; i < table.entries.size() && !march.extreme; ++i) {
     const float through = ray_of(table.entries[i], steps_of_way(march.steps, *way))[3];
     if (std::abs(through - 0.5F) >= nearest) continue;
     nearest = std::abs(through - 0.5F);
     changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
   }
-  if ((nearest == 0.48F && !march.maximum) || !still_marches(measured, changed, box)) return std::nullopt;
+  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box)) return std::nullopt;
   return changed;
 }
 
@@ -456,7 +500,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
-  const double wanted = march.maximum ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);
+  const double wanted = march.extreme ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);
   const Ray shortest = ray_of_length(rays, march.steps, wanted);
   constexpr int looked_at = 16;
   std::vector<float> values;
@@ -466,19 +510,19 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const auto expected = [&](const Rgba& fragment, float value, double n) {
     const Rgba sample = table_at(march.table, value);
     const Rgba got = premultiplied(fragment, already);
-    if (march.maximum) return largest_difference(got, sample) <= same_colour;
+    if (march.extreme) return largest_difference(got, sample) <= same_colour;
     // A ray whose end falls on a sample may have one more or less.
     for (const double count : {n, n - 1, n + 1}) {
       if (count >= 1 && largest_difference(got, ray_of(sample, count)) <= same_colour) return true;
     }
     return false;
   };
-  const double samples = march.maximum ? 1 : samples_of_length(march.steps, shortest.length);
+  const double samples = march.extreme ? 1 : samples_of_length(march.steps, shortest.length);
   const auto fragments = probe.at(shortest.x, shortest.y, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!expected(fragments[i], values[i], samples)) return false;
   }
-  if (march.maximum) return true;
+  if (march.extreme) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();
   const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
@@ -490,10 +534,12 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 }
 
 volume::Classification asked_of_nodes(const March& march) {
-  if (!march.maximum) return march.table;
-  // The value travels in the first channel; where the lowest one is invisible, so are blocks of nothing else.
+  if (!march.extreme) return march.table;
+  // The value travels in the first channel. Where the lowest one is invisible, blocks of nothing else add
+  // nothing to a maximum; to a minimum they do.
   const Rgba& lowest = march.table.entries.front();
-  const bool all_visible = std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
+  const bool all_visible = march.extreme == volume::Operator::min ||
+                           std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
   volume::TransferFunction ramp;
   ramp.low = march.table.low;
   ramp.high = march.table.high;
@@ -501,11 +547,13 @@ volume::Classification asked_of_nodes(const March& march) {
   return ramp;
 }
 
-void classify_maxima(const March& march, volume::Image& picture) {
+void classify_extremes(const March& march, volume::Image& picture) {
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     Rgba colour{};
-    if (picture.rgba[i + 3] > 0)
+    // Pixels without samples hold what changes no extreme.
+    const float sampled = picture.rgba[i + 3];
+    if (sampled > 0 && sampled <= 1)
       colour = table_at(table, table.low + picture.rgba[i] * (table.high - table.low));
     std::copy(colour.begin(), colour.end(), picture.rgba.begin() + std::ptrdiff_t(i));
   }

@@ -5,6 +5,7 @@
 // volume unit takes the one whose picture is the application's.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -37,8 +38,9 @@ struct ProxyBox {
 struct March {
   CoordinateSpace space;
   volume::RaySteps steps;
-  /// Samples are not composed: the largest value of the ray is classified by `table`.
-  bool maximum = false;
+  /// Operator::max or Operator::min: samples are not composed, the largest (least) value of the ray is
+  /// classified by `table`.
+  std::optional<volume::Operator> extreme;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
   float translucent = 0;           ///< a value whose field lets a long ray through
@@ -87,8 +89,8 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);
 
 /// What the nodes are asked to show for a march, and what their picture becomes: colours as they are, or, of
-/// largest values, the colours that these have.
+/// extreme values, the colours that these have.
 volume::Classification asked_of_nodes(const March& march);
-void classify_maxima(const March& march, volume::Image& picture);
+void classify_extremes(const March& march, volume::Image& picture);
 
 }  // namespace understudy::spu

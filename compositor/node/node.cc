@@ -338,6 +338,7 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
 
 Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
   std::vector<volume::Rect> footprints;
+  footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
   return direct_send(std::move(image_), {op_, visible_order_, footprints}, link_);
 }

@@ -19,7 +19,7 @@ struct VolumeKey {
   std::uint64_t client = 0;
   volume::VolumeId volume = 0;
 
-  auto operator<=>(const VolumeKey&) const = default;
+  auto operator<=>(const VolumeKey&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// All functions that take a volume throw RequestRefused when it is unknown or what is asked of it makes no

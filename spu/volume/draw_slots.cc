@@ -207,6 +207,7 @@ void APIENTRY draw_range_elements_base_vertex(GLenum mode, GLuint start, GLuint 
 bool joins_run(VolumeUnit& unit, GLenum mode, GLsizei draws, const GLsizei* count, const void* const* indices,
                const GLint* base_vertices, GLenum type) {
   std::vector<ElementPart> ranges;
+  ranges.reserve(std::size_t(std::max(draws, 0)));
   for (GLsizei i = 0; i < draws; ++i)
     ranges.push_back({count[i], indices[i], base_vertices != nullptr ? base_vertices[i] : 0});
   if (!ranges.empty() && joins_run(unit) && defer_elements(unit, mode, ranges, type)) return true;

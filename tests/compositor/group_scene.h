@@ -74,7 +74,7 @@ class Launcher {
  public:
   explicit Launcher(const std::string& path)
       : broker_(path, [this](const std::string& line) { said_.push_back(line); }),
-        thread_([this](std::stop_token stop) {
+        thread_([this](const std::stop_token& stop) {
           while (!stop.stop_requested()) {
             const std::lock_guard lock(mutex_);
             broker_.step(std::chrono::milliseconds(1));

@@ -68,7 +68,7 @@ class NodeGroupTest : public ::testing::Test {
     groups_.clear();
   }
 
-  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, Group::Wrap wrap = {}) {
+  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {}) {
     groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap));
     EXPECT_TRUE(launcher_->wait_for_group());
     return *groups_.back();

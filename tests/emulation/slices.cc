@@ -99,9 +99,9 @@ Bounded look_up(const Table& table, const Bounded& value, int channel) {
   Bounded result = exactly(entry_at(table, value.meant, channel));
   for (const double end : {low, high}) result = either(result, exactly(entry_at(table, end, channel)));
   const double last = static_cast<double>(table.entries.size() - 1);
-  const double first_inside = std::max(0.0, std::ceil(table.scale * low + table.offset));
-  const double last_inside = std::min(last, std::floor(table.scale * high + table.offset));
-  for (double i = first_inside; i <= last_inside; ++i)
+  const auto first_inside = static_cast<long>(std::max(0.0, std::ceil(table.scale * low + table.offset)));
+  const auto last_inside = static_cast<long>(std::min(last, std::floor(table.scale * high + table.offset)));
+  for (long i = first_inside; i <= last_inside; ++i)
     result = either(result, exactly(table.entries[static_cast<std::size_t>(i)][channel]));
   if (table.bytes) {
     constexpr double rounding = 1e-9;  // of the bytes themselves, as doubles
@@ -374,6 +374,7 @@ Picture for_each_pixel(const Frame& frame, const std::vector<const Volume*>& vol
   Picture picture{frame.width, frame.height, {}};
   const auto surfaces = rasterised(frame, precision);
   std::vector<Matrix> texture_from_clip;
+  texture_from_clip.reserve(volumes.size());
   for (const Volume* volume : volumes) texture_from_clip.push_back(inverse(volume->clip_from_texture));
   for (int y = frame.height - 1; y >= 0; --y)
     for (int x = 0; x < frame.width; ++x) {

@@ -52,7 +52,10 @@ Matrix matrix_of(const Json& scale_and_translate) {
 /// that swings once in twelve frames.
 void step_in_time(int frame, std::vector<double>& values) {
   const int share = static_cast<int>(std::lround(256 * (0.8 + 0.2 * std::cos(2 * M_PI * (frame % 12) / 12))));
-  for (double& value : values) value = static_cast<int>(std::lround(255 * value)) * share / 256 / 255.0;
+  for (double& value : values) {
+    const long whole = std::lround(255 * value) * share / 256;
+    value = static_cast<double>(whole) / 255.0;
+  }
 }
 
 /// Mode `stacks` has a slice in each layer of voxels, across the axis that is nearest to the direction of view.

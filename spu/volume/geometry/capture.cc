@@ -195,10 +195,13 @@ Capture capture_vertices(const GlContext& context, const Run& run, const Program
   const std::size_t slices = stack ? run.slices().size() : 1;
   // Whoever draws slices of a stack draws the same with each; if not, nothing will fit.
   if (vertices % (3 * slices) != 0) return capture;
+  const std::size_t of_slice = vertices / std::max<std::size_t>(slices, 1);
   const auto take_coordinates = [&](std::size_t at) {
     for (std::size_t v = 0; v < vertices; ++v) {
       for (std::size_t c = 0; c < axes; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
-      if (stack) polygons.vertices[v].texture[2] = double(v / (vertices / slices));
+      if (!stack) continue;
+      const std::size_t slice = v / of_slice;
+      polygons.vertices[v].texture[2] = double(slice);
     }
   };
   std::size_t chosen = 0;

@@ -97,6 +97,7 @@ std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
       case MessageType::add_texels:
       case MessageType::end_volume:
       case MessageType::forget_volume:
+      case MessageType::pair_table:
       case MessageType::render:
         return message;
       default:

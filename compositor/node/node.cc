@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstring>
 #include <exception>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "compositor/exchange/direct_send.h"
@@ -56,6 +58,7 @@ class Node {
   void follow();
 
  private:
+  void forget_client(std::uint64_t client);
   void request(Clients& clients, Clients::Request request);
   std::vector<Outcome> texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here);
   bool make_room(std::uint64_t bytes);
@@ -68,6 +71,8 @@ class Node {
 
   Link& link_;
   RankRenderer renderer_;
+  /// By application, and there by place.
+  std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
   std::size_t room_ = 0;                  // that size, known to rank 0 too
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
@@ -114,7 +119,7 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
     } else {
       Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0, 0, 0};
       link_.broadcast(0, bytes_of(order));
-      renderer_.forget_client(order.client);
+      forget_client(order.client);
     }
   }
   Order order{Step::end, {}, 0, 0, 0, 0};
@@ -128,7 +133,7 @@ void Node::follow() {
     link_.broadcast(0, bytes_of(order));
     if (order.step == Step::end) return;
     if (order.step == Step::forget_client) {
-      renderer_.forget_client(order.client);
+      forget_client(order.client);
       continue;
     }
     if (order.step == Step::texels) {
@@ -140,6 +145,11 @@ void Node::follow() {
     const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
     if (order.type == MessageType::render && !first_refusal(outcomes)) composite(outcomes);
   }
+}
+
+void Node::forget_client(std::uint64_t client) {
+  renderer_.forget_client(client);
+  pair_tables_.erase(client);
 }
 
 // Room for that much of a payload. False, on all ranks, when one of them has none.
@@ -310,8 +320,13 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
       case MessageType::forget_volume:
         renderer_.forget({order.client, decode_id(payload)});
         break;
+      case MessageType::pair_table: {
+        KeptPairTable kept = decode_pair_table(payload);
+        pair_tables_[order.client][std::size_t(kept.place)] = std::move(kept.table);
+        break;
+      }
       case MessageType::render: {
-        const volume::RenderRequest request = decode_request(payload);
+        const volume::RenderRequest request = decode_request(payload, pair_tables_[order.client]);
         op_ = request.op;
         visible_order_ = renderer_.visibility_order(order.client, request);
         image_ = renderer_.render(order.client, request, mine.counts);

@@ -22,6 +22,7 @@ constexpr std::uint64_t max_window_pixels = std::uint64_t(1) << 26;  ///< 8192 x
 constexpr std::size_t max_clip_planes = 64;
 constexpr int max_ray_offsets = 1 << 20;
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
+constexpr int max_kept_pair_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 
 // Messages.
 constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a stranger

@@ -12,6 +12,7 @@
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
 #include "compositor/service/protocol.h"
+#include "compositor/service/sent_pair_tables.h"
 #include "volume/brick/texel_box.h"
 
 namespace understudy::compositor {
@@ -109,7 +110,10 @@ class LinkedService : public RenderService {
   Rendered render(const volume::RenderRequest& wanted) override {
     give_up_posted();
     make_room(wanted.window);
-    const Message reply = request(MessageType::render, encode(wanted), patience_.render, MessageType::rendered);
+    std::optional<int> pairs_at;
+    if (const auto* pairs = std::get_if<volume::PairTable>(&wanted.classification)) pairs_at = place_of(*pairs);
+    const Message reply =
+        request(MessageType::render, encode(wanted, pairs_at), patience_.render, MessageType::rendered);
     const RenderedReply rendered = conversation([&] { return decode_rendered(reply.payload); });
     const std::size_t floats = 4 * rendered.rect.pixels();
     // An empty picture needs no place in the window.
@@ -122,6 +126,15 @@ class LinkedService : public RenderService {
   int nodes() const override { return ranks_; }
 
  private:
+  // Where the nodes have the table; it is sent where they have not.
+  int place_of(const volume::PairTable& pairs) {
+    if (const std::optional<int> place = pair_tables_.find(pairs)) return *place;
+    const int place = pair_tables_.make_place();
+    request(MessageType::pair_table, encode(KeptPairTable{place, pairs}), patience_.reply);
+    pair_tables_.put(place, pairs);
+    return place;
+  }
+
   // Pictures never get larger than the window, so the memory is made once per size of window.
   void make_room(const volume::Rect& window) {
     if (window.pixels() > limits::max_window_pixels)
@@ -230,6 +243,7 @@ class LinkedService : public RenderService {
   int ranks_ = 0;
   pid_t process_ = ::getpid();
   ImageMemory image_;
+  SentPairTables pair_tables_;
 };
 
 }  // namespace

@@ -52,18 +52,30 @@ void write_run(Writer& out, const std::vector<T>& values) {
   out.run(std::as_bytes(std::span(values)));
 }
 
-void write(Writer& out, const Classification& classification) {
+/// In place of a classification's index: a table of pairs that was sent before.
+constexpr int kept_pairs = int(std::variant_size_v<Classification>);
+
+void write(Writer& out, const PairTable& pairs) {
+  out.real(pairs.low);
+  out.real(pairs.high);
+  out.integer(pairs.edge);
+  write_run(out, pairs.entries);
+  out.integer(pairs.multiply_by_alpha);
+}
+
+void write(Writer& out, const Classification& classification, std::optional<int> pairs_at) {
+  if (pairs_at && std::holds_alternative<PairTable>(classification)) {
+    out.integer(kept_pairs);
+    out.integer(*pairs_at);
+    return;
+  }
   out.integer(std::int64_t(classification.index()));
   if (const auto* table = std::get_if<TransferFunction>(&classification)) {
     out.real(table->low);
     out.real(table->high);
     write_run(out, table->entries);
   } else if (const auto* pairs = std::get_if<PairTable>(&classification)) {
-    out.real(pairs->low);
-    out.real(pairs->high);
-    out.integer(pairs->edge);
-    write_run(out, pairs->entries);
-    out.integer(pairs->multiply_by_alpha);
+    write(out, *pairs);
   } else {
     const auto& map = std::get<LinearMap>(classification);
     for (const float value : map.matrix) out.real(value);
@@ -84,8 +96,14 @@ PairTable read_pairs(Reader& in) {
   return pairs;
 }
 
-Classification read_classification(Reader& in) {
-  const auto kind = in.integer("classification", 0, 2);
+Classification read_classification(Reader& in, std::span<const PairTable> kept) {
+  const auto kind = in.integer("classification", 0, kept_pairs);
+  if (kind == kept_pairs) {
+    const auto place = std::size_t(in.small("classification.place", 0, limits::max_kept_pair_tables - 1));
+    if (place >= kept.size() || kept[place].edge == 0)
+      in.fail("classification.place", "holds no table of pairs: send it first");
+    return kept[place];
+  }
   if (kind == 2) return read_pairs(in);
   if (kind == 0) {
     TransferFunction table;
@@ -293,7 +311,23 @@ Texels decode_texels(std::span<const std::byte> payload) {
   return texels;
 }
 
-std::vector<std::byte> encode(const RenderRequest& request) {
+std::vector<std::byte> encode(const KeptPairTable& kept) {
+  Writer out;
+  out.integer(kept.place);
+  write(out, kept.table);
+  return out.bytes();
+}
+
+KeptPairTable decode_pair_table(std::span<const std::byte> payload) {
+  Reader in("table of pairs", payload);
+  KeptPairTable kept;
+  kept.place = in.small("place", 0, limits::max_kept_pair_tables - 1);
+  kept.table = read_pairs(in);
+  in.end();
+  return kept;
+}
+
+std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> pairs_at) {
   Writer out;
   out.integer(std::int64_t(request.volume));
   out.integer(std::int64_t(request.version));
@@ -315,7 +349,7 @@ std::vector<std::byte> encode(const RenderRequest& request) {
     write(out, plane.normal);
     out.real(plane.offset);
   }
-  write(out, request.classification);
+  write(out, request.classification, pairs_at);
   write(out, request.slab);
   write(out, request.fog);
   out.real(request.termination);
@@ -323,7 +357,7 @@ std::vector<std::byte> encode(const RenderRequest& request) {
   return out.bytes();
 }
 
-RenderRequest decode_request(std::span<const std::byte> payload) {
+RenderRequest decode_request(std::span<const std::byte> payload, std::span<const PairTable> kept) {
   Reader in("render request", payload);
   RenderRequest request;
   request.volume = in.word("volume");
@@ -346,7 +380,7 @@ RenderRequest decode_request(std::span<const std::byte> payload) {
     read(in, "clip_planes.normal", plane.normal);
     plane.offset = in.real("clip_planes.offset");
   }
-  request.classification = read_classification(in);
+  request.classification = read_classification(in, kept);
   request.slab = read_slab(in);
   request.fog = read_fog(in);
   request.termination = in.real32("termination");

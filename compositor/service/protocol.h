@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 3;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 4;         ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -30,6 +31,7 @@ enum class MessageType : std::uint16_t {
   add_texels,
   end_volume,
   forget_volume,
+  pair_table,
   render,
   // replies
   welcome,  ///< payload: Hello
@@ -67,6 +69,12 @@ struct Texels {
   std::span<const std::byte> texels;    ///< of one box after the other; seen in place in the decoded bytes
 };
 
+/// A table that the requests that follow may name by its place.
+struct KeptPairTable {
+  int place = 0;  ///< below limits::max_kept_pair_tables
+  volume::PairTable table;
+};
+
 /// A picture that lies at the beginning of the image memory.
 struct RenderedReply {
   volume::Rect rect;
@@ -78,7 +86,9 @@ std::vector<std::byte> encode(const volume::VolumeDescription& volume);
 /// Everything but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
 std::vector<std::byte> encode_texels_head(const Texels& texels);
 std::vector<std::byte> encode(const Change& change);
-std::vector<std::byte> encode(const volume::RenderRequest& request);
+std::vector<std::byte> encode(const KeptPairTable& kept);
+/// With `pairs_at`, a table of pairs is not written but named by the place that it was sent to.
+std::vector<std::byte> encode(const volume::RenderRequest& request, std::optional<int> pairs_at = {});
 std::vector<std::byte> encode(const RenderedReply& reply);
 std::vector<std::byte> encode_id(volume::VolumeId id);
 std::vector<std::byte> encode_size(std::uint64_t bytes);
@@ -89,7 +99,10 @@ Hello decode_hello(std::span<const std::byte> payload);
 volume::VolumeDescription decode_volume(std::span<const std::byte> payload);
 Change decode_change(std::span<const std::byte> payload);
 Texels decode_texels(std::span<const std::byte> payload);
-volume::RenderRequest decode_request(std::span<const std::byte> payload);
+KeptPairTable decode_pair_table(std::span<const std::byte> payload);
+/// `kept` by their places; where there is none its edge is 0.
+volume::RenderRequest decode_request(std::span<const std::byte> payload,
+                                     std::span<const volume::PairTable> kept = {});
 RenderedReply decode_rendered(std::span<const std::byte> payload);
 volume::VolumeId decode_id(std::span<const std::byte> payload);
 std::uint64_t decode_size(std::span<const std::byte> payload);

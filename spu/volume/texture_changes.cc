@@ -117,6 +117,21 @@ void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y,
   here().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type, value);
 }
 
+/// Of a copy only the destination changes. Its box is as large as the source's, or smaller where the source is
+/// compressed; what is compressed itself is no volume. Renderbuffers are no textures.
+template <auto Slot>
+void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLint from_x, GLint from_y,
+                         GLint from_z, GLuint to, GLenum to_target, GLint to_level, GLint x, GLint y, GLint z,
+                         GLsizei width, GLsizei height, GLsizei depth) {
+  if (to_target == GL_TEXTURE_3D) {
+    named_box_changes(to, to_level, box_of(x, y, z, width, height, depth));
+  } else if (to_target != GL_RENDERBUFFER) {
+    here().chain().group().texture_changed(to);
+  }
+  (here().next().*Slot)(from, from_target, from_level, from_x, from_y, from_z, to, to_target, to_level, x, y, z,
+                        width, height, depth);
+}
+
 }  // namespace
 
 void fill_texture_change_slots(DispatchTable& table) {
@@ -140,6 +155,8 @@ void fill_texture_change_slots(DispatchTable& table) {
   table.CopyTexSubImage3D = copy_tex_sub_image_3d;
   table.ClearTexImage = ChangesNamedTexture<&Table::ClearTexImage>::call;
   table.ClearTexSubImage = clear_tex_sub_image;
+  table.CopyImageSubData = copy_image<&Table::CopyImageSubData>;
+  table.CopyImageSubDataNV = copy_image<&Table::CopyImageSubDataNV>;
 }
 
 }  // namespace understudy::spu

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <limits>
@@ -21,6 +22,7 @@
 #include "volume/brick/brick_store.h"
 #include "volume/brick/texel_box.h"
 #include "volume/kd_tree.h"
+#include "volume/matrix.h"
 
 namespace understudy::compositor {
 namespace {
@@ -309,6 +311,105 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   linked->begin_change(7, 3);
   linked->end_volume(7);
   EXPECT_EQ(counts.received, 0U);
+}
+
+/// Slabs that reach to the next plane; tables of different seeds give different pictures.
+volume::RenderRequest some_slabs(const Texture& texture, int seed) {
+  volume::RenderRequest request = some_request(texture);
+  volume::PairTable pairs;
+  pairs.edge = 128;
+  for (int back = 0; back < pairs.edge; ++back)
+    for (int front = 0; front < pairs.edge; ++front) {
+      const float f = float(front) / 127, b = float(back) / 127;
+      pairs.entries.push_back({f, b, float(seed) / 8, 0.02F + 0.1F * std::abs(f - b) + 0.02F * float(seed)});
+    }
+  request.classification = pairs;
+  volume::Slab& slab = request.slab.emplace();
+  const double square = volume::dot(request.planes.normal, request.planes.normal);
+  for (std::size_t k = 0; k < 3; ++k) {
+    slab.offset[k] = request.planes.normal[k] * request.planes.spacing / square;
+    slab.reach[k] = std::abs(slab.offset[k]);
+  }
+  return request;
+}
+
+// Counted where it arrives: on two ranks of three.
+TEST_F(NodeGroupTest, ATableOfPairsTravelsOnce) {
+  std::atomic<std::uint64_t> broadcast = 0;
+  class Counting : public ForwardingLink {
+   public:
+    Counting(Link& link, std::atomic<std::uint64_t>& bytes) : ForwardingLink(link), bytes_(bytes) {}
+    void broadcast(Rank root, std::span<std::byte> bytes) override {
+      if (rank() != root) bytes_ += bytes.size();
+      ForwardingLink::broadcast(root, bytes);
+    }
+
+   private:
+    std::atomic<std::uint64_t>& bytes_;
+  };
+  start(3, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
+    Counting counting(link, broadcast);
+    run(counting);
+  });
+  Texture texture = some_texture();
+  texture.description.margin = 8;
+  const auto linked = connect(), other = connect(), embedded = embedded_service();
+  for (RenderService* service : {linked.get(), other.get(), embedded.get()}) upload(*service, texture);
+
+  constexpr std::uint64_t table = 2 * 128 * 128 * sizeof(volume::Rgba), no_table = 2 * 2000;
+  std::vector<volume::Image> expected;
+  for (int seed = 0; seed <= limits::max_kept_pair_tables; ++seed)
+    expected.push_back(picture_of(*embedded, some_slabs(texture, seed)));
+  const auto expect = [&](RenderService& service, int seed, bool sent) {
+    broadcast = 0;
+    const volume::Image picture = picture_of(service, some_slabs(texture, seed));
+    EXPECT_LE(largest_difference(picture, expected[std::size_t(seed)]), 1e-5) << seed;
+    if (sent) {
+      EXPECT_GE(broadcast, table) << seed;
+      EXPECT_LT(broadcast, table + no_table) << seed;
+    } else {
+      EXPECT_LT(broadcast, no_table) << seed;
+    }
+  };
+  ASSERT_GT(largest_difference(expected[0], expected[1]), 0.01) << "one can tell the tables apart";
+
+  expect(*linked, 0, true);
+  std::printf("%llu bytes with the table", static_cast<unsigned long long>(broadcast.load()));
+  expect(*linked, 0, false);
+  std::printf(", %llu without\n", static_cast<unsigned long long>(broadcast.load()));
+  expect(*linked, 1, true);
+  for (int turn = 0; turn < 2; ++turn) {
+    expect(*linked, 0, false);
+    expect(*linked, 1, false);
+  }
+  // Another application has places of its own.
+  expect(*other, 2, true);
+  expect(*linked, 0, false);
+  expect(*other, 2, false);
+  // One table more than there are places: the one not asked for longest makes room.
+  for (int seed = 2; seed <= limits::max_kept_pair_tables; ++seed) expect(*linked, seed, true);
+  expect(*linked, 0, false);
+  expect(*linked, 1, true);
+
+  // A table that is refused is in no place, and neither is the one that made room for it.
+  volume::RenderRequest bad = some_slabs(texture, 0);
+  std::get<volume::PairTable>(bad.classification).entries.pop_back();
+  EXPECT_THROW(linked->render(bad), RequestRefused);
+  EXPECT_THROW(linked->render(bad), RequestRefused);
+  expect(*linked, 0, false);
+  for (int seed = 1; seed < limits::max_kept_pair_tables; ++seed)
+    EXPECT_LE(largest_difference(picture_of(*linked, some_slabs(texture, seed)), expected[std::size_t(seed)]),
+              1e-5);
+}
+
+// An application without manners names a table that it never sent.
+TEST_F(NodeGroupTest, ATableOfPairsThatIsNotThereIsARefusal) {
+  start(2);
+  const auto senseless = raw_client();
+  senseless->send(MessageType::render, 2, encode(some_slabs(some_texture(), 0), 0), soon());
+  const Message reply = senseless->receive(soon());
+  EXPECT_EQ(reply.type, MessageType::refused);
+  EXPECT_THAT(decode_text(reply.payload), HasSubstr("holds no table of pairs"));
 }
 
 TEST_F(NodeGroupTest, WhatIsWrongWithAVolumeThatWasGivenUpConcernsNoOther) {

@@ -69,6 +69,12 @@ RenderRequest some_request_for_slabs() {
   return r;
 }
 
+/// Among the tables that the nodes keep, the one of some_request_for_slabs() is at this place, and no other is.
+constexpr int kept_place = 1;
+std::array<PairTable, 3> some_kept_tables() {
+  return {PairTable{}, std::get<PairTable>(some_request_for_slabs().classification), PairTable{}};
+}
+
 FrameCounts some_counts() {
   return {1, 2, 3, 4, 5, 6, 7, 8, 9.5, 10.25};
 }
@@ -98,6 +104,10 @@ std::vector<Kind> all_kinds() {
        [](auto b) { return texels_message(decode_texels(b)); }},
       {"request with a table", encode(some_request(false, false)), request},
       {"request for slabs", encode(some_request_for_slabs()), request},
+      {"request for slabs by a kept table", encode(some_request_for_slabs(), kept_place),
+       [](auto b) { return encode(decode_request(b, some_kept_tables()), kept_place); }},
+      {"table of pairs", encode(KeptPairTable{kept_place, some_kept_tables()[kept_place]}),
+       [](auto b) { return encode(decode_pair_table(b)); }},
       {"request with a map and depth", encode(some_request(true, true)), request},
       {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
        [](auto b) { return encode(decode_rendered(b)); }},
@@ -165,6 +175,31 @@ TEST(Protocol, SlabsArrive) {
   EXPECT_EQ(got.slab->planes, sent.slab->planes);
   EXPECT_EQ(got.slab->offset, sent.slab->offset);
   EXPECT_EQ(got.slab->reach, sent.slab->reach);
+}
+
+TEST(Protocol, AKeptTableIsNamedAndNotSent) {
+  RenderRequest sent = some_request_for_slabs();
+  PairTable& pairs = std::get<PairTable>(sent.classification);
+  pairs.edge = 256;
+  pairs.entries.resize(std::size_t(256) * 256, Rgba{0.5F, 0.25F, 0.125F, 1});
+  const KeptPairTable kept = decode_pair_table(encode(KeptPairTable{3, pairs}));
+  EXPECT_EQ(kept.place, 3);
+  EXPECT_EQ(kept.table, pairs);
+
+  const std::vector<std::byte> whole = encode(sent), named = encode(sent, 3);
+  std::printf("%zu bytes with the table, %zu with its place\n", whole.size(), named.size());
+  EXPECT_GT(whole.size(), sizeof(Rgba) * pairs.entries.size());
+  EXPECT_LT(named.size(), 1000U);
+  std::array<PairTable, 4> tables{PairTable{}, PairTable{}, PairTable{}, pairs};
+  EXPECT_EQ(encode(decode_request(named, tables)), whole);
+
+  EXPECT_THROW(decode_request(named), MalformedMessage) << "none is kept";
+  EXPECT_THROW(decode_request(encode(sent, 2), tables), MalformedMessage) << "none is kept at this place";
+  EXPECT_THROW(decode_request(encode(sent, 4), tables), MalformedMessage) << "there is no such place";
+  EXPECT_THROW(decode_request(encode(sent, -1), tables), MalformedMessage);
+  EXPECT_THROW(decode_pair_table(encode(KeptPairTable{limits::max_kept_pair_tables, pairs})), MalformedMessage);
+  pairs.entries.pop_back();
+  EXPECT_THROW(decode_pair_table(encode(KeptPairTable{0, pairs})), MalformedMessage);
 }
 
 TEST(Protocol, AMessageCutAnywhereIsRefusedWithFieldAndOffset) {

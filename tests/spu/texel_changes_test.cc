@@ -207,5 +207,90 @@ TEST(TexelChanges, CopiedFromTheFramebufferAreSeen) {
   EXPECT_EQ(sent.bytes(), tile);
 }
 
+/// A texture like the one that is bound.
+GLuint define_another(GlApplication& app, std::uint8_t value, const TexelBox& box) {
+  GLint bound = 0;
+  GLuint texture = 0;
+  app.gl().GetIntegerv(GL_TEXTURE_BINDING_3D, &bound);
+  app.gl().GenTextures(1, &texture);
+  app.gl().BindTexture(GL_TEXTURE_3D, texture);
+  // Incomplete textures cannot be copied from.
+  app.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  const std::vector<std::uint8_t> texels(volume::texels_in(box), value);
+  app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_R8, box.high[0], box.high[1], box.high[2], 0, GL_RED,
+                      GL_UNSIGNED_BYTE, texels.data());
+  app.gl().BindTexture(GL_TEXTURE_3D, GLuint(bound));
+  return texture;
+}
+
+GLuint bound_texture(GlApplication& app, GLenum binding) {
+  GLint texture = 0;
+  app.gl().GetIntegerv(binding, &texture);
+  return GLuint(texture);
+}
+
+// Only the destination is looked at again, and there only the tiles that the copy touches.
+TEST(TexelChanges, CopiedFromAnotherTextureConcernTheDestinationAlone) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  if (app->gl().CopyImageSubData == nullptr) GTEST_SKIP() << "this driver cannot copy between textures";
+  Film<std::uint8_t> film(*app, GL_R8);
+  const auto before = film.draw(20);
+  const TexelBox block{{0, 0, 0}, {12, 12, 12}};
+  const GLuint source = define_another(*app, 250, block);
+  const GLuint bystander = define_another(*app, 0, whole);
+  const GLuint volume = bound_texture(*app, GL_TEXTURE_BINDING_3D);
+  {
+    const Sent sent(*app);
+    app->gl().CopyImageSubData(source, GL_TEXTURE_3D, 0, 0, 0, 0, bystander, GL_TEXTURE_3D, 0, 20, 20, 20, 10,
+                               10, 10);
+    EXPECT_EQ(film.draw(20), before);
+    EXPECT_EQ(sent.bytes() + sent.left_out(), 0U) << "nobody reads the volume for that";
+  }
+  {
+    const Sent sent(*app);
+    app->gl().CopyImageSubData(source, GL_TEXTURE_3D, 0, 1, 1, 1, volume, GL_TEXTURE_3D, 0, 20, 20, 20, 10, 10,
+                               10);
+    const auto after = film.draw(20);
+    EXPECT_NE(after, before);
+    EXPECT_EQ(sent.bytes(), tile);
+
+    std::vector<std::uint8_t> copied(1000, 250);
+    app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 20, 20, 20, 10, 10, 10, GL_RED, GL_UNSIGNED_BYTE, copied.data());
+    const Sent nothing(*app);
+    EXPECT_EQ(film.draw(20), after) << "uploaded, these texels look the same";
+    EXPECT_EQ(nothing.bytes(), 0U);
+  }
+  EXPECT_EQ(app->left(), 0U) << app->last_reason();
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+}
+
+TEST(TexelChanges, CopiedIntoATableAreSeen) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  if (app->gl().CopyImageSubData == nullptr) GTEST_SKIP() << "this driver cannot copy between textures";
+  Film<std::uint8_t> film(*app, GL_R8);
+  const auto before = film.draw(20);
+  app->gl().ActiveTexture(GL_TEXTURE1);
+  const GLuint table = bound_texture(*app, GL_TEXTURE_BINDING_1D);
+  GLint width = 0;
+  GLint format = 0;
+  app->gl().GetTexLevelParameteriv(GL_TEXTURE_1D, 0, GL_TEXTURE_WIDTH, &width);
+  app->gl().GetTexLevelParameteriv(GL_TEXTURE_1D, 0, GL_TEXTURE_INTERNAL_FORMAT, &format);
+  ASSERT_GT(width, 0);
+  GLuint other = 0;
+  app->gl().GenTextures(1, &other);
+  app->gl().BindTexture(GL_TEXTURE_1D, other);
+  app->gl().TexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  app->gl().TexImage1D(GL_TEXTURE_1D, 0, format, width, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                       std::vector<std::uint8_t>(std::size_t(4 * width), 90).data());
+  app->gl().BindTexture(GL_TEXTURE_1D, table);
+  app->gl().ActiveTexture(GL_TEXTURE0);
+  app->gl().CopyImageSubData(other, GL_TEXTURE_1D, 0, 0, 0, 0, table, GL_TEXTURE_1D, 0, 0, 0, 0, width, 1, 1);
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
+  EXPECT_NE(film.draw(20), before);
+  EXPECT_EQ(app->left(), 0U) << app->last_reason();
+}
+
 }  // namespace
 }  // namespace understudy::spu::testing

@@ -22,7 +22,8 @@ class SeveralVolumes : public ::testing::Test {
     emulation::Volume volume =
         colour_cube(texels_of(field,
                               [&](int s) {
-                                const double alpha = (s * s / 255 / 5) / 255.0;
+                                const int alpha_byte = s * s / 255 / 5;
+                                const double alpha = alpha_byte / 255.0;
                                 return mirrored ? std::array{40 / 255.0, s / 255.0, (255 - s) / 255.0, alpha}
                                                 : std::array{s / 255.0, (255 - s) / 255.0, 90 / 255.0, alpha};
                               }),

@@ -690,7 +690,7 @@ SliceScene texture_stack_program(Profile profile, GLenum internal_format) {
       gl.BindTexture(GL_TEXTURE_2D, (*stack)[std::size_t(z)]);
       filter(gl, GL_TEXTURE_2D, GL_LINEAR);
       gl.TexImage2D(GL_TEXTURE_2D, 0, GLint(internal_format), blob.x, blob.y, 0, GL_RED, GL_UNSIGNED_BYTE,
-                    &texels[std::size_t(z * blob.x * blob.y)]);
+                    &texels[z * blob.x * blob.y]);
     }
     table_texture(gl);
     const bool core = profile == Profile::core;

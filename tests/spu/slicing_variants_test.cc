@@ -175,7 +175,8 @@ TEST(StacksUnderGlsl, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
       desktop.gl().Begin(GL_QUADS);
       for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) {
         desktop.gl().TexCoord2d(x, y);
-        desktop.gl().Vertex2d(-0.9 + 0.4 * (i % 4 + x), -0.9 + 0.5 * (i / 4 + y));
+        const int row = i / 4;
+        desktop.gl().Vertex2d(-0.9 + 0.4 * (i % 4 + x), -0.9 + 0.5 * (row + y));
       }
       desktop.gl().End();
     }

@@ -39,7 +39,7 @@ class Film {
     for (int z = box.low[2]; z < box.high[2]; ++z)
       for (int y = box.low[1]; y < box.high[1]; ++y)
         for (int x = box.low[0]; x < box.high[0]; ++x)
-          texels_[std::size_t((z * 50 + y) * 70 + x)] = value(base * double(random() % 256) / 255);
+          texels_[(z * 50 + y) * 70 + x] = value(base * double(random() % 256) / 255);
   }
   void define() {
     app_.gl().TexImage3D(GL_TEXTURE_3D, 0, GLint(format_), 70, 50, 40, 0, GL_RED, type, texels_.data());
@@ -55,7 +55,7 @@ class Film {
     const Texel clear = value(v);
     for (int z = box.low[2]; z < box.high[2]; ++z)
       for (int y = box.low[1]; y < box.high[1]; ++y)
-        for (int x = box.low[0]; x < box.high[0]; ++x) texels_[std::size_t((z * 50 + y) * 70 + x)] = clear;
+        for (int x = box.low[0]; x < box.high[0]; ++x) texels_[(z * 50 + y) * 70 + x] = clear;
     GLint texture = 0;
     app_.gl().GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
     app_.gl().ClearTexSubImage(GLuint(texture), 0, box.low[0], box.low[1], box.low[2], box.high[0] - box.low[0],

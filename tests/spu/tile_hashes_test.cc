@@ -85,7 +85,7 @@ TEST(TileHashes, RandomChangesAreCoveredExactly) {
     for (unsigned i = 0; i < 1 + random() % 6; ++i) {
       const int x = 3 + int(random() % 50), y = int(random() % 37), z = 5 + int(random() % 40);
       texels[at(x, y, z)] ^= std::byte(1 + random() % 255);
-      expected[std::size_t((z - 5) / 16 * 12 + y / 16 * 4 + (x - 3) / 16)] = true;
+      expected[(z - 5) / 16 * 12 + y / 16 * 4 + (x - 3) / 16] = true;
     }
     // In slabs of any thickness, as the first time, or of whole tiles.
     std::vector<TexelBox> changed;
@@ -99,7 +99,7 @@ TEST(TileHashes, RandomChangesAreCoveredExactly) {
       for (int z = box.low[2]; z < box.high[2]; z += 16)
         for (int y = box.low[1]; y < box.high[1]; y += 16)
           for (int x = box.low[0]; x < box.high[0]; x += 16)
-            ++covered[std::size_t((z - 5) / 16 * 12 + y / 16 * 4 + (x - 3) / 16)];
+            ++covered[(z - 5) / 16 * 12 + y / 16 * 4 + (x - 3) / 16];
     for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_EQ(covered[i], expected[i] ? 1 : 0) << "tile " << i;
   }

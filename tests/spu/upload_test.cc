@@ -166,7 +166,7 @@ std::vector<Way> ways() {
          std::vector<double> values = the_other_field();
          for (int z = 4; z < 13; ++z)
            for (int y = 4; y < 13; ++y)
-             for (int x = 4; x < 13; ++x) values[std::size_t((z * blob.y + y) * blob.x + x)] = 120 / 255.0;
+             for (int x = 4; x < 13; ++x) values[(z * blob.y + y) * blob.x + x] = 120 / 255.0;
          return values;
        }},
       {"WithABorder",

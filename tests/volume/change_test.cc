@@ -144,7 +144,7 @@ TEST(TexelsShown, OfAllRanksAreAllThatIsStored) {
         ASSERT_TRUE(contains(description.stored, box));
         for (int z = box.low[2]; z < box.high[2]; ++z)
           for (int y = box.low[1]; y < box.high[1]; ++y)
-            for (int x = box.low[0]; x < box.high[0]; ++x) shown[std::size_t((z * 37 + y) * 43 + x)] = true;
+            for (int x = box.low[0]; x < box.high[0]; ++x) shown[(z * 37 + y) * 43 + x] = true;
       }
       EXPECT_EQ(std::count(shown.begin(), shown.end(), false), 0) << ranks << " ranks";
     }

@@ -273,7 +273,8 @@ void BrickStore::store_block(std::size_t block, const Texel* texels) {
 }
 
 std::vector<std::vector<BrickStore::Point>> BrickStore::points_in(const TexelBox& box, int axis) const {
-  std::vector<std::vector<Point>> points(std::size_t(block_counts_[axis]));
+  const auto blocks = std::size_t(block_counts_[axis]);
+  std::vector<std::vector<Point>> points(blocks);
   for (int block = 0; block < block_counts_[axis]; ++block)
     for (int k = 0; k < block_row; ++k) {
       const int point = std::min((first_block_[axis] + block) * block_cells + k, lattice_.cells[axis]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "volume/matrix.h"
 
@@ -68,9 +69,9 @@ std::vector<Stretch> field_along_ray(const Field& field, const std::array<int, 3
   for (std::size_t k = 0; k < 3; ++k) {
     if (way[k] == 0) continue;
     const double a = from[k] * size[k] - 0.5, b = to[k] * size[k] - 0.5;
-    const auto first = std::ceil(std::min(a, b)), last = std::floor(std::max(a, b));
-    for (double face = first; face <= last; ++face) {
-      const double s = ((face + 0.5) / size[k] - from[k]) / way[k];
+    const auto first = std::int64_t(std::ceil(std::min(a, b))), last = std::int64_t(std::floor(std::max(a, b)));
+    for (std::int64_t face = first; face <= last; ++face) {
+      const double s = ((double(face) + 0.5) / size[k] - from[k]) / way[k];
       if (s > 0 && s < 1) cuts.push_back(s);
     }
   }

@@ -39,8 +39,9 @@ Medium::Medium(double low, double high, std::vector<std::array<double, 4>> entri
   }
 }
 
-Medium Medium::of_rates(double low, double high, std::vector<Rate> entries) {
+Medium Medium::of_rates(double low, double high, const std::vector<Rate>& entries) {
   std::vector<std::array<double, 4>> flat;
+  flat.reserve(entries.size());
   for (const Rate& rate : entries)
     flat.push_back({rate.source[0], rate.source[1], rate.source[2], rate.extinction});
   return {low, high, std::move(flat), 0};
@@ -49,6 +50,7 @@ Medium Medium::of_rates(double low, double high, std::vector<Rate> entries) {
 Medium Medium::of_samples(const TransferFunction& function, double distance) {
   demand(distance > 0 && std::isfinite(distance), "the distance between samples must be positive");
   std::vector<std::array<double, 4>> entries;
+  entries.reserve(function.entries.size());
   for (const Rgba& entry : function.entries) entries.push_back({entry[0], entry[1], entry[2], entry[3]});
   return {function.low, function.high, std::move(entries), distance};
 }

@@ -24,7 +24,7 @@ class Medium {
  public:
   /// Source and extinction themselves are linear between `entries`, which lie evenly from `low` to `high`.
   /// Throws std::invalid_argument when there is none, or one is negative or not finite.
-  static Medium of_rates(double low, double high, std::vector<Rate> entries);
+  static Medium of_rates(double low, double high, const std::vector<Rate>& entries);
 
   /// A transfer function as viewers mean it: premultiplied colour and opacity of a sample are linear between
   /// entries, and a homogeneous layer as thick as the distance between samples shows exactly them. Its

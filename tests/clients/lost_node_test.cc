@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "tests/clients/stage.h"
@@ -28,16 +30,28 @@ class LostNode : public Stage, public testing::WithParamInterface<int> {
     return 0;
   }
 
-  /// Node groups that wait for the viewer: connections of rank 0 at the launcher's socket, but for the viewer's
-  /// own.
-  bool group_is_there() const {
+  /// Whether rank 0 of a group has reached the launcher's socket. The viewer, which knocks there now and then,
+  /// may have been stopped with a connection of its own.
+  bool group_is_there(pid_t viewer) const {
+    std::set<std::string> of_viewer;
+    std::error_code gone;
+    for (const auto& entry : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", viewer), gone))
+      of_viewer.insert(std::filesystem::read_symlink(entry.path(), gone).string());
     std::istringstream sockets(contents("/proc/net/unix"));
     const std::string path = runtime_.string();
-    int connected = 0;
-    // Columns: address, references, protocol, flags, type, state (03: connected), inode, path.
-    for (std::string line; std::getline(sockets, line);)
-      connected += line.find(path) != std::string::npos && line.find(" 0001 03 ") != std::string::npos;
-    return connected > 0 && processes("understudy-node").size() == ranks;
+    int at_launcher = 0;
+    int viewers_own = 0;
+    // Columns: address, references, protocol, flags, type, state (03: connected), inode, path of the accepting
+    // end.
+    for (std::string line; std::getline(sockets, line);) {
+      if (line.find(" 0001 03 ") == std::string::npos) continue;
+      at_launcher += line.find(path) != std::string::npos;
+      std::istringstream columns(line.substr(line.find(" 0001 03 ") + 9));
+      std::string inode;
+      columns >> inode;
+      viewers_own += of_viewer.contains(fmt::format("socket:[{}]", inode));
+    }
+    return at_launcher > viewers_own && processes("understudy-node").size() == ranks;
   }
 };
 
@@ -77,7 +91,7 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   kill(viewers.front(), SIGSTOP);
   const bool another_group = comes_true([&] {
     const pid_t now = rank(GetParam());
-    return now != 0 && now != killed && group_is_there();
+    return now != 0 && now != killed && group_is_there(viewers.front());
   });
   kill(viewers.front(), SIGCONT);
   const Outcome outcome = child.finish();

@@ -31,29 +31,35 @@ JUDGED = ["--preset", "engine", "--no-frame", "--background", "0.2", "0.4", "0.6
           "--slices", "20", "--frames", "2"]
 
 
-def texel(i, j, k, side, least):
+def texel(place, sides, least):
     """A shell with a bump: smooth, and different from all sides."""
-    x, y, z = ((c + 0.5) / side - 0.5 for c in (i, j, k))
+    x, y, z = ((c + 0.5) / side - 0.5 for c, side in zip(place, sides))
     radius = math.sqrt(x * x + 1.3 * y * y + z * z)
     shell = math.exp(-60 * (radius - 0.3) ** 2) * (0.6 + 0.4 * math.sin(9 * x + 4 * z))
     return int(least + (255 - least) * shell)
 
 
-def volume(side, least=0):
-    axis = range(side)
-    return bytes(texel(i, j, k, side, least) for k in axis for j in axis for i in axis)
+def volume(*sides, least=0):
+    x, y, z = map(range, sides)
+    return bytes(texel((i, j, k), sides, least) for k in z for j in y for i in x)
 
 
 def main():
     programs = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as folder:
         shell = pathlib.Path(folder) / "shell.20x20x20"
-        shell.write_bytes(volume(20))
+        shell.write_bytes(volume(20, 20, 20))
         judged = HERE / "traces" / "judged.14x14x14"
         if not judged.exists():
-            judged.write_bytes(volume(14, least=30))
+            judged.write_bytes(volume(14, 14, 14, least=30))
         ways = {name: [shell, *options] for name, options in FIRST_WAYS.items()}
         ways.update({name: [judged, *options, *JUDGED] for name, options in JUDGED_WAYS.items()})
+        # The viewer's bricks are 64 texels long: it takes a longer volume to have two.
+        rod = pathlib.Path(folder) / "rod.72x12x12"
+        rod.write_bytes(volume(72, 12, 12))
+        ways["bricks"] = [rod, "--mode", "bricks", *JUDGED]
+        ways["preint"] = [shell, "--mode", "preint", *JUDGED]
+        ways["lit"] = [shell, "--mode", "lit", *JUDGED]
         # Fewer than sixteen textures in a row are not looked at: its volume is the larger one.
         ways["stacks"] = [shell, "--mode", "stacks", *JUDGED]
         for name in sys.argv[2:] or ways:

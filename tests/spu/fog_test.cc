@@ -165,22 +165,7 @@ TEST(Fog, ThatHidesTheVolumeIsLeft) {
       "uniform mat4 camera; attribute vec3 corner; varying vec3 place; varying float gain;\n"
       "void main() { place = corner; gain = 0.3 + 0.5 * corner.z; gl_Position = camera * vec4(corner, 1.0); "
       "}\n";
-  std::array<GLuint, 2> shaders{};
-  GLsizei count = 0;
-  app->gl().GetAttachedShaders(1, 2, &count, shaders.data());
-  ASSERT_EQ(count, 2);
-  for (const GLuint shader : shaders) {
-    GLint type = 0;
-    app->gl().GetShaderiv(shader, GL_SHADER_TYPE, &type);
-    if (type != GL_VERTEX_SHADER) continue;
-    app->gl().ShaderSource(shader, 1, &source, nullptr);
-    app->gl().CompileShader(shader);
-  }
-  app->gl().LinkProgram(1);
-  app->gl().UseProgram(1);
-  app->gl().Uniform1i(app->gl().GetUniformLocation(1, "field"), 0);
-  app->gl().Uniform1i(app->gl().GetUniformLocation(1, "table"), 1);
-  app->gl().UseProgram(0);
+  replace_shader(*app, GL_VERTEX_SHADER, source);
   scene.draw(*app, 20);
   const auto under = app->read_pixels();
   EXPECT_EQ(app->substituted(), 0U);

@@ -113,18 +113,7 @@ TEST(Refusals, ShadersWhoseColourDependsOnPositionAreLeft) {
       "uniform sampler3D field; uniform sampler1D table;\n"
       "void main() { gl_FragColor = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r) * "
       "gl_TexCoord[0].y; }\n";
-  GLint current = 0;
-  app->gl().UseProgram(1);
-  app->gl().GetIntegerv(GL_CURRENT_PROGRAM, &current);
-  std::array<GLuint, 4> shaders{};
-  GLsizei count = 0;
-  app->gl().GetAttachedShaders(GLuint(current), 4, &count, shaders.data());
-  ASSERT_EQ(count, 1);
-  app->gl().ShaderSource(shaders[0], 1, &source, nullptr);
-  app->gl().CompileShader(shaders[0]);
-  app->gl().LinkProgram(GLuint(current));
-  app->gl().Uniform1i(app->gl().GetUniformLocation(GLuint(current), "table"), 1);
-  app->gl().UseProgram(0);
+  replace_shader(*app, GL_FRAGMENT_SHADER, source);
   scene.draw(*app, 20);
   const auto under = app->read_pixels();
   EXPECT_EQ(app->substituted(), 0U);

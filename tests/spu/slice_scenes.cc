@@ -874,4 +874,23 @@ std::vector<SliceScene> all_slice_scenes() {
           texture_stack(),         core_batched(),          fogged_polygons()};
 }
 
+void replace_shader(GlApplication& app, GLenum stage, const char* source) {
+  constexpr GLuint program = 1;
+  std::array<GLuint, 4> shaders{};
+  GLsizei count = 0;
+  app.gl().GetAttachedShaders(program, GLsizei(shaders.size()), &count, shaders.data());
+  for (GLsizei i = 0; i < count; ++i) {
+    GLint type = 0;
+    app.gl().GetShaderiv(shaders[std::size_t(i)], GL_SHADER_TYPE, &type);
+    if (GLenum(type) != stage) continue;
+    app.gl().ShaderSource(shaders[std::size_t(i)], 1, &source, nullptr);
+    app.gl().CompileShader(shaders[std::size_t(i)]);
+  }
+  app.gl().LinkProgram(program);
+  app.gl().UseProgram(program);
+  app.gl().Uniform1i(app.gl().GetUniformLocation(program, "field"), 0);
+  app.gl().Uniform1i(app.gl().GetUniformLocation(program, "table"), 1);
+  app.gl().UseProgram(0);
+}
+
 }  // namespace understudy::spu::testing

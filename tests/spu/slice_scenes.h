@@ -70,4 +70,8 @@ SliceScene degenerate_strip();
 
 std::vector<SliceScene> all_slice_scenes();
 
+/// Gives the scene's program, the only one that `app` has, another shader for `stage`. Linking forgets
+/// uniforms: the field stays on texture unit 0, the table on 1.
+void replace_shader(GlApplication& app, GLenum stage, const char* source);
+
 }  // namespace understudy::spu::testing

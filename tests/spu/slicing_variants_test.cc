@@ -140,21 +140,7 @@ TEST(Slabs, WhoseColourDependsOnTheirPlaceAreLeft) {
       "  vec2 ends = vec2(texture3D(field, front).r, texture3D(field, back).r);\n"
       "  gl_FragColor = texture2D(table, (ends * 255.0 + 0.5) / 256.0) * (0.5 + 0.5 * back.y);\n"
       "}\n";
-  std::array<GLuint, 2> shaders{};
-  GLsizei count = 0;
-  app->gl().GetAttachedShaders(1, 2, &count, shaders.data());
-  ASSERT_EQ(count, 2);
-  for (const GLuint shader : shaders) {
-    GLint type = 0;
-    app->gl().GetShaderiv(shader, GL_SHADER_TYPE, &type);
-    if (type != GL_FRAGMENT_SHADER) continue;
-    app->gl().ShaderSource(shader, 1, &source, nullptr);
-    app->gl().CompileShader(shader);
-  }
-  app->gl().LinkProgram(1);
-  app->gl().UseProgram(1);
-  app->gl().Uniform1i(app->gl().GetUniformLocation(1, "table"), 1);
-  app->gl().UseProgram(0);
+  replace_shader(*app, GL_FRAGMENT_SHADER, source);
   expect_left(*app, scene, "the colour depends on more than the sample (position, lighting)");
 }
 

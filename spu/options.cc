@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "compositor/exchange/settings.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -40,6 +42,14 @@ bool set_switch(Options& options, const std::string& text) {
   return on || off;
 }
 
+template <auto member, bool (*known)(compositor::ExchangeSettings&, std::string_view)>
+bool set_name(Options& options, const std::string& text) {
+  compositor::ExchangeSettings scratch;
+  if (!known(scratch, text)) return false;
+  options.*member = text;
+  return true;
+}
+
 struct Row {
   OptionText text;
   bool (*set)(Options&, const std::string&);
@@ -52,6 +62,14 @@ constexpr std::array rows{
     Row{{"--connect", "UNDERSTUDY_CONNECT", "PATH", "",
          "render on the node group behind this socket of `understudy serve`"},
         set_text<&Options::connect>},
+    Row{{"--exchange", "UNDERSTUDY_EXCHANGE", "NAME", "auto",
+         "how the nodes' partial pictures become one: serial, tree, direct-send, binary-swap, radix-k, or "
+         "auto, "
+         "the cheapest for each picture by what messages and bytes cost here"},
+        set_name<&Options::exchange, compositor::set_algorithm>},
+    Row{{"--pixels", "UNDERSTUDY_PIXELS", "NAME", "float",
+         "what travels between nodes: float (exact), half (rounds to 1/2048 of a value), byte (to 1/510)"},
+        set_name<&Options::pixels, compositor::set_layout>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
          "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
          "of "

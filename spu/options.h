@@ -18,7 +18,9 @@ struct Options {
   bool explain = false;
   bool disable = false;
   bool debug_tint = false;
-  std::string save_frames;  ///< folder for PFM files; empty: none
+  std::string save_frames;        ///< folder for PFM files; empty: none
+  std::string exchange = "auto";  ///< name of compositor::set_algorithm
+  std::string pixels = "float";   ///< name of compositor::set_layout
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application

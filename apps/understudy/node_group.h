@@ -23,6 +23,8 @@ struct NodeGroupPlan {
   int nodes = 1;
   std::filesystem::path socket;
   std::filesystem::path folder;  ///< for the nodes' log and mpirun's own files; must exist
+  std::string exchange = "auto";
+  std::string pixels = "float";
 };
 
 /// Why no nodes can be started here, with the fix, in one line; empty when they can.

@@ -164,7 +164,8 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   const RunFolder folder;
   std::optional<NodeGroupPlan> plan;
   if (options.nodes > 0 && options.connect.empty() && !options.disable) {
-    plan = NodeGroupPlan{options.nodes, folder.path() / "nodes.sock", folder.path()};
+    plan = NodeGroupPlan{options.nodes, folder.path() / "nodes.sock", folder.path(), options.exchange,
+                         options.pixels};
   }
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);

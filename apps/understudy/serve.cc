@@ -22,12 +22,33 @@ namespace {
 struct ServeArguments {
   int nodes = 1;
   std::string socket;
-  std::string folder;       ///< empty: one of its own
+  std::string folder;  ///< empty: one of its own
+  std::string exchange = "auto";
+  std::string pixels = "float";
   pid_t while_process = 0;  ///< 0: until asked to end
 };
 
 bool is_over(const ServeArguments& arguments) {
   return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
+}
+
+/// An option of the table that concerns the nodes alone; its variable counts too, for viewers that start nodes
+/// of their own.
+void add_node_option(CLI::App& subcommand, const std::string& flag, std::string& value) {
+  for (const spu::OptionText& option : spu::option_table()) {
+    if (option.flag != flag) continue;
+    const std::string variable = option.environment;
+    subcommand.add_option(flag, value, option.help)
+        ->envname(variable)
+        ->type_name(option.value)
+        ->capture_default_str()
+        ->check([variable](const std::string& text) {
+          spu::Options scratch;
+          return spu::set_option(scratch, variable, text)
+                     ? std::string()
+                     : fmt::format("'{}' is not a value this option takes", text);
+        });
+  }
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -41,7 +62,7 @@ int serve(const ServeArguments& arguments) {
   }
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path()});
+  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path(), arguments.exchange, arguments.pixels});
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
@@ -73,6 +94,8 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
                    "take over DIR, with the socket in it, and remove it at the end")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
+  add_node_option(*subcommand, "--exchange", arguments->exchange);
+  add_node_option(*subcommand, "--pixels", arguments->pixels);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

@@ -27,6 +27,8 @@ struct Outgoing {
 struct Incoming {
   Rank from = 0;
   std::span<std::byte> bytes;  ///< exactly as many as the sender sends
+  /// Set: the sender may send less, and this is how much it was. Such messages have at most 1 GiB.
+  std::size_t* received = nullptr;
 };
 
 /// All functions but rank() and size() may block until the other ranks take part, and throw LinkLost.

@@ -23,13 +23,13 @@ constexpr int picture_tag = 1;
 // OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
 // ranks that still work: first it only yields, then it sleeps for a sixteenth of the time it has waited so far
 // (so the wait grows by a sixteenth at most), a millisecond at most.
-void complete(std::vector<MPI_Request>& requests) {
+void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE) {
   constexpr auto only_yield = std::chrono::microseconds(100);
   constexpr auto longest_sleep = std::chrono::microseconds(1000);
   const auto start = Clock::now();
   for (;;) {
     int done = 0;
-    MPI_Testall(int(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+    MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
     if (done) return;
     const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
     if (waited < only_yield)
@@ -65,17 +65,29 @@ MpiLink::~MpiLink() {
 
 void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
   std::vector<MPI_Request> requests;
-  for (const Incoming& message : incoming)
+  std::vector<std::size_t> first;  // request of each incoming message
+  for (const Incoming& message : incoming) {
+    first.push_back(requests.size());
     in_pieces(message.bytes, [&](std::span<std::byte> piece) {
       MPI_Irecv(piece.data(), int(piece.size()), MPI_BYTE, message.from, picture_tag, MPI_COMM_WORLD,
                 &requests.emplace_back());
     });
+  }
   for (const Outgoing& message : outgoing)
     in_pieces(message.bytes, [&](std::span<const std::byte> piece) {
       MPI_Isend(piece.data(), int(piece.size()), MPI_BYTE, message.to, picture_tag, MPI_COMM_WORLD,
                 &requests.emplace_back());
     });
-  complete(requests);
+  std::vector<MPI_Status> statuses(requests.size());
+  complete(requests, statuses.data());
+  for (std::size_t i = 0; i < incoming.size(); ++i) {
+    if (incoming[i].received == nullptr) continue;
+    *incoming[i].received = incoming[i].bytes.size();
+    if (incoming[i].bytes.empty() || incoming[i].bytes.size() > max_bytes_per_message) continue;
+    int received = 0;
+    MPI_Get_count(&statuses[first[i]], MPI_BYTE, &received);
+    *incoming[i].received = std::size_t(received);
+  }
 }
 
 void MpiLink::broadcast(Rank root, std::span<std::byte> bytes) {

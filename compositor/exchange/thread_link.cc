@@ -26,14 +26,16 @@ class Group {
     arrived_.notify_all();
   }
 
-  void take(Rank from, Rank to, std::span<std::byte> bytes) {
+  std::size_t take(Rank from, Rank to, std::span<std::byte> bytes, bool may_be_less = false) {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !broken_.empty() || !queue(from, to).empty(); });
     if (queue(from, to).empty()) throw LinkLost(broken_);
     const std::vector<std::byte> message = std::move(queue(from, to).front());
     queue(from, to).pop_front();
-    if (message.size() != bytes.size()) throw std::logic_error("a rank sent another length than was expected");
-    if (!bytes.empty()) std::memcpy(bytes.data(), message.data(), bytes.size());
+    if (message.size() > bytes.size() || (message.size() < bytes.size() && !may_be_less))
+      throw std::logic_error("a rank sent another length than was expected");
+    if (!message.empty()) std::memcpy(bytes.data(), message.data(), message.size());
+    return message.size();
   }
 
   void break_off(const std::string& why) {
@@ -63,11 +65,17 @@ class ThreadLink : public Link {
 
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) group_.post(rank_, message.to, message.bytes);
-    for (const Incoming& message : incoming) group_.take(message.from, rank_, message.bytes);
+    for (const Incoming& message : incoming) {
+      const std::size_t received = group_.take(message.from, rank_, message.bytes, message.received != nullptr);
+      if (message.received != nullptr) *message.received = received;
+    }
   }
 
   void broadcast(Rank root, std::span<std::byte> bytes) override {
-    if (rank_ != root) return group_.take(root, rank_, bytes);
+    if (rank_ != root) {
+      group_.take(root, rank_, bytes);
+      return;
+    }
     for (Rank other = 0; other < size(); ++other)
       if (other != root) group_.post(root, other, bytes);
   }

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "compositor/exchange/direct_send.h"
+#include "compositor/exchange/cost.h"
+#include "compositor/exchange/exchange.h"
 #include "compositor/node/clients.h"
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
@@ -52,7 +53,8 @@ struct Outcome {
 
 class Node {
  public:
-  explicit Node(Link& link) : link_(link), renderer_(link.rank(), link.size()) {}
+  Node(Link& link, const ExchangeSettings& exchange)
+      : link_(link), exchange_(exchange), renderer_(link.rank(), link.size()) {}
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
@@ -70,6 +72,8 @@ class Node {
   Exchanged composite(const std::vector<Outcome>& outcomes);
 
   Link& link_;
+  ExchangeSettings exchange_;
+  std::optional<LinkCost> link_cost_;  // measured before the first picture that needs a choice
   RankRenderer renderer_;
   /// By application, and there by place.
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
@@ -355,13 +359,18 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
-  return direct_send(std::move(image_), {op_, visible_order_, footprints}, link_);
+  if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
+  const Schedule chosen = exchange_.algorithm
+                              ? schedule(*exchange_.algorithm, visible_order_, footprints)
+                              : cheapest(visible_order_, footprints, exchange_.layout, *link_cost_);
+  return exchange(std::move(image_), chosen, op_, exchange_.layout, link_);
 }
 
 }  // namespace
 
-bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience) {
-  Node node(link);
+bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience,
+              const ExchangeSettings& exchange) {
+  Node node(link, exchange);
   if (link.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

@@ -1,5 +1,5 @@
 // The life of a render node: rank 0 listens to the applications and tells all ranks what to do; every rank
-// keeps and draws its share; the images are composited by direct-send and rank 0 leaves the picture in the
+// keeps and draws its share; the images are composited (exchange/) and rank 0 leaves the picture in the
 // application's memory.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compositor/exchange/link.h"
+#include "compositor/exchange/settings.h"
 #include "compositor/service/limits.h"
 
 namespace understudy::compositor {
@@ -21,6 +22,7 @@ namespace understudy::compositor {
 /// middle of an exchange, is thrown: the caller then must end the group with link.abandon(), or the other ranks
 /// would wait for ever.
 bool run_node(Link& link, const std::string& control_path,
-              std::chrono::milliseconds stall_patience = limits::stall_patience);
+              std::chrono::milliseconds stall_patience = limits::stall_patience,
+              const ExchangeSettings& exchange = {});
 
 }  // namespace understudy::compositor

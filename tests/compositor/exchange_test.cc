@@ -1,3 +1,5 @@
+#include "compositor/exchange/exchange.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,8 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "compositor/exchange/direct_send.h"
-#include "compositor/exchange/serial.h"
+#include "compositor/exchange/cost.h"
 #include "compositor/exchange/thread_link.h"
 #include "tests/compositor/forwarding_link.h"
 #include "volume/raycast/ray_caster.h"
@@ -103,15 +104,17 @@ struct Result {
   int messages = 0;
 };
 
-template <class Exchange>
-Result exchanged(const Scene& scene, Exchange exchange) {
+Schedule schedule_of(const Scene& scene, Algorithm algorithm, std::span<const int> factors = {}) {
+  return schedule(algorithm, scene.order, scene.footprints, factors);
+}
+
+Result exchanged(const Scene& scene, const Schedule& schedule, Layout layout = Layout::rgba32f) {
   Result result;
   std::atomic<std::uint64_t> bytes = 0;
   std::atomic<int> messages = 0;
   run_ranks(int(scene.images.size()), [&](Link& link) {
     CountingLink counting(link, bytes, messages);
-    Exchanged done =
-        exchange(scene.images[std::size_t(link.rank())], {scene.op, scene.order, scene.footprints}, counting);
+    Exchanged done = exchange(scene.images[std::size_t(link.rank())], schedule, scene.op, layout, counting);
     if (link.rank() != 0) {
       EXPECT_TRUE(done.picture.rgba.empty());
       return;
@@ -124,6 +127,10 @@ Result exchanged(const Scene& scene, Exchange exchange) {
   return result;
 }
 
+Result exchanged(const Scene& scene, Algorithm algorithm) {
+  return exchanged(scene, schedule_of(scene, algorithm));
+}
+
 constexpr std::array all_operators{Operator::over, Operator::max, Operator::min, Operator::add};
 
 TEST(DirectSend, EqualsSerialForAnyRankCountOperatorAndFootprint) {
@@ -134,7 +141,8 @@ TEST(DirectSend, EqualsSerialForAnyRankCountOperatorAndFootprint) {
         const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         const Scene scene = random_scene(op, ranks, seed);
-        const Result direct = exchanged(scene, direct_send), one_by_one = exchanged(scene, serial);
+        const Result direct = exchanged(scene, Algorithm::direct_send),
+                     one_by_one = exchanged(scene, Algorithm::serial);
         ASSERT_EQ(direct.picture.rect, one_by_one.picture.rect);
         ASSERT_EQ(direct.picture.rgba, one_by_one.picture.rgba);
         worst = std::max(worst, largest_error(scene, direct.picture));
@@ -148,7 +156,8 @@ TEST(DirectSend, EqualsSerialForAnyRankCountOperatorAndFootprint) {
 TEST(DirectSend, ServesSixteenAndMoreRanks) {
   for (const int ranks : {16, 23}) {
     const Scene scene = random_scene(Operator::over, ranks, unsigned(ranks));
-    EXPECT_EQ(exchanged(scene, direct_send).picture.rgba, exchanged(scene, serial).picture.rgba);
+    EXPECT_EQ(exchanged(scene, Algorithm::direct_send).picture.rgba,
+              exchanged(scene, Algorithm::serial).picture.rgba);
   }
 }
 
@@ -156,7 +165,7 @@ TEST(DirectSend, PictureCoversExactlyAllFootprints) {
   const Scene scene = random_scene(Operator::over, 5, 77);
   Rect whole;
   for (const Rect& footprint : scene.footprints) whole = bounding(whole, footprint);
-  EXPECT_EQ(exchanged(scene, direct_send).picture.rect, whole);
+  EXPECT_EQ(exchanged(scene, Algorithm::direct_send).picture.rect, whole);
 }
 
 TEST(DirectSend, OneContributingRankMeansNoCompositing) {
@@ -166,7 +175,7 @@ TEST(DirectSend, OneContributingRankMeansNoCompositing) {
       scene.images[rank] = Image(rank == only ? Rect{1, 2, 3, 4} : Rect{});
     for (std::size_t rank = 0; rank < 4; ++rank) scene.footprints[rank] = scene.images[rank].rect;
     std::iota(scene.images[only].rgba.begin(), scene.images[only].rgba.end(), 0.0F);
-    const Result result = exchanged(scene, direct_send);
+    const Result result = exchanged(scene, Algorithm::direct_send);
     EXPECT_EQ(result.picture.rgba, scene.images[only].rgba);
     EXPECT_EQ(result.messages, only == 0 ? 0 : 1);  // to rank 0, as it is
   }
@@ -176,7 +185,7 @@ TEST(DirectSend, NothingToShowMeansNoMessage) {
   Scene scene = random_scene(Operator::max, 6, 5);
   for (std::size_t rank = 0; rank < 6; ++rank) scene.images[rank] = Image();
   std::ranges::fill(scene.footprints, Rect{});
-  const Result result = exchanged(scene, direct_send);
+  const Result result = exchanged(scene, Algorithm::direct_send);
   EXPECT_TRUE(result.picture.rgba.empty());
   EXPECT_EQ(result.messages, 0);
 }
@@ -185,11 +194,11 @@ TEST(DirectSend, BytesFollowTheFootprintsAndNotThePicture) {
   // Eight footprints of an eighth of the picture each, side by side.
   Scene scene;
   for (int rank = 0; rank < 8; ++rank) {
-    scene.images.emplace_back(Rect{0, 16 * rank, 128, 16});
+    std::ranges::fill(scene.images.emplace_back(Rect{0, 16 * rank, 128, 16}).rgba, 0.5F);
     scene.footprints.push_back(scene.images.back().rect);
     scene.order.push_back(rank);
   }
-  const Result result = exchanged(scene, direct_send);
+  const Result result = exchanged(scene, Algorithm::direct_send);
   const std::uint64_t picture = 128 * 128 * 16;
   std::printf("%llu bytes of a picture of %llu\n", static_cast<unsigned long long>(result.bytes_counted),
               static_cast<unsigned long long>(picture));
@@ -208,9 +217,206 @@ TEST(DirectSend, HoldsForManyThinLayersInOnePlace) {
     scene.footprints.push_back(image.rect);
     scene.order.push_back(rank);
   }
-  const double error = largest_error(scene, exchanged(scene, direct_send).picture);
+  const double error = largest_error(scene, exchanged(scene, Algorithm::direct_send).picture);
   std::printf("largest error over %d layers %.2g\n", layers, error);
   EXPECT_LE(error, 2e-6);
+}
+
+/// By how much a picture may lie off, when every value is rounded `hops` times on its way.
+double bound_of(Layout layout, int hops) {
+  switch (layout) {
+    case Layout::rgba32f:
+      return 2e-6;
+    case Layout::rgba16f:
+      return hops * std::ldexp(1.0, -11);
+    case Layout::rgba8:
+      return hops / 510.0;
+  }
+  return 0;
+}
+
+TEST(Exchange, EveryAlgorithmLayoutAndOperatorGivesTheProductInDouble) {
+  for (const Layout layout : {Layout::rgba32f, Layout::rgba16f, Layout::rgba8}) {
+    for (std::size_t a = 0; a < algorithm_count; ++a) {
+      double worst = 0;
+      for (int ranks = 1; ranks <= 16; ++ranks)
+        for (const Operator op : all_operators)
+          for (unsigned trial = 0; trial < 3; ++trial) {
+            const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
+            SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
+            Scene scene = random_scene(op, ranks, seed);
+            // Bytes end at 1, sums do not.
+            if (op == Operator::add && layout == Layout::rgba8)
+              for (Image& image : scene.images)
+                for (float& value : image.rgba) value /= float(ranks);
+            const Schedule plan = schedule_of(scene, Algorithm(a));
+            const Result result = exchanged(scene, plan, layout);
+            ASSERT_EQ(result.picture.rect, plan.whole);
+            ASSERT_EQ(result.bytes_told, result.bytes_counted);
+            // The errors of all ranks add up; under `add` each value may be as large as the sum.
+            const int layers = op == Operator::over || op == Operator::add ? ranks : 1;
+            const double error = largest_error(scene, result.picture);
+            const double scale = op == Operator::add && layout == Layout::rgba16f ? ranks : 1;
+            ASSERT_LE(error, scale * bound_of(layout, layers + int(plan.rounds.size())));
+            worst = std::max(worst, error);
+          }
+      std::printf("%-11s %zu bytes a pixel: largest error %.2g\n", std::string(name_of(Algorithm(a))).c_str(),
+                  bytes_per_pixel(layout), worst);
+    }
+  }
+}
+
+TEST(Exchange, RadixKHoldsForAnyFactors) {
+  const Scene scene = [] {
+    Scene all = random_scene(Operator::over, 12, 3);
+    for (std::size_t rank = 0; rank < 12; ++rank)
+      if (all.footprints[rank].empty()) {
+        all.images[rank] = Image({int(rank), 0, 5, 5});
+        std::ranges::fill(all.images[rank].rgba, 0.25F);
+        all.footprints[rank] = all.images[rank].rect;
+      }
+    return all;
+  }();
+  for (const std::vector<int>& factors :
+       std::vector<std::vector<int>>{{12}, {2, 6}, {6, 2}, {3, 4}, {2, 3, 2}}) {
+    const Result result = exchanged(scene, schedule_of(scene, Algorithm::radix_k, factors));
+    EXPECT_LE(largest_error(scene, result.picture), 2e-6);
+  }
+  EXPECT_THROW(schedule_of(scene, Algorithm::radix_k, std::vector<int>{5, 2}), std::invalid_argument);
+  EXPECT_EQ(radix_factors(96), (std::vector<int>{4, 4, 2, 3}));
+}
+
+TEST(Exchange, MessagesAndPixelsAreThoseOfItsCost) {
+  for (std::size_t a = 0; a < algorithm_count; ++a)
+    for (const int ranks : {2, 3, 8, 13}) {
+      // No pixel is untouched, so that all of every rectangle travels.
+      Scene scene = random_scene(Operator::add, ranks, unsigned(ranks));
+      for (Image& image : scene.images)
+        for (float& value : image.rgba) value += 1;
+      const Schedule plan = schedule_of(scene, Algorithm(a));
+      const ExchangeCost counted = cost(plan, Layout::rgba32f, {});
+      const Result result = exchanged(scene, plan);
+      EXPECT_EQ(std::uint64_t(result.messages), counted.messages) << name_of(Algorithm(a)) << ' ' << ranks;
+      constexpr std::uint64_t head = 12;
+      // What a merged image's rectangle holds beside the images travels as runs, so at most:
+      EXPECT_LE(result.bytes_counted, 16 * counted.pixels_sent + head * counted.messages);
+      if (Algorithm(a) == Algorithm::serial) {
+        EXPECT_EQ(result.bytes_counted, 16 * counted.pixels_sent + head * counted.messages);
+      }
+    }
+}
+
+TEST(Exchange, UntouchedPixelsStayAtHome) {
+  Scene scene;
+  for (int rank = 0; rank < 4; ++rank) {
+    Image& image = scene.images.emplace_back(Rect{0, 0, 64, 64});
+    for (int y = 0; y < 4; ++y) std::fill_n(image.at(8, 16 * rank + y), 4 * 4, 0.5F);
+    scene.footprints.push_back(image.rect);
+    scene.order.push_back(rank);
+  }
+  for (const Operator op : {Operator::over, Operator::max, Operator::add}) {
+    scene.op = op;
+    for (std::size_t a = 0; a < algorithm_count; ++a) {
+      const Result result = exchanged(scene, Algorithm(a));
+      EXPECT_LE(result.bytes_counted, std::uint64_t(64 * 64 * 16) / 10) << name_of(Algorithm(a));
+      EXPECT_LE(largest_error(scene, result.picture), 2e-6);
+    }
+  }
+}
+
+TEST(Exchange, MinimumLeavesUntouchedPixelsAloneInAnyLayout) {
+  Scene scene;
+  scene.op = Operator::min;
+  for (int rank = 0; rank < 3; ++rank) {
+    Image& image = scene.images.emplace_back(Rect{0, 0, 9, 3});
+    std::ranges::fill(image.rgba, volume::neutral_value(Operator::min));
+    std::fill_n(image.at(rank, rank), 4, 1.0F);
+    scene.footprints.push_back(image.rect);
+    scene.order.push_back(rank);
+  }
+  for (const Layout layout : {Layout::rgba32f, Layout::rgba16f, Layout::rgba8}) {
+    const Result result = exchanged(scene, schedule_of(scene, Algorithm::binary_swap), layout);
+    EXPECT_EQ(result.picture.at(0, 0)[0], 1.0F);
+    EXPECT_EQ(result.picture.at(8, 0)[0], volume::neutral_value(Operator::min));
+  }
+}
+
+TEST(Exchange, AutoTakesFewMessagesWhereLatencyRulesAndFewBytesWhereBandwidthDoes) {
+  Scene scene;
+  for (int rank = 0; rank < 16; ++rank) {
+    scene.footprints.push_back({0, 0, 256, 256});
+    scene.order.push_back(rank);
+  }
+  const auto chosen = [&](const LinkCost& link) {
+    const Schedule best = cheapest(scene.order, scene.footprints, Layout::rgba32f, link);
+    for (std::size_t a = 0; a < algorithm_count; ++a)
+      EXPECT_LE(cost(best, Layout::rgba32f, link).seconds,
+                cost(schedule_of(scene, Algorithm(a)), Layout::rgba32f, link).seconds);
+    return cost(best, Layout::rgba32f, link);
+  };
+  const ExchangeCost slow_start = chosen({1, 0, 0}), narrow = chosen({0, 1, 0});
+  EXPECT_LT(slow_start.messages, narrow.messages);
+  EXPECT_LT(narrow.most_pixels_sent, slow_start.most_pixels_sent + 1);
+}
+
+TEST(Exchange, CostOfAFullPictureIsThatOfThePapers) {
+  // Magallon, Hopf, Ertl 2001, section 3.2: serial N - 1 pictures to one rank; direct-send (N - 1)/N of a
+  // picture from each rank, and as much again in strips to rank 0.
+  constexpr int ranks = 8;
+  constexpr std::uint64_t picture = 256 * 256;
+  std::vector<Rank> order(ranks);
+  std::iota(order.begin(), order.end(), 0);
+  const std::vector<Rect> footprints(ranks, Rect{0, 0, 256, 256});
+  const auto of = [&](Algorithm algorithm) {
+    return cost(schedule(algorithm, order, footprints), Layout::rgba32f, {});
+  };
+  EXPECT_EQ(of(Algorithm::serial).pixels_sent, (ranks - 1) * picture);
+  EXPECT_EQ(of(Algorithm::tree).pixels_sent, (ranks - 1) * picture);
+  const std::uint64_t strips_home = picture * (ranks - 1) / ranks;
+  EXPECT_EQ(of(Algorithm::direct_send).pixels_sent, (ranks - 1) * picture + strips_home);
+  EXPECT_EQ(of(Algorithm::direct_send).messages, ranks * (ranks - 1) + ranks - 1);
+  // Halves, quarters, eighths: as many pixels, and 3 messages of each rank instead of 7.
+  EXPECT_EQ(of(Algorithm::binary_swap).pixels_sent, (ranks - 1) * picture + strips_home);
+  EXPECT_EQ(of(Algorithm::binary_swap).messages, ranks * 3 + ranks - 1);
+}
+
+TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {
+  ExchangeSettings settings;
+  for (std::size_t a = 0; a < algorithm_count; ++a) {
+    EXPECT_TRUE(set_algorithm(settings, name_of(Algorithm(a))));
+    EXPECT_EQ(settings.algorithm, Algorithm(a));
+  }
+  EXPECT_FALSE(set_algorithm(settings, "tre"));
+  EXPECT_EQ(settings.algorithm, Algorithm::radix_k);
+  EXPECT_TRUE(set_algorithm(settings, "auto"));
+  EXPECT_FALSE(settings.algorithm);
+  EXPECT_TRUE(set_layout(settings, "half"));
+  EXPECT_FALSE(set_layout(settings, ""));
+  EXPECT_EQ(settings.layout, Layout::rgba16f);
+}
+
+TEST(PixelMessages, ThatDoNotFitTheirRectangleAreRefused) {
+  Image image({0, 0, 7, 5});
+  std::fill_n(image.at(2, 2), 4, 1.0F);
+  const PixelMessage message = encode_pixels(image, image.rect, Operator::over, Layout::rgba32f);
+  const std::vector<std::byte> whole(message.bytes().begin(), message.bytes().end());
+  const auto decode = [&](const std::vector<std::byte>& bytes) {
+    PixelMessage arrived = room_for_pixels(image.rect, Layout::rgba32f);
+    std::ranges::copy(bytes, arrived.room().begin());
+    arrived.received() = bytes.size();
+    return decode_pixels(arrived, image.rect, Operator::over, Layout::rgba32f);
+  };
+  EXPECT_EQ(decode(whole).rgba, image.rgba);
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_THROW(decode({whole.begin(), whole.begin() + std::ptrdiff_t(length)}), LinkLost) << length;
+  for (std::size_t i = 8; i < whole.size(); ++i) {
+    std::vector<std::byte> changed = whole;
+    changed[i] ^= std::byte{0x80};
+    try {
+      EXPECT_EQ(decode(changed).rgba.size(), image.rgba.size());
+    } catch (const LinkLost&) {
+    }
+  }
 }
 
 TEST(ThreadLink, ARankThatFailsLeavesNobodyWaiting) {

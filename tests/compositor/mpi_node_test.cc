@@ -23,7 +23,7 @@ using namespace testing;
 // One mpirun and its ranks.
 class MpiGroup {
  public:
-  MpiGroup(int ranks, const std::string& path) {
+  MpiGroup(int ranks, const std::string& path, const std::vector<std::string>& options = {}) {
     std::vector<std::string> words{MPIEXEC,
                                    "-n",
                                    std::to_string(ranks),
@@ -36,6 +36,7 @@ class MpiGroup {
                                    UNDERSTUDY_NODE,
                                    "--control",
                                    path};
+    words.insert(words.end(), options.begin(), options.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -103,6 +104,36 @@ TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
     // All ranks end, in peace, when the launcher lets go.
     launcher.reset();
     EXPECT_EQ(group.wait(), 0);
+  }
+}
+
+TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
+  const auto embedded = embedded_service();
+  const Texture texture = some_texture();
+  upload(*embedded, texture);
+  const volume::RenderRequest request = some_request(texture);
+  const volume::Image expected = picture_of(*embedded, request);
+  const std::vector<std::pair<std::vector<std::string>, double>> ways{
+      {{"--exchange", "serial"}, 1e-5},
+      {{"--exchange", "tree"}, 1e-5},
+      {{"--exchange", "direct-send"}, 1e-5},
+      {{"--exchange", "binary-swap"}, 1e-5},
+      {{"--exchange", "radix-k"}, 1e-5},
+      {{"--exchange", "tree", "--pixels", "half"}, 6.0 / 2048},
+      {{"--exchange", "auto", "--pixels", "byte"}, 6.0 / 510}};
+  for (const auto& [options, bound] : ways) {
+    const ScratchFolder folder;
+    const std::string path = folder / "control";
+    Launcher launcher(path);
+    MpiGroup group(3, path, options);
+    const auto linked = linked_service(path, 60'000);
+    upload(*linked, texture);
+    const Rendered rendered = linked->render(request);
+    const double apart = largest_difference(whole_picture(rendered, request), expected);
+    std::printf("%-12s %-5s at most %.2g apart, %llu bytes\n", options[1].c_str(),
+                options.size() > 2 ? options[3].c_str() : "float", apart,
+                static_cast<unsigned long long>(rendered.counts.bytes_exchanged));
+    EXPECT_LE(apart, bound) << options[1];
   }
 }
 

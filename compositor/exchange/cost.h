@@ -1,0 +1,37 @@
+// What an exchange will cost, counted from its schedule before anything is sent; and which one costs least.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "compositor/exchange/pixel_layout.h"
+#include "compositor/exchange/schedule.h"
+
+namespace understudy::compositor {
+
+/// A LogP-like model: a rank spends `latency` on each message, `per_byte` on each byte in the busier direction,
+/// and `per_pixel` on each pixel that it blends, in seconds.
+struct LinkCost {
+  double latency = 20e-6;
+  double per_byte = 0.2e-9;
+  double per_pixel = 2e-9;
+};
+
+struct ExchangeCost {
+  std::uint64_t messages = 0;
+  std::uint64_t pixels_sent = 0;       ///< that travel, when all pixels of the rectangles do
+  std::uint64_t most_pixels_sent = 0;  ///< by any one rank
+  double seconds = 0;                  ///< rounds one after the other, each as long as its slowest rank
+};
+
+ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link);
+
+/// The schedule that costs least; among equals the first in the order of Algorithm.
+Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
+                  const LinkCost& link);
+
+/// Collective: measured between rank 0 and the last rank, and the same on all ranks afterwards. Takes a few
+/// milliseconds. A single rank has the defaults.
+LinkCost measure_link(Link& link);
+
+}  // namespace understudy::compositor

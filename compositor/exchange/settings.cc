@@ -1,0 +1,32 @@
+#include "compositor/exchange/settings.h"
+
+#include <array>
+#include <utility>
+
+namespace understudy::compositor {
+
+bool set_algorithm(ExchangeSettings& settings, std::string_view name) {
+  if (name == "auto") {
+    settings.algorithm.reset();
+    return true;
+  }
+  for (std::size_t i = 0; i < algorithm_count; ++i) {
+    if (name_of(Algorithm(i)) != name) continue;
+    settings.algorithm = Algorithm(i);
+    return true;
+  }
+  return false;
+}
+
+bool set_layout(ExchangeSettings& settings, std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, Layout>, 3> names{
+      {{"float", Layout::rgba32f}, {"half", Layout::rgba16f}, {"byte", Layout::rgba8}}};
+  for (const auto& [known, layout] : names) {
+    if (known != name) continue;
+    settings.layout = layout;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,27 @@
+// Which exchange a node group uses, and the names that users give it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compositor/exchange/schedule.h"
+
+namespace understudy::compositor {
+
+/// What a value is rounded to, each time it travels: rgba32f not at all; rgba16f to 2^-11 of itself, at most
+/// 65504; rgba8 to 1/510, in [0, 1].
+enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
+
+struct ExchangeSettings {
+  std::optional<Algorithm> algorithm;  ///< none: for each picture the one that costs least
+  Layout layout = Layout::rgba32f;
+};
+
+/// "auto", or an algorithm's name as in name_of(): "direct-send". False, with `settings` unchanged, for any
+/// other.
+bool set_algorithm(ExchangeSettings& settings, std::string_view name);
+/// "float", "half" or "byte". False, with `settings` unchanged, for any other.
+bool set_layout(ExchangeSettings& settings, std::string_view name);
+
+}  // namespace understudy::compositor

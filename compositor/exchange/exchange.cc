@@ -43,6 +43,8 @@ class Player {
 
     std::vector<PixelMessage> messages;
     std::vector<Outgoing> outgoing;
+    messages.reserve(given.size());
+    outgoing.reserve(given.size());
     for (const Piece* piece : given) {
       messages.push_back(encode_pixels(image_, piece->rect, op_, layout_));
       bytes_to_tell_ += messages.back().size();

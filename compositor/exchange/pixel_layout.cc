@@ -47,6 +47,17 @@ void from_halves(const std::byte* from, std::size_t floats, float* to) {
   }
 }
 
+void to_bytes(const float* from, std::size_t floats, std::byte* to) {
+  const Floats wide;
+  const hn::RebindToSigned<Floats> whole;
+  HWY_ALIGN std::array<std::int32_t, 4> values;
+  for (std::size_t i = 0; i < floats; i += hn::Lanes(wide)) {
+    const auto bounded = hn::Max(hn::Min(hn::LoadU(wide, from + i), hn::Set(wide, 1.0F)), hn::Zero(wide));
+    hn::Store(hn::NearestInt(hn::Mul(bounded, hn::Set(wide, 255.0F))), whole, values.data());
+    for (std::size_t k = 0; k < hn::Lanes(wide); ++k) to[i + k] = std::byte(values[k]);
+  }
+}
+
 }  // namespace understudy::compositor::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -55,6 +66,7 @@ namespace understudy::compositor {
 
 HWY_EXPORT(to_halves);
 HWY_EXPORT(from_halves);
+HWY_EXPORT(to_bytes);
 
 namespace {
 
@@ -109,9 +121,7 @@ void put_pixels(const float* from, std::size_t floats, Layout layout, std::byte*
       HWY_DYNAMIC_DISPATCH(to_halves)(from, floats, to);
       break;
     case Layout::rgba8:
-      std::transform(from, from + floats, to, [](float value) {
-        return std::byte(value > 0 ? int(std::min(value, 1.0F) * 255.0F + 0.5F) : 0);
-      });
+      HWY_DYNAMIC_DISPATCH(to_bytes)(from, floats, to);
       break;
   }
 }

@@ -104,6 +104,7 @@ void run_ranks(int ranks, const std::function<void(Link&)>& body) {
   std::exception_ptr first;
   {
     std::vector<std::jthread> threads;
+    threads.reserve(std::size_t(ranks));
     for (Rank rank = 0; rank < ranks; ++rank) {
       threads.emplace_back([&, rank] {
         ThreadLink link(group, rank);

@@ -38,6 +38,7 @@ class MpiGroup {
                                    path};
     words.insert(words.end(), options.begin(), options.end());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     // OpenMPI keeps memory until the end; that is not what the sanitizer looks for here.

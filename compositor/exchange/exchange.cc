@@ -30,10 +30,11 @@ class Player {
 
   void play(const Round& round) {
     const Rank me = link_.rank();
-    std::vector<const Piece*> given, arriving, kept;
+    std::vector<const Piece*> given, arriving;
+    const Piece* kept = nullptr;
     for (const Piece& piece : round.pieces) {
       if (piece.from == me && piece.to == me)
-        kept.push_back(&piece);
+        kept = &piece;
       else if (piece.from == me)
         given.push_back(&piece);
       else if (piece.to == me)
@@ -62,8 +63,7 @@ class Player {
     link_.transfer(outgoing, incoming);
 
     std::vector<Contribution> contributions;
-    for (const Piece* piece : kept)
-      contributions.push_back({schedule_.position[std::size_t(me)], {}, piece->rect});
+    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], {}, kept->rect});
     for (std::size_t i = 0; i < arriving.size(); ++i) {
       bytes_to_tell_ += arrived[i].told();
       contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)],

@@ -30,8 +30,4 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
 Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
                   const LinkCost& link);
 
-/// Collective: measured between rank 0 and the last rank, and the same on all ranks afterwards. Takes a few
-/// milliseconds. A single rank has the defaults.
-LinkCost measure_link(Link& link);
-
 }  // namespace understudy::compositor

@@ -14,6 +14,7 @@
 
 #include "compositor/exchange/cost.h"
 #include "compositor/exchange/exchange.h"
+#include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
 #include "compositor/service.h"
 #include "compositor/service/limits.h"

@@ -1,0 +1,73 @@
+#include "compositor/exchange/measure_link.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <vector>
+
+#include "compositor/blend.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The shortest way there and back of `bytes`, halved.
+double one_way(Link& link, Rank other, std::vector<std::byte>& bytes) {
+  constexpr int rounds = 8;
+  double shortest = std::numeric_limits<double>::max();
+  for (int round = 0; round < rounds; ++round) {
+    const auto start = Clock::now();
+    if (link.rank() == 0) {
+      const Outgoing there{other, bytes};
+      const Incoming back{other, bytes};
+      link.transfer({&there, 1}, {});
+      link.transfer({}, {&back, 1});
+    } else if (link.rank() == other) {
+      const Outgoing back{0, bytes};
+      const Incoming there{0, bytes};
+      link.transfer({}, {&there, 1});
+      link.transfer({&back, 1}, {});
+    }
+    shortest = std::min(shortest, seconds_since(start) / 2);
+  }
+  return shortest;
+}
+
+double seconds_per_blended_pixel() {
+  constexpr std::size_t pixels = 1 << 16;
+  std::vector<float> front(4 * pixels, 0.0F);
+  const std::vector<float> back(4 * pixels, 0.25F);
+  double shortest = std::numeric_limits<double>::max();
+  for (int round = 0; round < 4; ++round) {
+    const auto start = Clock::now();
+    blend(volume::Operator::over, front, back);
+    shortest = std::min(shortest, seconds_since(start));
+  }
+  return shortest / double(pixels);
+}
+
+}  // namespace
+
+LinkCost measure_link(Link& link) {
+  LinkCost measured;
+  if (link.size() > 1) {
+    constexpr std::size_t large = std::size_t(1) << 20;
+    const Rank last = link.size() - 1;
+    std::vector<std::byte> small_message(1), large_message(large);
+    const double latency = one_way(link, last, small_message);
+    const double transfer = one_way(link, last, large_message);
+    measured.latency = latency;
+    measured.per_byte = std::max(0.0, transfer - latency) / double(large);
+    measured.per_pixel = seconds_per_blended_pixel();
+    link.broadcast(0, bytes_of(measured));
+  }
+  return measured;
+}
+
+}  // namespace understudy::compositor

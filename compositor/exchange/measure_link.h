@@ -1,0 +1,13 @@
+// What messages, bytes and blending cost between these ranks, now.
+#pragma once
+
+#include "compositor/exchange/cost.h"
+#include "compositor/exchange/link.h"
+
+namespace understudy::compositor {
+
+/// Collective: measured between rank 0 and the last rank, and the same on all ranks afterwards. Takes a few
+/// milliseconds. A single rank has the defaults.
+LinkCost measure_link(Link& link);
+
+}  // namespace understudy::compositor

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "tests/volume/parts.h"
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"
 #include "volume/kd_tree.h"
@@ -10,51 +11,6 @@
 
 namespace understudy::volume::testing {
 namespace {
-
-struct Whole {
-  Image image;
-  FrameCounts counts;
-};
-
-Whole render_whole(const Texture& texture, const RenderRequest& request) {
-  Whole whole{Image(request.window), {}};
-  const BrickStore store = filled(texture);
-  raycast(store, request, whole.image, whole.counts);
-  return whole;
-}
-
-/// Every rank renders its footprint alone; the pictures are composed in visibility order.
-Whole render_parts(const Texture& texture, const RenderRequest& request, int ranks) {
-  const KdTree tree(texture.description, ranks);
-  Whole whole{Image(request.window), {}};
-  std::fill(whole.image.rgba.begin(), whole.image.rgba.end(), neutral_value(request.op));
-  for (const int rank : tree.visibility_order(request)) {
-    const BrickStore store = filled(texture, tree.box(rank));
-    Image part(footprint(request, texture.description, tree.box(rank)));
-    raycast(store, request, part, whole.counts);
-    for (int y = part.rect.y; y < part.rect.y + part.rect.height; ++y)
-      for (int x = part.rect.x; x < part.rect.x + part.rect.width; ++x) {
-        float* front = whole.image.at(x, y);
-        const float* back = part.at(x, y);
-        const float room = 1 - front[3];
-        for (int k = 0; k < 4; ++k) switch (request.op) {
-            case Operator::over:
-              front[k] += room * back[k];
-              break;
-            case Operator::add:
-              front[k] += back[k];
-              break;
-            case Operator::max:
-              front[k] = std::max(front[k], back[k]);
-              break;
-            case Operator::min:
-              front[k] = std::min(front[k], back[k]);
-              break;
-          }
-      }
-  }
-  return whole;
-}
 
 Matrix4 random_camera(std::mt19937& random, double aspect) {
   std::uniform_real_distribution<double> uniform(-1, 1);

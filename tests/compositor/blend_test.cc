@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -78,6 +79,50 @@ TEST(Blend, FogOfAThousandThinLayersAddsUp) {
   for (int i = 0; i < 1000; ++i) blend(Operator::over, sum, layer);
   std::printf("alpha %.9g instead of 1e-6\n", double(sum[3]));
   EXPECT_NEAR(sum[3], 1e-6, 1e-10);
+}
+
+/// Layers [first, last), divided anywhere, blended as the two halves are.
+std::vector<float> blended_as_a_tree(Operator op, const std::vector<std::vector<float>>& layers,
+                                     std::size_t first, std::size_t last, std::mt19937& random) {
+  if (last - first == 1) return layers[first];
+  const std::size_t middle = first + 1 + random() % (last - first - 1);
+  std::vector<float> front = blended_as_a_tree(op, layers, first, middle, random);
+  blend(op, front, blended_as_a_tree(op, layers, middle, last, random));
+  return front;
+}
+
+TEST(Blend, AnyTreeOfUpTo1024ImagesGivesTheProductInDouble) {
+  constexpr std::size_t pixels = 64;
+  std::mt19937 random(17);
+  for (const std::size_t count : {1, 2, 3, 7, 32, 129, 1024}) {
+    double worst = 0;
+    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add})
+      for (const float thinness : {1.0F, 0.01F, 1e-6F}) {
+        std::vector<std::vector<float>> layers;
+        layers.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+          layers.push_back(random_pixels(pixels, random));
+          for (float& value : layers.back()) value *= thinness;
+        }
+        const std::vector<float> picture = blended_as_a_tree(op, layers, 0, count, random);
+        for (std::size_t p = 0; p < 4 * pixels; p += 4) {
+          std::array<double, 4> product{};
+          for (std::size_t c = 0; c < 4; ++c) product[c] = double(layers[0][p + c]);
+          for (std::size_t i = 1; i < count; ++i) {
+            const double alpha = product[3];
+            for (std::size_t c = 0; c < 4; ++c)
+              product[c] = expected(op, product[c], double(layers[i][p + c]), alpha);
+          }
+          for (std::size_t c = 0; c < 4; ++c) {
+            // Sums are as exact as they are large.
+            const double unit = op == Operator::add ? std::max(1.0, product[c]) : 1;
+            worst = std::max(worst, std::abs(double(picture[p + c]) - product[c]) / unit);
+          }
+        }
+      }
+    std::printf("%4zu images: at most %.2g apart\n", count, worst);
+    EXPECT_LE(worst, 2e-6);
+  }
 }
 
 TEST(Blend, NothingShinesThroughAnAlphaThatRoundingLeftAboveOne) {

@@ -15,6 +15,8 @@
 #include "volume/classification.h"
 #include "volume/fog.h"
 #include "volume/image.h"
+#include "volume/light.h"
+#include "volume/surface.h"
 
 namespace understudy::volume {
 
@@ -48,7 +50,8 @@ struct VolumeDescription {
   /// The texels that travel: the part of the texture that the application shows, with one texel around it for
   /// the filter. What lies outside (power-of-two padding) is never sent and never sampled.
   TexelBox stored;
-  /// So many cells around its own each node holds beside them, for the second samples of slabs.
+  /// So many cells around its own each node holds beside them: for the second samples of slabs and segments,
+  /// and for gradients (see margin_needed()).
   int margin = 0;
 
   bool operator==(const VolumeDescription&) const = default;
@@ -56,6 +59,13 @@ struct VolumeDescription {
 
 enum class Operator : std::uint8_t { over, max, min, add };
 enum class Filter : std::uint8_t { nearest, linear };
+
+/// What a transfer function's samples stand for. Pre-integrated: the way between two samples is a segment, on
+/// which the field is taken to change evenly from one to the other; of a segment of one whole step is seen what
+/// a medium would show of which an even field shows the transfer function's entries. Segments cover a ray's
+/// whole way through the region (at most one step before the first sample) and are cut where clip planes and
+/// opaque geometry cut the ray; a shorter segment has a power of the whole one's transparency.
+enum class Method : std::uint8_t { post_classified, pre_integrated };
 
 /// The application's own sample positions: planes normal . t = first + i * spacing in texture space, 0 <= i <
 /// count. Plane 0 is the front: under `over`, sample i covers sample i + 1.
@@ -139,6 +149,12 @@ struct RenderRequest {
   Classification classification;
   std::optional<Slab> slab;  ///< set where the classification is a PairTable, and only there
   std::optional<Fog> fog;    ///< under any operator but `min`; not with slabs
+  // The following are for scalar fields with a transfer function, under `over`, with a linear filter and
+  // without fog; those before `light` are for samples on `steps` that end before opaque geometry.
+  Method method = Method::post_classified;
+  /// Each is composed where the ray passes it, between the samples before and behind it.
+  std::vector<Surface> surfaces;
+  std::optional<Light> light;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   std::optional<DepthImage> depth;

@@ -58,8 +58,10 @@ def text_of(row):
         text += f"   {row['difference']:+.1f} {row['unit']}"
     if "rms" in row:
         text += f"   RMS {row['rms']:.2e}"
+    if "rms_arithmetic" in row:
+        text += f"   RMS {row['rms_arithmetic']:.1e} of arithmetic"
     if "rms_total" in row:
-        text += f"   RMS {row['rms_arithmetic']:.1e} of arithmetic, {row['rms_total']:.1e} in all"
+        text += f", {row['rms_total']:.1e} in all"
     return text
 
 

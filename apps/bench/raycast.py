@@ -1,9 +1,10 @@
 """Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
 
 256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time stands the
-error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which has
-no samples (rms_total). Where the prototype at UNDERSTUDY_YARDSTICK (../shared/yardstick beside the checkout, if the
-variable is not set) can run, its program renders the same pictures of the same volume in turn.
+error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which
+has no samples (rms_total; not of surfaces and light, which the integral does not know). Where the prototype at
+UNDERSTUDY_YARDSTICK (../shared/yardstick beside the checkout, if the variable is not set) can run, its program renders
+the same pictures of the same volume in turn.
 """
 
 import json
@@ -28,6 +29,11 @@ CASES = {
     "cpu/post-classified/u16": (["--table", "dense", "--type", "u16"], None),
     "cpu/post-classified/dense/2 threads": (["--table", "dense", "--threads", "2"], ("dense", 2)),
     "cpu/post-classified/brain": (["--table", "sparse"], None),
+    "cpu/pre-integrated/dense": (["--table", "dense", "--method", "pre-integrated"], None),
+    "cpu/pre-integrated/sparse": (["--table", "sparse", "--method", "pre-integrated"], None),
+    "cpu/shaded/dense": (["--table", "dense", "--light"], None),
+    "cpu/iso/surface": (["--table", "clear", "--surfaces", "0.6", "--light"], None),
+    "cpu/iso/dense": (["--table", "dense", "--surfaces", "0.6,0.8"], None),
 }
 YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
 

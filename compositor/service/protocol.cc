@@ -189,6 +189,56 @@ std::optional<Fog> read_fog(Reader& in) {
   return fog;
 }
 
+void write_shares(Writer& out, std::span<const float> values) {
+  for (const float value : values) out.real(value);
+}
+
+void read_shares(Reader& in, std::string_view name, std::span<float> values) {
+  for (float& value : values) value = in.real32(name);
+}
+
+void write(Writer& out, const std::vector<Surface>& surfaces) {
+  out.integer(std::int64_t(surfaces.size()));
+  for (const Surface& surface : surfaces) {
+    out.real(surface.value);
+    write_shares(out, surface.colour);
+  }
+}
+
+std::vector<Surface> read_surfaces(Reader& in) {
+  std::vector<Surface> surfaces(std::size_t(in.integer("surfaces", 0, std::int64_t(max_surfaces))));
+  for (Surface& surface : surfaces) {
+    surface.value = in.real("surfaces.value");
+    read_shares(in, "surfaces.colour", surface.colour);
+  }
+  return surfaces;
+}
+
+void write(Writer& out, const std::optional<Light>& light) {
+  out.integer(light.has_value());
+  if (!light) return;
+  write(out, light->space);
+  write(out, light->direction);
+  for (const auto& colour : {light->ambient, light->diffuse, light->specular}) write_shares(out, colour);
+  out.real(light->shininess);
+  out.integer(light->two_sided);
+  out.integer(light->on_samples);
+}
+
+std::optional<Light> read_light(Reader& in) {
+  if (!in.flag("light")) return std::nullopt;
+  Light light;
+  read(in, "light.space", light.space);
+  read(in, "light.direction", light.direction);
+  read_shares(in, "light.ambient", light.ambient);
+  read_shares(in, "light.diffuse", light.diffuse);
+  read_shares(in, "light.specular", light.specular);
+  light.shininess = in.real32("light.shininess");
+  light.two_sided = in.flag("light.two_sided");
+  light.on_samples = in.flag("light.on_samples");
+  return light;
+}
+
 void write(Writer& out, const std::optional<DepthImage>& depth) {
   out.integer(depth.has_value());
   if (!depth) return;
@@ -352,6 +402,9 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   write(out, request.classification, pairs_at);
   write(out, request.slab);
   write(out, request.fog);
+  out.integer(std::int64_t(request.method));
+  write(out, request.surfaces);
+  write(out, request.light);
   out.real(request.termination);
   write(out, request.depth);
   return out.bytes();
@@ -383,6 +436,9 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.classification = read_classification(in, kept);
   request.slab = read_slab(in);
   request.fog = read_fog(in);
+  request.method = in.enumerator("method", Method::pre_integrated);
+  request.surfaces = read_surfaces(in);
+  request.light = read_light(in);
   request.termination = in.real32("termination");
   request.depth = read_depth(in);
   in.end();

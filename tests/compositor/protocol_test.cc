@@ -54,6 +54,18 @@ RenderRequest some_request(bool colours, bool depth) {
   } else {
     r.classification = TransferFunction{-0.5F, 2.5F, {{0, 0, 0, 0}, {0.1F, 0.2F, 0.3F, 0.4F}, {9, 9, 9, 1}}};
   }
+  if (!colours) {
+    r.method = Method::pre_integrated;
+    r.surfaces = {{0.25, {0.1F, 0.2F, 0.3F, 0.4F}}, {-7.5, {1, 0.5F, 0, 1}}};
+    r.light = Light{{1, 2, 3, 4, 5, 6, 7, 8, 10},
+                    {0.5, -1, 2},
+                    {0.1F, 0.2F, 0.3F},
+                    {0.4F, 0.5F, 0.6F},
+                    {0.7F, 0.8F, 0.9F},
+                    12,
+                    false,
+                    false};
+  }
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.termination = 1e-5F;
   if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
@@ -155,6 +167,10 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.clip_planes[1].normal, sent.clip_planes[1].normal);
   EXPECT_EQ(got.clip_planes[1].offset, sent.clip_planes[1].offset);
   EXPECT_EQ(got.classification, sent.classification);
+  EXPECT_EQ(got.method, sent.method);
+  EXPECT_EQ(got.surfaces, sent.surfaces);
+  EXPECT_EQ(got.light, sent.light);
+  EXPECT_FALSE(decode_request(encode(some_request(true, false))).light.has_value());
   EXPECT_EQ(got.termination, sent.termination);
   ASSERT_TRUE(got.fog.has_value());
   EXPECT_EQ(got.fog->normal, sent.fog->normal);
@@ -300,6 +316,14 @@ TEST(Protocol, LimitsAreKept) {
   refused(r);
   r = some_request(false, true);
   r.depth->depth.pop_back();
+  refused(r);
+  r = some_request(false, false);
+  r.surfaces.resize(max_surfaces);
+  EXPECT_NO_THROW(decode_request(encode(r)));
+  r.surfaces.resize(max_surfaces + 1);
+  refused(r);
+  r = some_request(false, false);
+  r.method = Method(2);
   refused(r);
   r = some_request_for_slabs();
   std::get<PairTable>(r.classification).entries.pop_back();

@@ -3,54 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
+#include "volume/raycast/generic_field.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::volume {
 
 namespace {
-
-/// A sample of the field in units of the texel type: one component, or RGBA.
-template <typename Texel>
-struct Field {
-  using Sample = float;
-  static Sample read(const std::byte* block, int index) {
-    Texel texel;
-    std::memcpy(&texel, block + std::size_t(index) * sizeof texel, sizeof texel);
-    return float(texel);
-  }
-  static Sample border(const Rgba& rgba) { return rgba[0]; }
-  static Sample mix(Sample a, Sample b, float s) { return a + s * (b - a); }
-};
-
-struct Colours {
-  using Sample = Rgba;
-  static Sample read(const std::byte* block, int index) {
-    std::array<std::uint8_t, 4> texel;
-    std::memcpy(texel.data(), block + std::size_t(index) * sizeof texel, sizeof texel);
-    return {float(texel[0]), float(texel[1]), float(texel[2]), float(texel[3])};
-  }
-  static Sample border(const Rgba& rgba) { return rgba; }
-  static Sample mix(const Sample& a, const Sample& b, float s) {
-    Sample mixed;
-    for (std::size_t k = 0; k < 4; ++k) mixed[k] = a[k] + s * (b[k] - a[k]);
-    return mixed;
-  }
-};
-
-/// Colour and opacity of a scalar sample; false when it contributes nothing (NaN).
-bool classify(const Scene& scene, float value, Rgba& colour) {
-  if (std::isnan(value)) return false;
-  const TransferTable& table = *scene.table;
-  const float position = std::clamp((value - table.low()) * table.scale(), 0.0F, table.last());
-  const auto entry = std::size_t(position);
-  const float fraction = position - float(entry);
-  const float* row = table.rows() + 8 * entry;
-  for (std::size_t k = 0; k < 4; ++k) colour[k] = row[k] + fraction * row[4 + k];
-  return true;
-}
 
 bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   const LinearMap& map = *scene.map;
@@ -61,26 +21,6 @@ bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   }
   if (colour[3] <= map.alpha_above) return false;
   if (map.multiply_by_alpha)
-    for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
-  return true;
-}
-
-/// Colour and opacity of a slab; false when it contributes nothing (NaN).
-bool classify(const PairLookup& pairs, float front, float back, Rgba& colour) {
-  if (std::isnan(front) || std::isnan(back)) return false;
-  const auto place = [&](float value) {
-    return std::clamp((value - pairs.low()) * pairs.scale(), 0.0F, pairs.last());
-  };
-  const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
-  const float x = place(front), y = place(back);
-  const std::size_t i = entry(x), j = entry(y);
-  const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
-  const float* upper = lower + 4 * std::size_t(pairs.edge());
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto along = [&](const float* row) { return row[k] + (x - float(i)) * (row[4 + k] - row[k]); };
-    colour[k] = along(lower) + (y - float(j)) * (along(upper) - along(lower));
-  }
-  if (pairs.multiply_by_alpha())
     for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
   return true;
 }
@@ -123,7 +63,7 @@ void compose(Operator op, const Rgba& colour, Rgba& pixel) {
 template <typename FieldType>
 class RayWalk {
  public:
-  RayWalk(const Scene& scene, const RayStrip& strip, std::size_t ray) : scene_(scene) {
+  RayWalk(const Scene& scene, const RayStrip& strip, std::size_t ray) : scene_(scene), reader_(scene) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       start_[axis] = strip.start[axis][ray];
       step_[axis] = strip.step[axis][ray];
@@ -131,84 +71,32 @@ class RayWalk {
   }
 
   void move_to(int k) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      position_[axis] = float(k) * step_[axis] + start_[axis];
-      clamped_[axis] = std::clamp(position_[axis], 0.0F, scene_.top[axis]);
-    }
-    find_cell();
+    std::array<float, 3> position;
+    for (std::size_t axis = 0; axis < 3; ++axis) position[axis] = float(k) * step_[axis] + start_[axis];
+    reader_.move_to(position, {}, scene_.top);
   }
 
   /// To the back of the slab whose front lies at sample k.
   void move_behind(int k) {
+    std::array<float, 3> position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float on_ray = (float(k) + scene_.samples_on) * step_[axis] + start_[axis];
-      position_[axis] = on_ray + scene_.cells_away[axis];
-      clamped_[axis] = std::clamp(position_[axis], scene_.held_low[axis], scene_.held_high[axis]);
+      position[axis] = on_ray + scene_.cells_away[axis];
     }
-    find_cell();
+    reader_.move_to(position, scene_.held_low, scene_.held_high);
   }
 
-  const std::array<float, 3>& position() const { return position_; }
+  const std::array<float, 3>& position() const { return reader_.position(); }
 
   /// How many samples from here on lie in empty blocks for sure; 0 in a block that shows something.
-  int empty_ahead() const {
-    const int distance = scene_.skip->distances()[block_];
-    if (distance == 0) return 0;
-    // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
-    float most = 1e9F;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float low = std::floor(clamped_[axis] / 8) * 8;
-      const float room = step_[axis] > 0 ? low + 8 * float(distance) - clamped_[axis]
-                                         : clamped_[axis] - low + 8 * float(distance - 1);
-      const float speed = std::max(std::abs(step_[axis]), 1e-20F);
-      most = std::min(most, (room - scene_.rounding[axis]) / speed * (1 - 1e-6F));
-    }
-    return int(std::max(most, 0.0F)) + 1;
-  }
+  int empty_ahead() const { return int(std::floor(reader_.steps_in_empty(step_))) + 1; }
 
-  typename FieldType::Sample sample() const {
-    const std::byte* block = scene_.store->block_data()[block_];
-    constexpr int y = BrickStore::block_row, z = BrickStore::block_slice;
-    if (scene_.filter == Filter::nearest) {
-      const int texel = corner_ + (fraction_[0] >= 0.5F ? 1 : 0) + (fraction_[1] >= 0.5F ? y : 0) +
-                        (fraction_[2] >= 0.5F ? z : 0);
-      return FieldType::read(block, texel);
-    }
-    const auto along_x = [&](int i) {
-      return FieldType::mix(FieldType::read(block, i), FieldType::read(block, i + 1), fraction_[0]);
-    };
-    const auto inside = FieldType::mix(
-        FieldType::mix(along_x(corner_), along_x(corner_ + y), fraction_[1]),
-        FieldType::mix(along_x(corner_ + z), along_x(corner_ + y + z), fraction_[1]), fraction_[2]);
-    // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
-    // multiply.
-    float weight = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (scene_.has_border[axis]) weight *= std::max(0.0F, 1 - std::abs(position_[axis] - clamped_[axis]));
-    return weight == 1 ? inside : FieldType::mix(FieldType::border(scene_.store->border()), inside, weight);
-  }
+  typename FieldType::Sample sample() const { return reader_.sample(); }
 
  private:
-  /// Where the texels around the clamped position are.
-  void find_cell() {
-    block_ = 0;
-    corner_ = 0;
-    std::size_t block_stride = 1;
-    int texel_stride = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int cell = int(clamped_[axis]);
-      fraction_[axis] = clamped_[axis] - float(cell);
-      block_ += std::size_t(cell / BrickStore::block_cells - scene_.store->first_block()[axis]) * block_stride;
-      corner_ += cell % BrickStore::block_cells * texel_stride;
-      block_stride *= std::size_t(scene_.store->block_counts()[axis]);
-      texel_stride *= BrickStore::block_row;
-    }
-  }
-
   const Scene& scene_;
-  std::array<float, 3> start_, step_, position_, clamped_, fraction_;
-  std::size_t block_ = 0;  // among those held
-  int corner_ = 0;         // lowest texel of the cell, in the block
+  FieldReader<FieldType> reader_;
+  std::array<float, 3> start_, step_;
 };
 
 template <typename FieldType>

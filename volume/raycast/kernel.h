@@ -9,13 +9,15 @@
 #include "volume/raycast/fog_table.h"
 #include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_setup.h"
+#include "volume/raycast/segment_scene.h"
 #include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
 #include "volume/request.h"
 
 namespace understudy::volume {
 
-/// Everything a kernel reads beside its rays. One of `table`, `map` and `pairs` is set.
+/// Everything a kernel reads beside its rays. One of `table`, `map` and `pairs` is set, but both tables where
+/// `segments` are pre-integrated.
 struct Scene {
   const BrickStore* store = nullptr;
   const SkipMap* skip = nullptr;
@@ -23,8 +25,10 @@ struct Scene {
   const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds); null: not known
   const LinearMap* map = nullptr;
   const PairLookup* pairs = nullptr;
+  /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
+  const SegmentScene* segments = nullptr;
   /// With pairs: the second sample of a slab lies so many samples on, and then away by a vector of cells; it is
-  /// clamped to what the store holds.
+  /// clamped to what the store holds, as are all places that segments look at.
   float samples_on = 0;
   std::array<float, 3> cells_away{};
   std::array<float, 3> held_low{};
@@ -53,5 +57,9 @@ void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, Kern
 
 /// On the best instruction set of this machine that Highway knows; the generic kernel where it knows none.
 void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+
+/// The same two for segments.
+void generic_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 
 }  // namespace understudy::volume

@@ -15,7 +15,9 @@
 #include "volume/matrix.h"
 #include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
+#include "volume/raycast/pre_integration.h"
 #include "volume/raycast/ray_setup.h"
+#include "volume/raycast/segment_scene.h"
 #include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
 
@@ -189,6 +191,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
   validate_classification(volume, request.classification);
   validate_slab(volume, request);
   if (request.fog) validate_fog(*request.fog, request.op);
+  validate_segments(volume, request);
 }
 
 /// So many blocks away from its front the back of a slab may lie.
@@ -205,8 +208,14 @@ std::array<int, 3> blocks_in_reach(const VolumeDescription& volume, const std::o
 void set_slab(const Slab& slab, Scene& scene) {
   const BrickStore& store = *scene.store;
   scene.samples_on = float(slab.planes);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
     scene.cells_away[axis] = float(slab.offset[axis] * store.description().size[axis]);
+}
+
+/// The places at which the store holds texels.
+void set_held(Scene& scene) {
+  const BrickStore& store = *scene.store;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto low = float(store.first_block()[axis] * BrickStore::block_cells);
     const float high = low + float(store.block_counts()[axis] * BrickStore::block_cells);
     scene.held_low[axis] = low;
@@ -214,12 +223,29 @@ void set_slab(const Slab& slab, Scene& scene) {
   }
 }
 
-/// What depends on the classification alone (and on whether the operator is `min`, to which clear samples
-/// matter, and on how many blocks slabs reach).
+/// What the preparation of a request depends on beside its classification.
+struct Circumstances {
+  bool keeps_clear_samples = false;  ///< under `min`
+  std::array<int, 3> reach{};        ///< of slabs, in blocks
+  bool pre_integrated = false;
+  std::vector<float> levels;  ///< of surfaces, in units of the texel type
+
+  bool operator==(const Circumstances&) const = default;
+};
+
+Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequest& request) {
+  Circumstances c;
+  c.keeps_clear_samples = request.op == Operator::min;
+  c.reach = blocks_in_reach(volume, request.slab);
+  c.pre_integrated = request.method == Method::pre_integrated;
+  for (const Level& level : SegmentScene(volume, request).levels) c.levels.push_back(level.value);
+  return c;
+}
+
+/// What stays the same from picture to picture while classification and circumstances do.
 struct RayCaster::Prepared {
   Classification classification;
-  bool keeps_clear_samples = false;
-  std::array<int, 3> reach{};
+  Circumstances circumstances;
   std::optional<TransferTable> table;
   std::optional<PairLookup> pairs;
   SkipMap skip;
@@ -227,21 +253,27 @@ struct RayCaster::Prepared {
 
   bool visible(const BrickStore& store, std::size_t block) const {
     const auto ranges = store.ranges(block);
-    if (keeps_clear_samples) return ranges[0].low <= ranges[0].high;
+    if (circumstances.keeps_clear_samples) return ranges[0].low <= ranges[0].high;
+    if (std::any_of(circumstances.levels.begin(), circumstances.levels.end(),
+                    [&](float level) { return ranges[0].low <= level && level <= ranges[0].high; }))
+      return true;
     if (table) return table->shows(ranges[0]);
     return shows(std::get<LinearMap>(classification), ranges);
   }
 
   SkipMap skip_map(const BrickStore& store) const {
-    if (pairs)
-      return SkipMap(store.block_counts(), blocks_with_slabs(store, *pairs, reach, keeps_clear_samples));
+    if (has_slabs())
+      return SkipMap(store.block_counts(),
+                     blocks_with_slabs(store, *pairs, circumstances.reach, circumstances.keeps_clear_samples));
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) all[b] = visible(store, b);
     return SkipMap(store.block_counts(), std::move(all));
   }
 
+  bool has_slabs() const { return pairs && !circumstances.pre_integrated; }
+
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
-    if (pairs) {
+    if (has_slabs()) {
       // A slab's far end may lie blocks away.
       skip = skip_map(store);
       return;
@@ -267,20 +299,21 @@ struct RayCaster::Prepared {
   }
 
   static std::optional<PairLookup> make_pairs(const BrickStore& store, const Classification& classification,
-                                              bool keeps_clear_samples) {
+                                              const Circumstances& circumstances) {
+    const float neutral = neutral_value(circumstances.keeps_clear_samples ? Operator::min : Operator::over);
+    if (circumstances.pre_integrated)
+      return PairLookup(pre_integrated(std::get<TransferFunction>(classification)), store.description().type,
+                        neutral);
     const auto* pairs = std::get_if<PairTable>(&classification);
     if (!pairs) return std::nullopt;
-    return PairLookup(*pairs, store.description().type,
-                      neutral_value(keeps_clear_samples ? Operator::min : Operator::over));
+    return PairLookup(*pairs, store.description().type, neutral);
   }
 
-  Prepared(const BrickStore& store, const Classification& from, bool keeps_clear,
-           const std::array<int, 3>& slab_reach)
+  Prepared(const BrickStore& store, const Classification& from, Circumstances under)
       : classification(from),
-        keeps_clear_samples(keeps_clear),
-        reach(slab_reach),
-        table(make_table(store, classification, keeps_clear)),
-        pairs(make_pairs(store, classification, keeps_clear)),
+        circumstances(std::move(under)),
+        table(make_table(store, classification, circumstances.keeps_clear_samples)),
+        pairs(make_pairs(store, classification, circumstances)),
         skip(skip_map(store)) {}
 };
 
@@ -303,15 +336,14 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
   if (store.empty()) return;
 
-  const bool keeps_clear_samples = request.op == Operator::min;
-  const std::array<int, 3> reach = blocks_in_reach(store.description(), request.slab);
+  const Circumstances circumstances = circumstances_of(store.description(), request);
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
-    return prepared && prepared->keeps_clear_samples == keeps_clear_samples && prepared->reach == reach &&
+    return prepared && prepared->circumstances == circumstances &&
            prepared->classification == request.classification;
   };
   if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
   if (!fits(prepared_[0]))
-    prepared_[0] = std::make_unique<Prepared>(store, request.classification, keeps_clear_samples, reach);
+    prepared_[0] = std::make_unique<Prepared>(store, request.classification, circumstances);
   const Prepared& prepared = *prepared_[0];
   counts.blocks += store.blocks();
   counts.blocks_empty += prepared.skip.empty_blocks();
@@ -337,10 +369,12 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.termination = request.termination;
   scene.top = setup.top;
   scene.rounding = setup.rounding;
-  if (request.slab) {
-    scene.pairs = &*prepared.pairs;
-    set_slab(*request.slab, scene);
-  }
+  scene.pairs = prepared.pairs ? &*prepared.pairs : nullptr;
+  set_held(scene);
+  if (request.slab) set_slab(*request.slab, scene);
+  const SegmentScene segments(store.description(), request);
+  if (walks_segments(request)) scene.segments = &segments;
+  const Kernel kernel = scene.segments != nullptr ? vector_segments : vector_kernel;
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 
@@ -358,7 +392,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
           mine.samples += std::uint64_t(strip.last[r] - strip.first[r] + 1);
         }
       KernelCounts done;
-      vector_kernel(scene, strip, rgba.data(), done);
+      kernel(scene, strip, rgba.data(), done);
       mine.samples_taken += done.samples_taken;
       mine.rays_terminated += done.rays_terminated;
       for (int r = 0; r < rows; ++r)

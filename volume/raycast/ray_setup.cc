@@ -82,6 +82,7 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
     }
     V part = one;  // of the index, from sample to sample
     V first = hn::Ceil(low), last = hn::Floor(high);
+    V begin = first, end = last;  // of segments
     if (setup.steps) {
       V speed = zero;
       for (const LinearInPixel& component : setup.speed) {
@@ -100,16 +101,21 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       const auto steps_to = [&](V end) HWY_ATTR { return hn::Sub(hn::Div(hn::Sub(end, entry), part), offset); };
       first = hn::Max(hn::Ceil(steps_to(low)), zero);
       last = hn::Floor(hn::Min(steps_to(high), hn::Sub(parts, one)));
+      begin = setup.segments ? hn::Max(steps_to(low), hn::Neg(one)) : first;
+      end = setup.segments ? steps_to(high) : last;
       if (depth) {
         meets = hn::And(meets, hn::Ge(hidden_from, entry));
         const V to_depth = hn::Add(steps_to(hidden_from), hn::Set(d, setup.steps->past_depth));
         last = hn::Min(last, hn::Floor(to_depth));
+        end = hn::Min(end, to_depth);
       }
       low = hn::Add(entry, hn::Mul(hn::Add(offset, first), part));
     } else {
       low = first;
     }
-    meets = hn::And(meets, hn::Le(first, last));
+    // Where no sample lies between begin and end, a piece of a segment may.
+    meets =
+        hn::And(meets, setup.segments ? hn::Or(hn::Le(first, last), hn::Lt(begin, end)) : hn::Le(first, last));
 
     const V inverse = hn::Div(one, det);
     low = hn::IfThenElseZero(meets, low);
@@ -123,7 +129,15 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       hn::Store(hn::DemoteTo(d_float, step), d_float, strip.step[axis].data() + offset + column);
     }
     const V more = hn::IfThenElse(meets, hn::Sub(last, first), hn::Set(d, -1.0));
-    hn::Store(hn::Zero(d_int), d_int, strip.first.data() + offset + column);
+    V lowest = zero;
+    if (setup.ends) {
+      const V before = hn::IfThenElseZero(meets, hn::Sub(begin, first));
+      const V behind = hn::IfThenElseZero(meets, hn::Sub(end, first));
+      lowest = hn::IfThenElseZero(hn::Lt(before, zero), hn::Neg(one));
+      hn::Store(hn::DemoteTo(d_float, before), d_float, strip.begin.data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, behind), d_float, strip.end.data() + offset + column);
+    }
+    hn::Store(hn::DemoteTo(d_int, lowest), d_int, strip.first.data() + offset + column);
     hn::Store(hn::DemoteTo(d_int, more), d_int, strip.last.data() + offset + column);
   }
 }
@@ -134,6 +148,7 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 #include "volume/matrix.h"
+#include "volume/raycast/segment_scene.h"
 
 namespace understudy::volume {
 
@@ -194,15 +209,15 @@ SlicePlanes planes_across(const RenderRequest& request, const LinearVector& dire
   return planes;
 }
 
-/// Smallest k in [0, count] from which on `reached` holds (count: never), for a condition that stays once it
-/// holds.
+/// Smallest k in [least, count] from which on `reached` holds (count: never), for a condition that stays once
+/// it holds.
 template <typename Reached>
-int first_reached(int count, double guess, Reached reached) {
-  const auto at = [&](int k) { return k >= count || (k >= 0 && reached(k)); };
-  const int near = guess > 0 ? int(std::min(guess, double(count))) : 0;  // NaN becomes 0
+int first_reached(int least, int count, double guess, Reached reached) {
+  const auto at = [&](int k) { return k >= count || (k >= least && reached(k)); };
+  const int near = guess > least ? int(std::min(guess, double(count))) : least;  // NaN becomes the least
   for (const int k : {near, near + 1, near - 1})
     if (k <= count && at(k) && !at(k - 1)) return k;
-  int low = 0, high = count;
+  int low = least, high = count;
   while (low < high) {
     const int middle = low + (high - low) / 2;
     if (reached(middle))
@@ -217,6 +232,8 @@ int first_reached(int count, double guess, Reached reached) {
 /// float arithmetic too, so these are one interval; it is found with the very arithmetic that samples.
 void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
   int first = strip.first[r], last = strip.last[r];
+  const int least = first;
+  const float begin = setup.ends ? strip.begin[r] : 0.0F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float start = strip.start[axis][r], step = strip.step[axis][r];
     const auto narrow = [&](float bound, bool keep_above) {
@@ -225,10 +242,11 @@ void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
         if ((start >= bound) != keep_above) last = first - 1;
         return;
       }
-      const auto above = [&](int k) { return float(k) * step + start >= bound; };
+      const auto above = [&](int k) { return std::max(float(k), begin) * step + start >= bound; };
       const bool rising = step > 0;
-      const int crossing = first_reached(last + 1, std::ceil((double(bound) - double(start)) / double(step)),
-                                         [&](int k) { return above(k) == rising; });
+      const int crossing =
+          first_reached(least, last + 1, std::ceil((double(bound) - double(start)) / double(step)),
+                        [&](int k) { return above(k) == rising; });
       if (rising == keep_above)
         first = std::max(first, crossing);
       else
@@ -312,6 +330,8 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   pixel_to_y = 2.0 / request.viewport.height;
   first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
   last_plane = planes.count - 1;
+  ends = walks_segments(request);
+  segments = ends && (request.method == Method::pre_integrated || !request.surfaces.empty());
   steps = request.steps;
   if (steps) {
     const auto& metric = steps->metric;

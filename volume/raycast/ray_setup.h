@@ -48,6 +48,8 @@ struct RaySetup {
   double pixel_to_x = 0, first_x = 0;  ///< X of the centre of pixel x: first_x + x pixel_to_x
   double pixel_to_y = 0, first_y = 0;
   int last_plane = 0;
+  bool segments = false;  ///< what lies between samples counts
+  bool ends = false;      ///< the strip's begin and end are made
 
   /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that
   /// say so.
@@ -67,11 +69,16 @@ constexpr int strip_rays = tile_width * strip_height;
 /// A strip of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float
 /// after each of the two operations), lattice coordinates; first <= k <= last are its samples in the owned
 /// cells.
+///
+/// Segment k goes from u(k) to u(k + 1), u(i) = clamp(i, begin, end), in steps; first <= k <= last are those
+/// whose front lies in the owned cells. Segment -1, which is shorter than a step, has no sample at its front.
 struct RayStrip {
   alignas(64) std::array<std::array<float, strip_rays>, 3> start;
   alignas(64) std::array<std::array<float, strip_rays>, 3> step;
   alignas(64) std::array<int, strip_rays> first;
   alignas(64) std::array<int, strip_rays> last;
+  alignas(64) std::array<float, strip_rays> begin;  ///< > -1
+  alignas(64) std::array<float, strip_rays> end;
 };
 
 /// Sets up the rays of the pixels (x .. x + width, y .. y + height); the rest of the strip gets rays without

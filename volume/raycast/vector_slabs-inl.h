@@ -1,5 +1,5 @@
-// Slabs in the vector kernel: a part of vector_kernel.cc, included there once per instruction set, among the
-// functions that it calls.
+// Slabs and tables of pairs in the vector kernels: a part of vector_kernel.cc and vector_segments.cc, included
+// there once per instruction set, among the functions that they call.
 
 /// The backs of the slabs whose fronts are the rays' samples.
 HWY_INLINE Position behind(const Packet& rays, const Constants& constants) {
@@ -20,15 +20,14 @@ struct PairPlace {
   Floats across, up;                                   // fractions of the way to the corners beside and above
 };
 
+/// Where two values stand in the table of pairs; `absent` ones leave the composite as it is, and so do those
+/// that are no number.
 template <typename Source>
-HWY_INLINE void classify_slab(const Located& front, const Located& back, const Packet& rays,
-                              const Constants& constants, Source source, PairPlace& out) {
+HWY_INLINE void look_up_pair(Floats front, Floats back, hn::Mask<FloatTag> absent, const Constants& constants,
+                             Source, PairPlace& out) {
   const FloatTag f;
   const IntTag d;
-  auto absent = hn::Gt(rays.k, rays.last);
-  const auto corner_of = [&](const Located& at, Floats& between) HWY_ATTR {
-    Floats value = field_at(at, constants, source);
-    if (constants.with_border) value = mix(constants.border, value, at.border_weight);
+  const auto corner_of = [&](Floats value, Floats& between) HWY_ATTR {
     if constexpr (std::is_same_v<Source, Floats32>) absent = hn::Or(absent, hn::IsNaN(value));
     const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
     const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);
@@ -43,6 +42,13 @@ HWY_INLINE void classify_slab(const Located& front, const Located& back, const P
   out.across = hn::IfThenElseZero(hn::Not(absent), out.across);  // no number must not get into a sum
   out.up = hn::IfThenElseZero(hn::Not(absent), out.up);
   hn::Store(hn::BitCast(u, hn::ShiftLeft<2>(chosen)), u, out.entry.data());
+}
+
+template <typename Source>
+HWY_INLINE void classify_slab(const Located& front, const Located& back, const Packet& rays,
+                              const Constants& constants, Source source, PairPlace& out) {
+  look_up_pair(value_of(front, constants, source), value_of(back, constants, source), hn::Gt(rays.k, rays.last),
+               constants, source, out);
 }
 
 template <std::size_t q>

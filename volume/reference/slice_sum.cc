@@ -298,7 +298,8 @@ Field texture_field(const VolumeDescription& volume, Filter filter, std::span<co
   return [texture](const Vec3& t) { return texture.linear(t); };
 }
 
-ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect) {
+ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect,
+                         const Shade& shade) {
   const auto clip_to_texture = inverse(request.texture_to_clip);
   if (!clip_to_texture) throw std::invalid_argument("the matrix from texture to clip space is singular");
   ReferenceImage image{rect, {}};
@@ -320,6 +321,7 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
         } else if (!fragment(request.classification, field(t), colour)) {
           return;
         }
+        if (shade) colour = shade(t, subtract(between(near, far, 1), between(near, far, 0)), colour);
         if (request.fog) lay_in_fog(*request.fog, t, colour);
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {

@@ -29,8 +29,14 @@ struct ReferenceImage {
   }
 };
 
+/// What light makes of the premultiplied colour of the sample at t, on a ray that goes along `way`.
+using Shade =
+    std::function<std::array<double, 4>(const Vec3& t, const Vec3& way, const std::array<double, 4>& colour)>;
+
 /// Composes all planes (or steps) of `request` over the pixels of `rect` that lie in its window; never
-/// terminates early. Throws std::invalid_argument when the matrix is singular.
-ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect);
+/// terminates early. `shade` stands for the request's light; its method and surfaces are not looked at. Throws
+/// std::invalid_argument when the matrix is singular.
+ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const Rect& rect,
+                         const Shade& shade = {});
 
 }  // namespace understudy::volume

@@ -1,0 +1,378 @@
+// Iso-surfaces and light: against closed forms and the double-precision reference, and the same for any
+// partition.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <optional>
+#include <stdexcept>
+
+#include "tests/volume/segment_scenes.h"
+#include "volume/raycast/surface_search.h"
+#include "volume/reference/illumination.h"
+#include "volume/reference/pixel_integral.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+std::vector<Surface> two_veils() {
+  return {{0.7, {0.9F, 0.2F, 0.1F, 0.8F}}, {0.35, {0.1F, 0.5F, 0.9F, 0.3F}}};
+}
+
+/// A haze of which every step shows 1 % hides what is behind it, and so tells how many steps in front of an
+/// opaque white surface there are.
+constexpr double haze = 0.01;
+RenderRequest through_haze(const Texture& texture, double iso) {
+  RenderRequest request = request_on_steps(texture);
+  request.method = Method::pre_integrated;
+  request.classification = TransferFunction{0, 1, {{0, 0, 0, float(haze)}, {0, 0, 0, float(haze)}}};
+  request.surfaces = {{iso, {1, 1, 1, 1}}};
+  return request;
+}
+
+double steps_before(const float* pixel) {
+  return std::log(double(pixel[0])) / std::log1p(-double(float(haze)));
+}
+
+TEST(Surfaces, AreFoundToAThousandthOfAVoxel) {
+  for (const bool sphere : {false, true})
+    for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32}) {
+      const Vec3 slope{0.31, 0.22, 0.35};
+      Texture texture =
+          sampled(describe({40, 40, 40}, type), sphere ? sphere_field(0.3, 0.2) : linear_field(slope, 0.06));
+      constexpr double iso = 0.5;
+      RenderRequest request = through_haze(texture, iso);
+      give_margin(texture, request);
+      FrameCounts counts;
+      const Image image = drawn(texture, request, counts);
+      const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+      int hits = 0;
+      double worst = 0, worst_from_plane = 0;
+      for (int y = 5; y < 39; ++y)
+        for (int x = 3; x < 43; ++x) {
+          const auto ray = pixel_ray(request, x, y);
+          if (!ray || image.at(x, y)[0] < 1e-3F) continue;
+          const auto stretches =
+              field_along_ray(field, texture.description.size, ray->from, ray->to, ray->length);
+          const auto hit = first_hit(stretches, iso);
+          if (!hit) continue;
+          ++hits;
+          // A step is at most 1.2 voxels long.
+          worst = std::max(worst, std::abs(steps_before(image.at(x, y)) - *hit));
+          // Where the filter's wrapping shows nothing of itself, the plane is one.
+          const Vec3 way = subtract(ray->to, ray->from), there = add(ray->from, scale(way, *hit / ray->length));
+          if (std::any_of(there.begin(), there.end(),
+                          [](double t) { return std::abs(t - 0.5) > 0.5 - 0.0125; }))
+            continue;
+          const double closed = (iso - 0.06 - dot(slope, ray->from)) / dot(slope, way) * ray->length;
+          worst_from_plane = std::max(worst_from_plane, std::abs(steps_before(image.at(x, y)) - closed));
+        }
+      std::printf("sphere %d, texels %d: %d hits, at most %.2e steps off\n", sphere, int(type), hits, worst);
+      EXPECT_GT(hits, 150);
+      EXPECT_LE(worst, 8e-4);
+      if (!sphere && type == TexelType::f32) {
+        EXPECT_LE(worst_from_plane, 8e-4) << "the closed form";
+      }
+    }
+}
+
+TEST(Surfaces, SearchEndsOnEveryCurve) {
+  double worst = 0;
+  for (const double bend : {0.0, 0.5, 0.9, 0.999})
+    for (int i = 1; i < 100; ++i) {
+      const double root = i / 100.0;
+      // A cubic with one root, flat there where `bend` is near one.
+      const auto curve = [&](double s) {
+        return (s - root) * ((1 - bend) + bend * 3 * (s - root) * (s - root));
+      };
+      for (const double sign : {1.0, -1.0}) {
+        SurfaceSearch search{0, float(5 + sign * curve(0)), float(5 + sign * curve(1))};
+        ASSERT_TRUE(search.find(5, 1, [&](float s) { return float(5 + sign * curve(double(s))); }));
+        // Values are known to half a millionth.
+        const double residue = std::abs(curve(double(search.front)));
+        worst = std::max(worst, std::min(std::abs(double(search.front) - root), residue / 1e-6 * 1e-3));
+      }
+    }
+  EXPECT_LE(worst, 1e-3);
+  SurfaceSearch search{0, 0, 1};
+  EXPECT_FALSE(search.find(0.5F, 1, [](float) { return std::nanf(""); }));
+}
+
+TEST(Surfaces, OfASphereFaceTheLightAsASphereDoes) {
+  Texture texture = sampled(describe({64, 64, 64}, TexelType::f32), sphere_field(0.3, 0.2));
+  RenderRequest request = request_on_steps(texture);
+  request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
+  request.classification = TransferFunction{0, 1, {{}, {}}};
+  request.surfaces = {{0.5, {1, 1, 1, 1}}};
+  request.light.emplace();
+  request.light->ambient = request.light->specular = {0, 0, 0};
+  request.light->diffuse = {1, 1, 1};
+  request.light->direction = {0.3, 0.5, 1};
+  request.light->two_sided = false;
+  give_margin(texture, request);
+  FrameCounts counts;
+  const Image image = drawn(texture, request, counts);
+  const Vec3 light = normalised(request.light->direction), centre{0.5, 0.5, 0.5};
+  double worst = 0;
+  int hits = 0;
+  for (int y = 5; y < 39; ++y)
+    for (int x = 3; x < 43; ++x) {
+      const auto ray = pixel_ray(request, x, y);
+      if (!ray) continue;
+      const Vec3 way = normalised(subtract(ray->to, ray->from)), to_centre = subtract(centre, ray->from);
+      const double middle = dot(way, to_centre), inside = 0.09 - dot(to_centre, to_centre) + middle * middle;
+      if (inside < 0.002) continue;
+      const Vec3 hit = add(ray->from, scale(way, middle - std::sqrt(inside)));
+      const double cosine = std::max(dot(normalised(subtract(hit, centre)), light), 0.0);
+      worst = std::max(worst, std::abs(double(image.at(x, y)[0]) - cosine));
+      EXPECT_EQ(image.at(x, y)[3], 1);
+      ++hits;
+    }
+  std::printf("%d hits, cosines at most %.2e off\n", hits, worst);
+  EXPECT_GT(hits, 150);
+  EXPECT_LE(worst, 0.02);
+}
+
+struct Scene {
+  const char* name;
+  bool surfaces, light, haze, cut, divided;
+};
+constexpr Scene scenes[] = {{"surfaces", true, false, false, false, false},
+                            {"surfaces in colours", true, false, true, true, false},
+                            {"lit surfaces in lit colours", true, true, true, true, true},
+                            {"lit colours", false, true, true, false, false}};
+
+RenderRequest request_of(const Texture& texture, const Scene& scene) {
+  RenderRequest request = request_on_steps(texture);
+  if (!scene.haze) request.classification = TransferFunction{0, 1, {{}, {}}};
+  if (scene.surfaces) request.surfaces = two_veils();
+  if (scene.light) request.light = some_light();
+  request.steps->divided = scene.divided;
+  if (scene.divided) request.steps->offsets = RayOffsets{2, 2, {0, 0.3F, 0.6F, 0.9F}};
+  if (scene.cut) {
+    request.clip_planes = {{{1, 0.3, -0.2}, -0.35}};
+    // A tilted wall.
+    const Vec4 middle = transform_point(request.texture_to_clip, {0.3, 0.5, 0.3});
+    const double there = (middle[2] / middle[3] + 1) / 2;
+    request.depth = DepthImage{request.window, {}, false};
+    for (std::size_t i = 0; i < request.window.pixels(); ++i)
+      request.depth->depth.push_back(float(there + 1e-4 * double(i % 40)));
+  }
+  return request;
+}
+
+TEST(Surfaces, AndLightAreWhatDoublePrecisionSays) {
+  for (const Wrap wrap : {Wrap::edge, Wrap::border, Wrap::repeat})
+    for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32})
+      for (const Scene& scene : scenes) {
+        Texture texture = sampled(describe({40, 37, 43}, type, wrap), sphere_field(0.3, 0.2));
+        const RenderRequest request = request_of(texture, scene);
+        give_margin(texture, request);
+        FrameCounts counts;
+        const Image image = drawn(texture, request, counts);
+        const ReferenceImage reference = expected(texture, request);
+        const Difference d = difference(image, reference, 1e-3);
+        std::printf("%s, texels %d, wrap %d: max %.2e, rms %.2e, %d pixels over\n", scene.name, int(type),
+                    int(wrap), d.max, d.rms, d.pixels_over);
+        EXPECT_LE(d.pixels_over, pixels_that_graze);
+        if (d.pixels_over == 0) {
+          EXPECT_LE(d.rms, 1e-4);
+        }
+        RenderRequest other = request;
+        if (scene.surfaces) other.surfaces[1].value += 0.05;
+        if (scene.light) other.light->direction[0] += 1;
+        EXPECT_GT(difference(image, expected(texture, other)).rms, 1e-4)
+            << "the comparison must be able to fail";
+      }
+}
+
+TEST(Surfaces, AndLightAreTheSameForAnyPartition) {
+  double worst = 0;
+  for (int ranks = 2; ranks <= 8; ++ranks)
+    for (const Scene& scene : scenes) {
+      Texture texture = noise(describe({40, 37, 43}, TexelType::u8, Wrap(ranks % 3)), unsigned(ranks));
+      const RenderRequest request = request_of(texture, scene);
+      give_margin(texture, request);
+      FrameCounts one, many;
+      const Image whole = drawn(texture, request, one), parts = drawn_in_parts(texture, request, ranks, many);
+      const double d = difference(whole, parts).max;
+      worst = std::max(worst, d);
+      EXPECT_LE(d, 1e-5) << ranks << " ranks, " << scene.name;
+      EXPECT_EQ(one.samples, many.samples) << ranks << " ranks, " << scene.name;
+    }
+  std::printf("2 to 8 ranks against 1: largest difference %.2e\n", worst);
+}
+
+TEST(Surfaces, OfVolumesOfAnySize) {
+  int differing = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int size = 1; size <= 9; ++size) {
+      std::array<int, 3> sizes{7, 9, 6};
+      sizes[std::size_t(axis)] = size;
+      Texture texture = noise(describe(sizes, size % 2 ? TexelType::u8 : TexelType::f32), unsigned(size));
+      RenderRequest request = request_of(texture, scenes[2]);
+      request.depth.reset();
+      request.steps->metric = {29, 0, 0, 0, 29, 0, 0, 0, 29};
+      give_margin(texture, request);
+      FrameCounts counts;
+      const Difference d = difference(drawn(texture, request, counts), expected(texture, request), 1e-3);
+      EXPECT_LE(d.pixels_over, pixels_that_graze) << size << " along axis " << axis;
+      differing += d.pixels_over;
+      FrameCounts same;
+      EXPECT_LE(difference(drawn(texture, request, same), drawn_in_parts(texture, request, 3, counts)).max,
+                1e-5);
+    }
+  EXPECT_LE(differing, 10);
+}
+
+TEST(Surfaces, OfUnusualFieldsAreFinite) {
+  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
+  struct Unusual {
+    const char* name;
+    std::vector<float> values;  // one after the other
+    double iso;
+    bool shows;
+  };
+  const Unusual fields[] = {{"even", {0.5F}, 0.5, false},
+                            {"nothing but NaN", {nan}, 0.5, false},
+                            {"some NaN", {0, 1, 0, 1, 1, nan, 0, 0, 0, 1, 1, 0, 0.5F}, 0.5, true},
+                            {"infinite", {0, infinity, 0, -infinity, 1}, 0.5, true},
+                            {"greatest value", {0, 1}, 1.0, true},
+                            {"least value", {0, 1}, 0.0, false},
+                            {"denormal", {0, 1e-42F}, 5e-43, true}};
+  for (const Unusual& unusual : fields)
+    for (const bool slopes : {false, true}) {
+      Texture texture = noise(describe({13, 12, 11}, TexelType::f32), 3);
+      for (std::size_t i = 0; i < texture.texels.size() / 4; ++i) {
+        // Slabs of equal value, or all mixed.
+        const float v = unusual.values[(slopes ? i / 39 : i) % unusual.values.size()];
+        std::memcpy(texture.texels.data() + 4 * i, &v, sizeof v);
+      }
+      RenderRequest request = request_on_steps(texture);
+      request.classification = TransferFunction{0, 1, {{}, {}}};
+      request.surfaces = {{unusual.iso, {1, 1, 1, 1}}};
+      request.light = some_light();
+      give_margin(texture, request);
+      FrameCounts counts;
+      const Image image = drawn(texture, request, counts);
+      float most = 0;
+      for (const float v : image.rgba) {
+        EXPECT_TRUE(std::isfinite(v)) << unusual.name;
+        most = std::max(most, v);
+      }
+      if (!unusual.shows) {
+        EXPECT_EQ(most, 0) << unusual.name;
+      } else if (slopes) {
+        EXPECT_GT(most, 0) << unusual.name;
+      }
+    }
+}
+
+TEST(Surfaces, AreSkippedToAndNeverPast) {
+  Texture texture = sampled(describe({96, 96, 96}, TexelType::u8), sphere_field(0.25, 0.01));
+  RenderRequest request = request_on_steps(texture);
+  request.steps->metric = {90, 0, 0, 0, 90, 0, 0, 0, 90};
+  request.classification = TransferFunction{0, 1, {{}, {}}};
+  request.surfaces = {{0.5, {1, 0.5F, 0.2F, 0.5F}}};
+  give_margin(texture, request);
+  FrameCounts counts;
+  const Image image = drawn(texture, request, counts);
+  std::printf("%zu of %zu blocks empty, %zu of %zu segments looked at\n", std::size_t(counts.blocks_empty),
+              std::size_t(counts.blocks), std::size_t(counts.samples_taken), std::size_t(counts.samples));
+  EXPECT_GT(counts.blocks_empty, counts.blocks / 2);
+  EXPECT_LT(counts.samples_taken, counts.samples / 2);
+  EXPECT_LE(difference(image, expected(texture, request), 1e-3).pixels_over, pixels_that_graze);
+}
+
+TEST(Light, OnSlicesIsWhatDoublePrecisionSays) {
+  for (const bool two_sided : {false, true})
+    for (const bool from_the_eye : {false, true}) {
+      Texture texture = sampled(describe({40, 37, 43}, TexelType::u16), marschner_lobb_field());
+      RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 60);
+      request.light = some_light();
+      request.light->two_sided = two_sided;
+      if (from_the_eye) request.light->direction = {};
+      give_margin(texture, request);
+      FrameCounts counts;
+      const Image image = drawn(texture, request, counts);
+      const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+      const auto shade = [&](const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+        return illuminated(field, texture.description, *request.light, t, way, colour);
+      };
+      const Difference d = difference(image, slice_sum(field, request, request.window, shade), 1e-3);
+      std::printf("two-sided %d, from the eye %d: max %.2e, rms %.2e\n", two_sided, from_the_eye, d.max, d.rms);
+      EXPECT_LE(d.pixels_over, pixels_that_graze);
+      EXPECT_LE(d.rms, 1e-4);
+      request.light.reset();
+      EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-3) << "light changes nothing";
+    }
+}
+
+TEST(Light, ThatIsEverywhereTheSameChangesNothing) {
+  Texture texture = noise(describe({40, 37, 43}, TexelType::u8), 4);
+  RenderRequest request = request_on_steps(texture);
+  FrameCounts counts;
+  const Image plain = drawn(texture, request, counts);
+  request.light.emplace();
+  request.light->ambient = {1, 1, 1};
+  request.light->diffuse = request.light->specular = {0, 0, 0};
+  give_margin(texture, request);
+  EXPECT_LE(difference(plain, drawn(texture, request, counts)).max, 1e-5);
+}
+
+TEST(Surfaces, AndLightWithoutSenseAreRefused) {
+  Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 1);
+  RenderRequest good = request_of(texture, scenes[2]);
+  give_margin(texture, good);
+  EXPECT_NO_THROW(validate(texture.description, good));
+  const auto refused = [&](const char* why, auto change) {
+    RenderRequest bad = good;
+    change(bad);
+    EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << why;
+  };
+  refused("planes", [](RenderRequest& r) { r.steps.reset(); });
+  refused("maximum", [](RenderRequest& r) { r.op = Operator::max; });
+  refused("nearest", [](RenderRequest& r) { r.filter = Filter::nearest; });
+  refused("fog", [](RenderRequest& r) { r.fog = Fog{{}, 0, {{}, {}}}; });
+  refused("behind walls", [](RenderRequest& r) { r.steps->past_depth = 1; });
+  refused("NaN", [](RenderRequest& r) { r.surfaces[0].value = NAN; });
+  refused("opacity", [](RenderRequest& r) { r.surfaces[0].colour[3] = 1.5F; });
+  refused("too many", [](RenderRequest& r) { r.surfaces.resize(max_surfaces + 1); });
+  refused("singular", [](RenderRequest& r) { r.light->space = {}; });
+  refused("shininess", [](RenderRequest& r) { r.light->shininess = -1; });
+  refused("diffuse", [](RenderRequest& r) { r.light->diffuse[1] = NAN; });
+  --texture.description.margin;
+  EXPECT_THROW(validate(texture.description, good), std::invalid_argument) << "margin";
+  Texture colours = noise(describe({9, 9, 9}, TexelType::rgba8), 1);
+  colours.description.margin = 9;
+  good.classification = LinearMap{};
+  EXPECT_THROW(validate(colours.description, good), std::invalid_argument) << "colours";
+}
+
+TEST(Surfaces, AndLightAreTheSameOnAllInstructionSets) {
+  const std::int64_t here = hwy::SupportedTargets();
+  for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32})
+    for (const Method method : {Method::post_classified, Method::pre_integrated})
+      for (const Scene& scene : scenes) {
+        Texture texture = sampled(describe({40, 37, 43}, type, Wrap::border), sphere_field(0.3, 0.2));
+        RenderRequest request = request_of(texture, scene);
+        request.method = method;
+        give_margin(texture, request);
+        std::optional<Image> plain;
+        for (const std::int64_t target : {HWY_EMU128, HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+          if (target != HWY_EMU128 && (here & target) == 0) continue;
+          hwy::SetSupportedTargetsForTest(target);
+          hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+          FrameCounts counts;
+          const Image image = drawn(texture, request, counts);
+          if (!plain) plain = image;
+          const Difference d = difference(image, *plain, 3e-4);
+          EXPECT_LE(d.pixels_over, pixels_that_graze)
+              << instruction_set() << ", " << scene.name << ", " << d.max;
+        }
+        hwy::SetSupportedTargetsForTest(0);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      }
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

@@ -1,0 +1,33 @@
+// A directional light, after Blinn and Phong. A point of premultiplied colour c and opacity a shows
+//
+//     (ambient + diffuse |n . l|) c + specular |n . h|^shininess a,   h = (l + e) / |l + e|
+//
+// with l the direction to the light and e that to the eye, both from the point. The normal n is the direction
+// in which the field falls fastest: its gradient is taken by central differences of the linearly filtered
+// field, one texel to both sides of the point on each axis. (Beyond the texture the filter's wrapping holds; on
+// an axis that repeats, what is looked at stays within half a texel of the texture.) Points without a gradient,
+// because the field is even or not a number around them, keep their colour.
+#pragma once
+
+#include <array>
+
+namespace understudy::volume {
+
+struct Light {
+  /// Row-major; texture space to the space in which directions are meant and angles are measured.
+  std::array<double, 9> space{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  /// To the light, of any length; zero: it shines from the eye, along every ray.
+  std::array<double, 3> direction{};
+  std::array<float, 3> ambient{0.2F, 0.2F, 0.2F};
+  std::array<float, 3> diffuse{0.8F, 0.8F, 0.8F};
+  std::array<float, 3> specular{0.3F, 0.3F, 0.3F};
+  float shininess = 20;
+  /// False: where n . l is negative the point lies in its own shadow, and where n . h is it does not gleam.
+  bool two_sided = true;
+  /// False: surfaces alone are lit; what the transfer function shows keeps its colour.
+  bool on_samples = true;
+
+  bool operator==(const Light&) const = default;
+};
+
+}  // namespace understudy::volume

@@ -1,0 +1,153 @@
+// The field as the plain kernels read it: one position after the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "volume/raycast/kernel.h"
+
+namespace understudy::volume {
+
+/// A sample of the field in units of the texel type: one component, or RGBA.
+template <typename Texel>
+struct Field {
+  using Sample = float;
+  static Sample read(const std::byte* block, int index) {
+    Texel texel;
+    std::memcpy(&texel, block + std::size_t(index) * sizeof texel, sizeof texel);
+    return float(texel);
+  }
+  static Sample border(const Rgba& rgba) { return rgba[0]; }
+  static Sample mix(Sample a, Sample b, float s) { return a + s * (b - a); }
+};
+
+struct Colours {
+  using Sample = Rgba;
+  static Sample read(const std::byte* block, int index) {
+    std::array<std::uint8_t, 4> texel;
+    std::memcpy(texel.data(), block + std::size_t(index) * sizeof texel, sizeof texel);
+    return {float(texel[0]), float(texel[1]), float(texel[2]), float(texel[3])};
+  }
+  static Sample border(const Rgba& rgba) { return rgba; }
+  static Sample mix(const Sample& a, const Sample& b, float s) {
+    Sample mixed;
+    for (std::size_t k = 0; k < 4; ++k) mixed[k] = a[k] + s * (b[k] - a[k]);
+    return mixed;
+  }
+};
+
+/// Colour and opacity of a scalar sample; false when it contributes nothing (NaN).
+inline bool classify(const Scene& scene, float value, Rgba& colour) {
+  if (std::isnan(value)) return false;
+  const TransferTable& table = *scene.table;
+  const float position = std::clamp((value - table.low()) * table.scale(), 0.0F, table.last());
+  const auto entry = std::size_t(position);
+  const float fraction = position - float(entry);
+  const float* row = table.rows() + 8 * entry;
+  for (std::size_t k = 0; k < 4; ++k) colour[k] = row[k] + fraction * row[4 + k];
+  return true;
+}
+
+/// Colour and opacity of a slab; false when it contributes nothing (NaN).
+inline bool classify(const PairLookup& pairs, float front, float back, Rgba& colour) {
+  if (std::isnan(front) || std::isnan(back)) return false;
+  const auto place = [&](float value) {
+    return std::clamp((value - pairs.low()) * pairs.scale(), 0.0F, pairs.last());
+  };
+  const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
+  const float x = place(front), y = place(back);
+  const std::size_t i = entry(x), j = entry(y);
+  const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
+  const float* upper = lower + 4 * std::size_t(pairs.edge());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto along = [&](const float* row) { return row[k] + (x - float(i)) * (row[4 + k] - row[k]); };
+    colour[k] = along(lower) + (y - float(j)) * (along(upper) - along(lower));
+  }
+  if (pairs.multiply_by_alpha())
+    for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
+  return true;
+}
+
+/// The field at one place, which lies where the scene's store holds texels.
+template <typename FieldType>
+class FieldReader {
+ public:
+  explicit FieldReader(const Scene& scene) : scene_(scene) {}
+
+  /// The place is clamped to the box from `low` to `high`.
+  void move_to(const std::array<float, 3>& position, const std::array<float, 3>& low,
+               const std::array<float, 3>& high) {
+    position_ = position;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      clamped_[axis] = std::clamp(position[axis], low[axis], high[axis]);
+    find_cell();
+  }
+
+  const std::array<float, 3>& position() const { return position_; }
+
+  /// How many steps from here on lie in empty blocks for sure; negative in a block that shows something.
+  float steps_in_empty(const std::array<float, 3>& step) const {
+    const int distance = scene_.skip->distances()[block_];
+    if (distance == 0) return -1;
+    // All blocks fewer than `distance` steps away are empty. Rounding must not carry us past their faces.
+    float most = 1e9F;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = std::floor(clamped_[axis] / 8) * 8;
+      const float room = step[axis] > 0 ? low + 8 * float(distance) - clamped_[axis]
+                                        : clamped_[axis] - low + 8 * float(distance - 1);
+      const float speed = std::max(std::abs(step[axis]), 1e-20F);
+      most = std::min(most, (room - scene_.rounding[axis]) / speed * (1 - 1e-6F));
+    }
+    return std::max(most, 0.0F);
+  }
+
+  typename FieldType::Sample sample() const {
+    const std::byte* block = scene_.store->block_data()[block_];
+    constexpr int y = BrickStore::block_row, z = BrickStore::block_slice;
+    if (scene_.filter == Filter::nearest) {
+      const int texel = corner_ + (fraction_[0] >= 0.5F ? 1 : 0) + (fraction_[1] >= 0.5F ? y : 0) +
+                        (fraction_[2] >= 0.5F ? z : 0);
+      return FieldType::read(block, texel);
+    }
+    const auto along_x = [&](int i) {
+      return FieldType::mix(FieldType::read(block, i), FieldType::read(block, i + 1), fraction_[0]);
+    };
+    const auto inside = FieldType::mix(
+        FieldType::mix(along_x(corner_), along_x(corner_ + y), fraction_[1]),
+        FieldType::mix(along_x(corner_ + z), along_x(corner_ + y + z), fraction_[1]), fraction_[2]);
+    // Beyond the outermost texel centres the filter mixes in a constant: one axis at a time, so the weights
+    // multiply.
+    float weight = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (scene_.has_border[axis]) weight *= std::max(0.0F, 1 - std::abs(position_[axis] - clamped_[axis]));
+    return weight == 1 ? inside : FieldType::mix(FieldType::border(scene_.store->border()), inside, weight);
+  }
+
+ private:
+  /// Where the texels around the clamped position are.
+  void find_cell() {
+    block_ = 0;
+    corner_ = 0;
+    std::size_t block_stride = 1;
+    int texel_stride = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int cell = int(clamped_[axis]);
+      fraction_[axis] = clamped_[axis] - float(cell);
+      block_ += std::size_t(cell / BrickStore::block_cells - scene_.store->first_block()[axis]) * block_stride;
+      corner_ += cell % BrickStore::block_cells * texel_stride;
+      block_stride *= std::size_t(scene_.store->block_counts()[axis]);
+      texel_stride *= BrickStore::block_row;
+    }
+  }
+
+  const Scene& scene_;
+  std::array<float, 3> position_{}, clamped_{}, fraction_{};
+  std::size_t block_ = 0;  // among those held
+  int corner_ = 0;         // lowest texel of the cell, in the block
+};
+
+}  // namespace understudy::volume

@@ -1,0 +1,195 @@
+// Segment by segment, ray by ray, in the words of the definition: surfaces, light and pre-integration where the
+// vector kernel knows no instruction set, and what tests hold it against.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "volume/raycast/generic_field.h"
+#include "volume/raycast/kernel.h"
+#include "volume/raycast/surface_search.h"
+
+namespace understudy::volume {
+
+namespace {
+
+using Place = std::array<float, 3>;
+
+/// What a piece of `length` steps shows of a segment that is one step long.
+void shorten(float length, Rgba& colour) {
+  if (length >= 1) return;
+  const float opacity = colour[3];
+  const float kept = length > 0 ? -std::expm1(length * std::log1p(-std::min(opacity, 1.0F))) : 0;
+  const float ratio = opacity > 0 ? kept / opacity : length;
+  for (std::size_t k = 0; k < 3; ++k) colour[k] *= ratio;
+  colour[3] = kept;
+}
+
+void compose(const Rgba& colour, Rgba& pixel) {
+  const float room = 1 - pixel[3];
+  for (std::size_t k = 0; k < 4; ++k) pixel[k] += room * colour[k];
+}
+
+template <typename FieldType>
+class SegmentWalk {
+ public:
+  SegmentWalk(const Scene& scene, const RayStrip& strip, std::size_t ray)
+      : scene_(scene),
+        segments_(*scene.segments),
+        reader_(scene),
+        begin_(strip.begin[ray]),
+        end_(strip.end[ray]),
+        first_(strip.first[ray]),
+        last_(strip.last[ray]) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      start_[axis] = strip.start[axis][ray];
+      step_[axis] = strip.step[axis][ray];
+    }
+    if (segments_.lamp) {
+      light_ = segments_.lamp->light(step_);
+      half_ = segments_.lamp->half(step_);
+    }
+  }
+
+  Rgba walk(KernelCounts& counts) {
+    Rgba pixel{};
+    int until_test = samples_between_tests;
+    for (int k = first_; k <= last_;) {
+      const float u = on_ray(k);
+      const float front = value_at(place(u));
+      if (const float steps = reader_.steps_in_empty(step_); steps >= 0) {
+        // Only segments that end in empty blocks are empty.
+        const int next = int(std::floor(std::min(u + steps, float(last_) + 1)));
+        if (next > k) {
+          k = next;
+          continue;
+        }
+      }
+      ++counts.samples_taken;
+      show(k, front, pixel);
+      ++k;
+      if (--until_test == 0) {
+        until_test = samples_between_tests;
+        if (1 - pixel[3] < scene_.termination) {
+          ++counts.rays_terminated;
+          break;
+        }
+      }
+    }
+    return pixel;
+  }
+
+ private:
+  float on_ray(int k) const { return std::min(std::max(float(k), begin_), end_); }
+
+  Place place(float u) const {
+    Place p;
+    for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = u * step_[axis] + start_[axis];
+    return p;
+  }
+
+  float value_at(const Place& p) {
+    reader_.move_to(p, scene_.held_low, scene_.held_high);
+    return reader_.sample();
+  }
+
+  /// Sample and segment k.
+  void show(int k, float front, Rgba& pixel) {
+    const float u0 = on_ray(k), u1 = on_ray(k + 1);
+    const Place from = place(u0), to = place(u1);
+    Rgba colour;
+    if (!segments_.pre_integrated && k >= 0 && classify(scene_, front, colour)) {
+      if (segments_.lit_samples) lay_in_light(from, colour);
+      compose(colour, pixel);
+    }
+    if (segments_.levels.empty() && !segments_.pre_integrated) return;
+    const float back = value_at(to);
+    if (std::isnan(front) || std::isnan(back)) return;
+    SurfaceSearch search{0, front, back};
+    const auto point = [&](float share) {
+      Place p;
+      for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = from[axis] + share * (to[axis] - from[axis]);
+      return p;
+    };
+    const float cells = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+    const auto piece = [&](float begin, float end, float at_begin, float at_end) {
+      if (!segments_.pre_integrated || !(end > begin) || !classify(*scene_.pairs, at_begin, at_end, colour))
+        return;
+      shorten((end - begin) * (u1 - u0), colour);
+      if (segments_.lit_samples) lay_in_light(point(0.5F * (begin + end)), colour);
+      compose(colour, pixel);
+    };
+    const std::size_t count = segments_.levels.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Level& level = segments_.levels[front < back ? i : count - 1 - i];
+      if ((front >= level.value) == (back >= level.value)) continue;
+      const SurfaceSearch before = search;
+      if (!search.find(level.value, cells, [&](float share) { return value_at(point(share)); })) continue;
+      piece(before.front, search.front, before.at_front, level.value);
+      colour = level.colour;
+      if (segments_.lamp) lay_in_light(point(search.front), colour);
+      compose(colour, pixel);
+    }
+    piece(search.front, 1, search.at_front, back);
+  }
+
+  void lay_in_light(const Place& p, Rgba& colour) {
+    const Lamp& lamp = *segments_.lamp;
+    std::array<double, 3> gradient{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Place beside = p;
+      beside[axis] = p[axis] + 1;
+      const double ahead = value_at(beside);
+      beside[axis] = p[axis] - 1;
+      gradient[axis] = (ahead - value_at(beside)) / 2;
+    }
+    double square = 0, to_light = 0, to_half = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) square += gradient[i] * double(lamp.metric[3 * i + k]) * gradient[k];
+      to_light -= gradient[i] * double(light_[i]);
+      to_half -= gradient[i] * double(half_[i]);
+    }
+    if (!(square > 0)) return;
+    const auto cosine = [&](double projection) {
+      const double c = projection / std::sqrt(square);
+      return std::min(lamp.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
+    };
+    const double diffuse = cosine(to_light);
+    const double gleam = std::pow(cosine(to_half), double(lamp.model.shininess));
+    for (std::size_t k = 0; k < 3; ++k)
+      colour[k] =
+          float((double(lamp.model.ambient[k]) + double(lamp.model.diffuse[k]) * diffuse) * double(colour[k]) +
+                double(lamp.model.specular[k]) * gleam * double(colour[3]));
+  }
+
+  const Scene& scene_;
+  const SegmentScene& segments_;
+  FieldReader<FieldType> reader_;
+  float begin_, end_;
+  int first_, last_;
+  Place start_{}, step_{}, light_{}, half_{};
+};
+
+template <typename FieldType>
+void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  for (std::size_t ray = 0; ray < strip_rays; ++ray) {
+    const Rgba pixel = SegmentWalk<FieldType>(scene, strip, ray).walk(counts);
+    std::copy(pixel.begin(), pixel.end(), rgba + 4 * ray);
+  }
+}
+
+}  // namespace
+
+void generic_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  switch (scene.store->description().type) {
+    case TexelType::u8:
+      return walk_strip<Field<std::uint8_t>>(scene, strip, rgba, counts);
+    case TexelType::u16:
+      return walk_strip<Field<std::uint16_t>>(scene, strip, rgba, counts);
+    case TexelType::f32:
+      return walk_strip<Field<float>>(scene, strip, rgba, counts);
+    case TexelType::rgba8:  // refused by validate()
+      return;
+  }
+}
+
+}  // namespace understudy::volume

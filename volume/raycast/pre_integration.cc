@@ -1,0 +1,121 @@
+#include "volume/raycast/pre_integration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "volume/raycast/pair_lookup.h"
+
+namespace understudy::volume {
+
+namespace {
+
+using Colour = std::array<double, 4>;  // premultiplied
+
+Colour over(const Colour& front, const Colour& back) {
+  const double room = 1 - front[3];
+  return {front[0] + room * back[0], front[1] + room * back[1], front[2] + room * back[2],
+          front[3] + room * back[3]};
+}
+
+Colour between(const Colour& a, const Colour& b, double s) {
+  Colour mixed;
+  for (std::size_t k = 0; k < 4; ++k) mixed[k] = a[k] + s * (b[k] - a[k]);
+  return mixed;
+}
+
+/// Opacity as one of a medium, of which some light always passes.
+double believed(double opacity) {
+  return std::clamp(opacity, 0.0, 1 - std::numeric_limits<double>::epsilon() / 2);
+}
+
+/// The mean optical depth, for one step, of opacities between a and b.
+double mean_depth(double a, double b) {
+  a = believed(a);
+  b = believed(b);
+  if (std::abs(b - a) < 1e-5) return -std::log1p(-(a + b) / 2);
+  const auto integral = [](double opacity) { return (1 - opacity) * std::log1p(-opacity) + opacity; };
+  return (integral(b) - integral(a)) / (b - a);
+}
+
+/// What a segment of `length` steps shows over which the entries change evenly from `front` to `back`, in
+/// `parts` parts of even colour.
+Colour piece(const Colour& front, const Colour& back, double length, int parts) {
+  Colour sum{};
+  for (int part = 0; part < parts; ++part) {
+    const Colour from = between(front, back, double(part) / parts),
+                 to = between(front, back, (part + 1.0) / parts);
+    const Colour middle = between(from, to, 0.5);
+    const double way = length / parts;
+    const double opacity = -std::expm1(-way * mean_depth(from[3], to[3]));
+    Colour seen{0, 0, 0, opacity};
+    constexpr double clear = 1e-12;
+    for (std::size_t k = 0; k < 3; ++k)
+      seen[k] = middle[3] > clear ? middle[k] / std::min(middle[3], 1.0) * opacity : middle[k] * way;
+    sum = over(sum, seen);
+  }
+  return sum;
+}
+
+/// Calls `segment` with front, back and colour of all segments whose back lies at a later entry than their
+/// front.
+template <typename Segment>
+void rising_segments(const std::vector<Colour>& entries, Segment segment) {
+  const std::size_t pieces = entries.size() - 1;
+  std::vector<Colour> piece_at(pieces), up_to(pieces), from(pieces);
+  for (std::size_t count = 1; count <= pieces; ++count) {
+    // Within a group of `count` pieces: composed from its beginning up to each, and from each to its end.
+    const int parts = count <= 2 ? 8 : count <= 8 ? 2 : 1;
+    for (std::size_t i = 0; i < pieces; ++i)
+      piece_at[i] = piece(entries[i], entries[i + 1], 1 / double(count), parts);
+    for (std::size_t i = 0; i < pieces; ++i)
+      up_to[i] = i % count == 0 ? piece_at[i] : over(up_to[i - 1], piece_at[i]);
+    for (std::size_t i = pieces; i-- > 0;)
+      from[i] = i % count == count - 1 || i + 1 == pieces ? piece_at[i] : over(piece_at[i], from[i + 1]);
+    for (std::size_t front = 0; front + count <= pieces; ++front) {
+      const std::size_t last = front + count - 1;
+      segment(front, front + count, front % count == 0 ? up_to[last] : over(from[front], up_to[last]));
+    }
+  }
+}
+
+}  // namespace
+
+PairTable pre_integrated(const TransferFunction& function) {
+  constexpr std::size_t least_pieces = 255;
+  const std::size_t given = function.entries.size() - 1;
+  const std::size_t pieces = given >= std::size_t(max_pair_edge)
+                                 ? std::size_t(max_pair_edge) - 1
+                                 : given * ((std::max(least_pieces, given) + given - 1) / given);
+  std::vector<Colour> entries;
+  for (std::size_t i = 0; i <= pieces; ++i) {
+    const double place = double(i) * double(given) / double(pieces);
+    const auto below = std::min(std::size_t(place), given - 1);
+    const auto colour = [&](std::size_t entry) {
+      const Rgba& e = function.entries[entry];
+      return Colour{e[0], e[1], e[2], e[3]};
+    };
+    entries.push_back(between(colour(below), colour(below + 1), place - double(below)));
+  }
+
+  PairTable table;
+  table.low = function.low;
+  table.high = function.high;
+  table.edge = int(entries.size());
+  table.multiply_by_alpha = false;
+  table.entries.resize(entries.size() * entries.size());
+  const auto put = [&](std::size_t front, std::size_t back, const Colour& c) {
+    table.entries[back * entries.size() + front] = {float(c[0]), float(c[1]), float(c[2]), float(c[3])};
+  };
+  for (std::size_t i = 0; i < entries.size(); ++i) put(i, i, entries[i]);
+  rising_segments(entries, put);
+  std::reverse(entries.begin(), entries.end());
+  rising_segments(entries, [&](std::size_t front, std::size_t back, const Colour& c) {
+    put(pieces - front, pieces - back, c);
+  });
+  return table;
+}
+
+}  // namespace understudy::volume

@@ -1,0 +1,176 @@
+#include "volume/raycast/segment_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+#include "volume/matrix.h"
+
+namespace understudy::volume {
+
+namespace {
+
+void demand(bool holds, const char* otherwise) {
+  if (!holds) throw std::invalid_argument(otherwise);
+}
+
+template <typename Range>
+bool all_finite(const Range& values) {
+  return std::all_of(values.begin(), values.end(), [](auto v) { return std::isfinite(v); });
+}
+
+bool not_negative(const std::array<float, 3>& colour) {
+  return std::all_of(colour.begin(), colour.end(), [](float v) { return std::isfinite(v) && v >= 0; });
+}
+
+Vec3 row_of(const std::array<double, 9>& m, std::size_t row) {
+  return {m[3 * row], m[3 * row + 1], m[3 * row + 2]};
+}
+
+Vec3 transformed(const std::array<double, 9>& m, const Vec3& v) {
+  return {dot(row_of(m, 0), v), dot(row_of(m, 1), v), dot(row_of(m, 2), v)};
+}
+
+bool regular(const std::array<double, 9>& m) {
+  if (!all_finite(m)) return false;
+  const Vec3 a = row_of(m, 0), b = row_of(m, 1), c = row_of(m, 2);
+  return std::abs(dot(a, cross(b, c))) > 1e-9 * length(a) * length(b) * length(c);
+}
+
+/// Of a regular matrix.
+std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
+  const Vec3 a = row_of(m, 0), b = row_of(m, 1), c = row_of(m, 2);
+  const std::array<Vec3, 3> columns{cross(b, c), cross(c, a), cross(a, b)};
+  const double determinant = dot(a, columns[0]);
+  std::array<double, 9> inverse{};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 3; ++column)
+      inverse[3 * row + column] = columns[column][row] / determinant;
+  return inverse;
+}
+
+bool has_segments(const RenderRequest& request) {
+  return request.method == Method::pre_integrated || !request.surfaces.empty();
+}
+
+double units(TexelType type) {
+  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
+}
+
+}  // namespace
+
+bool walks_segments(const RenderRequest& request) {
+  return has_segments(request) || request.light.has_value();
+}
+
+int margin_needed(const VolumeDescription& volume, const RenderRequest& request) {
+  if (!walks_segments(request)) return 0;
+  double reach = 0;
+  if (has_segments(request) && request.steps) {
+    const std::array<double, 9> inverse = inverse_of(request.steps->metric);
+    // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding
+    // steps.
+    const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      reach = std::max(reach, part * length(row_of(inverse, axis)) * volume.size[axis]);
+  }
+  constexpr double rounding = 1e-6;  // of the reach, in cells
+  const double gradient = request.light ? 1 : 0;
+  return int(std::min(std::ceil(reach + gradient - rounding), 1e9));
+}
+
+void validate_segments(const VolumeDescription& volume, const RenderRequest& request) {
+  if (!walks_segments(request)) return;
+  demand(volume.type != TexelType::rgba8,
+         "surfaces, light and pre-integration are for scalar fields, not for colours: ask for colours alone");
+  demand(
+      std::holds_alternative<TransferFunction>(request.classification),
+      "surfaces, light and pre-integration need a transfer function (of clear entries, if surfaces alone are "
+      "to be seen)");
+  demand(request.op == Operator::over, "surfaces, light and pre-integration need the operator over");
+  demand(request.filter == Filter::linear, "surfaces, light and pre-integration need a linear filter");
+  demand(!request.fog, "there is no fog with surfaces, light or pre-integration");
+  if (has_segments(request)) {
+    demand(request.steps.has_value(),
+           "surfaces and pre-integration need steps along rays: give steps instead of planes");
+    demand(request.steps->past_depth == 0,
+           "surfaces and pre-integration end before opaque geometry: ask for no samples behind it");
+  }
+  if (request.surfaces.size() > max_surfaces)
+    throw std::invalid_argument(
+        fmt::format("{} surfaces (at most {} are possible)", request.surfaces.size(), max_surfaces));
+  for (const Surface& surface : request.surfaces) {
+    demand(std::isfinite(surface.value) && all_finite(surface.colour),
+           "a surface holds a value that is not finite");
+    demand(surface.colour[3] >= 0 && surface.colour[3] <= 1, "a surface's opacity is outside [0, 1]");
+  }
+  if (const auto& light = request.light) {
+    demand(regular(light->space), "the matrix from texture space to the light's space is singular");
+    demand(all_finite(light->direction), "the direction to the light holds a value that is not finite");
+    demand(not_negative(light->ambient) && not_negative(light->diffuse) && not_negative(light->specular) &&
+               std::isfinite(light->shininess) && light->shininess >= 0,
+           "the light's colours and shininess must be finite and not negative");
+  }
+  if (const int cells = margin_needed(volume, request); cells > volume.margin)
+    throw std::invalid_argument(fmt::format(
+        "segments and gradients reach {} cells in a volume that was sent with a margin of {}: send it "
+        "again with a margin of {}",
+        cells, volume.margin, cells));
+}
+
+Lamp::Lamp(const Light& light, const std::array<int, 3>& size)
+    : model(light), inverse_(inverse_of(light.space)) {
+  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = size[axis];
+  const double largest =
+      std::max({std::abs(light.direction[0]), std::abs(light.direction[1]), std::abs(light.direction[2])});
+  if (largest > 0) {
+    direction_ = scale(light.direction, 1 / largest);
+    direction_ = scale(direction_, 1 / volume::length(direction_));
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      metric[3 * i + k] = float(size_[i] * size_[k] * dot(row_of(inverse_, i), row_of(inverse_, k)));
+}
+
+Vec3 Lamp::to_eye(const std::array<float, 3>& step) const {
+  const Vec3 way{-double(step[0]) / size_[0], -double(step[1]) / size_[1], -double(step[2]) / size_[2]};
+  const Vec3 eye = transformed(model.space, way);
+  const double distance = volume::length(eye);
+  return distance > 0 ? scale(eye, 1 / distance) : Vec3{};
+}
+
+// Gradients are covectors: their image under the inverse transpose, times a direction, is they themselves times
+// the direction's image under the inverse.
+std::array<float, 3> Lamp::over_gradients(const Vec3& direction) const {
+  const Vec3 v = transformed(inverse_, direction);
+  return {float(v[0] * size_[0]), float(v[1] * size_[1]), float(v[2] * size_[2])};
+}
+
+std::array<float, 3> Lamp::light(const std::array<float, 3>& step) const {
+  return over_gradients(volume::length(direction_) > 0 ? direction_ : to_eye(step));
+}
+
+std::array<float, 3> Lamp::half(const std::array<float, 3>& step) const {
+  const Vec3 eye = to_eye(step);
+  const Vec3 sum = volume::length(direction_) > 0 ? add(direction_, eye) : eye;
+  const double distance = volume::length(sum);
+  return over_gradients(distance > 1e-9 ? scale(sum, 1 / distance) : Vec3{});
+}
+
+SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest& request)
+    : pre_integrated(request.method == Method::pre_integrated),
+      lit_samples(request.light && request.light->on_samples) {
+  for (const Surface& surface : request.surfaces) {
+    Level level{float(surface.value * units(volume.type)), surface.colour};
+    for (std::size_t k = 0; k < 3; ++k) level.colour[k] *= level.colour[3];
+    levels.push_back(level);
+  }
+  std::stable_sort(levels.begin(), levels.end(),
+                   [](const Level& a, const Level& b) { return a.value < b.value; });
+  if (request.light) lamp.emplace(*request.light, volume.size);
+}
+
+}  // namespace understudy::volume

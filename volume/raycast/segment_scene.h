@@ -1,0 +1,58 @@
+// Surfaces, light and pre-integration made ready for a kernel: in units of the texel type, and of cells.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+/// Whether a request has surfaces, light or segments; other requests know nothing of all this.
+bool walks_segments(const RenderRequest& request);
+
+/// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
+/// margin must be no smaller. The steps' metric must not be singular.
+int margin_needed(const VolumeDescription& volume, const RenderRequest& request);
+
+/// Throws std::invalid_argument when surfaces, light or method make no sense on `volume`.
+void validate_segments(const VolumeDescription& volume, const RenderRequest& request);
+
+/// A surface; its colour is premultiplied.
+struct Level {
+  float value = 0;
+  Rgba colour{};
+};
+
+/// A light over gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light is
+/// -g . light / |g|, and that between normal and h is -g . half / |g|.
+struct Lamp {
+  Lamp(const Light& light, const std::array<int, 3>& size);
+
+  /// `half` of a ray that goes along `step` (in cells); zero where there is none.
+  std::array<float, 3> half(const std::array<float, 3>& step) const;
+  /// `light` of the same ray.
+  std::array<float, 3> light(const std::array<float, 3>& step) const;
+
+  Light model;
+  std::array<float, 9> metric{};
+
+ private:
+  Vec3 to_eye(const std::array<float, 3>& step) const;
+  std::array<float, 3> over_gradients(const Vec3& direction) const;
+
+  Vec3 direction_{};  ///< of length 1, or zero
+  std::array<double, 9> inverse_{};
+  Vec3 size_{};
+};
+
+struct SegmentScene {
+  SegmentScene(const VolumeDescription& volume, const RenderRequest& request);
+
+  std::vector<Level> levels;  ///< rising
+  bool pre_integrated = false;
+  bool lit_samples = false;
+  std::optional<Lamp> lamp;
+};
+
+}  // namespace understudy::volume

@@ -1,0 +1,77 @@
+#include "volume/reference/illumination.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/matrix.h"
+
+namespace understudy::volume {
+namespace {
+
+Vec3 unit(const Vec3& v) {
+  const double l = length(v);
+  return l > 0 ? scale(v, 1 / l) : Vec3{};
+}
+
+}  // namespace
+
+Vec3 texel_gradient(const Field& field, const VolumeDescription& volume, const Vec3& t) {
+  Vec3 gradient{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double texel = 1.0 / volume.size[axis];
+    const auto beside = [&](double texels) {
+      Vec3 p = t;
+      p[axis] += texels * texel;
+      if (volume.wrap[axis] == Wrap::repeat) p[axis] = std::clamp(p[axis], -0.5 * texel, 1 + 0.5 * texel);
+      return field(p)[0];
+    };
+    gradient[axis] = (beside(1) - beside(-1)) / 2;
+  }
+  return gradient;
+}
+
+std::array<double, 4> illuminated(const Field& field, const VolumeDescription& volume, const Light& light,
+                                  const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+  Vec3 gradient = texel_gradient(field, volume, t);
+  for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] *= volume.size[axis];
+  const Matrix4 space{light.space[0],
+                      light.space[1],
+                      light.space[2],
+                      0,
+                      light.space[3],
+                      light.space[4],
+                      light.space[5],
+                      0,
+                      light.space[6],
+                      light.space[7],
+                      light.space[8],
+                      0,
+                      0,
+                      0,
+                      0,
+                      1};
+  const Matrix4 back = inverse(space).value();
+  // The gradient's image is that under the inverse, transposed.
+  Vec3 normal{};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t k = 0; k < 3; ++k) normal[row] -= back[4 * k + row] * gradient[k];
+  const double slope = length(normal);
+  if (!(slope > 0)) return colour;
+  normal = scale(normal, 1 / slope);
+  const Vec4 forward = transform(space, {way[0], way[1], way[2], 0});
+  const Vec3 eye = unit({-forward[0], -forward[1], -forward[2]});
+  const Vec3 to_light = length(light.direction) > 0 ? unit(light.direction) : eye;
+  const auto cosine = [&](const Vec3& direction) {
+    const double c = dot(normal, direction);
+    return light.two_sided ? std::abs(c) : std::max(c, 0.0);
+  };
+  const double diffuse = cosine(to_light);
+  const double gleam = std::pow(cosine(unit(add(to_light, eye))), double(light.shininess));
+  std::array<double, 4> lit = colour;
+  for (std::size_t k = 0; k < 3; ++k)
+    lit[k] = (double(light.ambient[k]) + double(light.diffuse[k]) * diffuse) * colour[k] +
+             double(light.specular[k]) * gleam * colour[3];
+  return lit;
+}
+
+}  // namespace understudy::volume

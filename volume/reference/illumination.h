@@ -1,0 +1,17 @@
+// Light on a point of the field, in double precision: volume/light.h, literally.
+#pragma once
+
+#include "volume/reference/slice_sum.h"
+
+namespace understudy::volume {
+
+/// The field's gradient at t per texel of `volume`; what is looked at on a repeating axis stays within half a
+/// texel of the texture.
+Vec3 texel_gradient(const Field& field, const VolumeDescription& volume, const Vec3& t);
+
+/// What `light` makes of the premultiplied `colour` of the point t, on a ray that goes along `way` in texture
+/// space.
+std::array<double, 4> illuminated(const Field& field, const VolumeDescription& volume, const Light& light,
+                                  const Vec3& t, const Vec3& way, const std::array<double, 4>& colour);
+
+}  // namespace understudy::volume

@@ -1,0 +1,16 @@
+// What a request with surfaces, light or pre-integration means, in double precision and ray by ray: surfaces
+// are found by bisection, and segments integrated by quadrature. Slow, plain and written independently of the
+// ray caster.
+#pragma once
+
+#include "volume/reference/slice_sum.h"
+
+namespace understudy::volume {
+
+/// Composes all samples, segments and surfaces of `request`, whose samples lie on steps, over the pixels of
+/// `rect` that lie in its window; never terminates early. `field` is that of `volume`. Throws
+/// std::invalid_argument when the matrix is singular or there are no steps.
+ReferenceImage segment_sum(const Field& field, const VolumeDescription& volume, const RenderRequest& request,
+                           const Rect& rect);
+
+}  // namespace understudy::volume

@@ -28,6 +28,10 @@ CASES = {
     "cpu/post-classified/u16": (["--table", "dense", "--type", "u16"], None),
     "cpu/post-classified/dense/2 threads": (["--table", "dense", "--threads", "2"], ("dense", 2)),
     "cpu/post-classified/brain": (["--table", "sparse"], None),
+    "gl/post-classified/dense": (["--table", "dense", "--backend", "gl"], None),
+    "gl/post-classified/sparse": (["--table", "sparse", "--backend", "gl"], None),
+    "gl-osmesa/post-classified/dense": (["--table", "dense", "--backend", "gl-osmesa"], None),
+    "gl-osmesa/post-classified/sparse": (["--table", "sparse", "--backend", "gl-osmesa"], None),
 }
 YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
 

@@ -52,7 +52,8 @@ struct Outcome {
 
 class Node {
  public:
-  explicit Node(Link& link) : link_(link), renderer_(link.rank(), link.size()) {}
+  Node(Link& link, const volume::BrickRendererFactory& make_renderer)
+      : link_(link), renderer_(link.rank(), link.size(), make_renderer) {}
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
@@ -360,8 +361,9 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
 
 }  // namespace
 
-bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience) {
-  Node node(link);
+bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience,
+              const volume::BrickRendererFactory& make_renderer) {
+  Node node(link, make_renderer);
   if (link.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

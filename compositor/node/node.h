@@ -8,6 +8,7 @@
 
 #include "compositor/exchange/link.h"
 #include "compositor/service/limits.h"
+#include "volume/raycast/brick_renderer.h"
 
 namespace understudy::compositor {
 
@@ -15,12 +16,15 @@ namespace understudy::compositor {
 /// launcher behind `control_path` has closed its connection; false, on rank 0, when it could not be reached:
 /// that has been said on stderr, and the other ranks return as well.
 ///
+/// Each rank draws its bricks with what `make_renderer` makes.
+///
 /// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
 /// application gets a refusal. Applications that pause for longer than
 /// `stall_patience` in the middle of a message are dropped. Anything else that fails, such as memory in the
 /// middle of an exchange, is thrown: the caller then must end the group with link.abandon(), or the other ranks
 /// would wait for ever.
 bool run_node(Link& link, const std::string& control_path,
-              std::chrono::milliseconds stall_patience = limits::stall_patience);
+              std::chrono::milliseconds stall_patience = limits::stall_patience,
+              const volume::BrickRendererFactory& make_renderer = volume::cpu_renderer);
 
 }  // namespace understudy::compositor

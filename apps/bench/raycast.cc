@@ -10,12 +10,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "volume/brick/brick_store.h"
 #include "volume/brick/cell_lattice.h"
+#include "volume/glsl/glsl_ray_caster.h"
 #include "volume/matrix.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"
@@ -38,6 +42,7 @@ struct Settings {
   Method method = Method::post_classified;
   std::vector<double> surfaces;
   bool light = false;
+  std::string backend = "cpu";
   int stride = 8;  ///< of the pixels whose error is measured
 };
 
@@ -164,16 +169,23 @@ nlohmann::ordered_json measure(const Settings& settings) {
   BrickStore store(volume, cell_lattice(volume).box());
   store.add_slices(volume.stored, texels);
   store.finish();
-  RayCaster caster(store);
+  // Mesa's threads are counted when the context is made.
+  setenv("LP_NUM_THREADS", fmt::format("{}", settings.threads).c_str(), 0);
+  std::optional<glsl::Device> device;
+  if (settings.backend != "cpu")
+    device.emplace(settings.backend == "gl" ? glsl::Platform::egl : glsl::Platform::osmesa);
+  const std::unique_ptr<BrickRenderer> caster =
+      device ? std::unique_ptr<BrickRenderer>(std::make_unique<glsl::GlslRayCaster>(store, *device))
+             : cpu_renderer(store);
   Image image(asked.viewport);
   FrameCounts counts;
-  caster.render(asked, image, counts);  // what depends on the table alone is made once
+  caster->render(asked, image, counts);  // what depends on the table alone is made once
   std::vector<double> wall, processor;
   for (int frame = 0; frame < settings.frames; ++frame) {
     const auto start = std::chrono::steady_clock::now();
     const double before = processor_seconds();
     FrameCounts same;
-    caster.render(asked, image, same);
+    caster->render(asked, image, same);
     processor.push_back(processor_seconds() - before);
     wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
@@ -206,7 +218,8 @@ nlohmann::ordered_json measure(const Settings& settings) {
                                  {"rms_arithmetic", arithmetic.rms()},
                                  {"threads", settings.threads},
                                  {"epsilon", settings.epsilon},
-                                 {"instruction_set", instruction_set()}};
+                                 {"instruction_set", instruction_set()},
+                                 {"renderer", device ? device->description() : "CPU"}};
   if (rays > 0) {
     figures["max_total"] = total.largest;
     figures["rms_total"] = total.rms();
@@ -238,6 +251,8 @@ int main(int argc, char** argv) {
   app.add_option("--threads", settings.threads, "most threads")->check(CLI::Range(1, 1024));
   app.add_option("--frames", settings.frames, "pictures, of whose times the median counts")
       ->check(CLI::Range(1, 10000));
+  app.add_option("--backend", settings.backend, "who casts the rays: gl on EGL, gl-osmesa on OSMesa")
+      ->check(CLI::IsMember({"cpu", "gl", "gl-osmesa"}));
   app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")
       ->check(CLI::Range(0.0, 1.0));
   CLI11_PARSE(app, argc, argv);

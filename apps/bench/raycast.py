@@ -34,6 +34,10 @@ CASES = {
     "cpu/shaded/dense": (["--table", "dense", "--light"], None),
     "cpu/iso/surface": (["--table", "clear", "--surfaces", "0.6", "--light"], None),
     "cpu/iso/dense": (["--table", "dense", "--surfaces", "0.6,0.8"], None),
+    "gl/post-classified/dense": (["--table", "dense", "--backend", "gl"], None),
+    "gl/post-classified/sparse": (["--table", "sparse", "--backend", "gl"], None),
+    "gl-osmesa/post-classified/dense": (["--table", "dense", "--backend", "gl-osmesa"], None),
+    "gl-osmesa/post-classified/sparse": (["--table", "sparse", "--backend", "gl-osmesa"], None),
 }
 YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
 

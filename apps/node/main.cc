@@ -4,15 +4,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string>
 #include <thread>
 
 #include "compositor/exchange/mpi_link.h"
 #include "compositor/node/node.h"
+#include "compositor/service/backend_line.h"
+#include "volume/glsl/backend.h"
 
 int main(int argc, char** argv) {
-  using namespace understudy::compositor;
+  using namespace understudy;
+  using namespace compositor;
   CLI::App app(
       "One rank of Understudy's node group; `understudy serve` starts it as mpirun -n N understudy-node ...");
   std::string control;
@@ -29,14 +34,25 @@ int main(int argc, char** argv) {
   };
   choice("--exchange", set_algorithm, "How partial images become one");
   choice("--pixels", set_layout, "What numbers travel between ranks");
+  std::string backend = "cpu";
+  app.add_option("--backend", backend, "Who casts the rays")->check([](const std::string& name) -> std::string {
+    if (volume::glsl::backend_of(name)) return {};
+    return fmt::format("'{}' is none of {}", name, volume::glsl::backend_names);
+  });
   CLI11_PARSE(app, argc, argv);
 
   MpiLink link(argc, argv);
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                    std::max(1U, cores / unsigned(link.ranks_on_this_machine())));
+  const unsigned share = std::max(1U, cores / unsigned(link.ranks_on_this_machine()));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
+  // Mesa's software renderer would take all cores for each rank.
+  setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
+  volume::glsl::BackendChooser chooser(*volume::glsl::backend_of(backend), [&](const std::string& choice) {
+    fmt::print(stderr, "{}node {}: {}\n", backend_line, link.rank(), choice);
+    std::fflush(stderr);
+  });
   try {
-    return run_node(link, control, limits::stall_patience, exchange) ? 0 : 1;
+    return run_node(link, control, limits::stall_patience, exchange, chooser.factory()) ? 0 : 1;
   } catch (const std::exception& error) {
     link.abandon(error.what());
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/understudy/environment.h"
+#include "compositor/service/backend_line.h"
 
 namespace understudy::launcher {
 namespace {
@@ -22,13 +23,15 @@ constexpr int patience_with_nodes_ms = 2000;
 constexpr int patience_with_mpirun_ms = 5000;
 constexpr std::chrono::seconds patience_with_lost_group{5};
 constexpr std::uintmax_t max_log_read = 65536;
+constexpr const char* nodes_log = "nodes.log";
+constexpr std::size_t max_backend_choices = 1024;
 
 void say(const std::string& line) {
   std::fprintf(stderr, "understudy: %s\n", line.c_str());
 }
 
 std::filesystem::path log_of(const NodeGroupPlan& plan) {
-  return plan.folder / "nodes.log";
+  return plan.folder / nodes_log;
 }
 
 std::uintmax_t size_of(const std::filesystem::path& path) {
@@ -64,7 +67,8 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
                        "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
                        // Its session files go when the run's folder goes, whatever happens to it.
                        "--mca", "orte_tmpdir_base", plan.folder.string(), installation.node().string(),
-                       "--control", plan.socket.string(), "--exchange", plan.exchange, "--pixels", plan.pixels};
+                       "--control", plan.socket.string(), "--exchange", plan.exchange, "--pixels", plan.pixels,
+                       "--backend", plan.backend};
   command.environment = node_environment(current_environment(), installation);
   command.output = log_of(plan);
   command.own_group = true;
@@ -82,6 +86,15 @@ std::string obstacle_to_nodes(const Installation& installation) {
                        installation.node().string());
   }
   return {};
+}
+
+std::vector<std::string> backend_choices(const std::filesystem::path& folder) {
+  const std::string_view begin = compositor::backend_line;
+  std::ifstream file(folder / nodes_log);
+  std::vector<std::string> choices;
+  for (std::string line; choices.size() < max_backend_choices && std::getline(file, line);)
+    if (line.starts_with(begin)) choices.push_back(line.substr(begin.size()));
+  return choices;
 }
 
 NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan)

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
@@ -25,10 +26,14 @@ struct NodeGroupPlan {
   std::filesystem::path folder;  ///< for the nodes' log and mpirun's own files; must exist
   std::string exchange = "auto";
   std::string pixels = "float";
+  std::string backend = "cpu";  ///< who casts the nodes' rays, as understudy-node takes it
 };
 
 /// Why no nodes can be started here, with the fix, in one line; empty when they can.
 std::string obstacle_to_nodes(const Installation& installation);
+
+/// What the nodes in `folder` have said about who casts their rays, and why: a line for each choice.
+std::vector<std::string> backend_choices(const std::filesystem::path& folder);
 
 class NodeGroup {
  public:

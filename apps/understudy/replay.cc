@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/understudy/backend_option.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/run.h"
@@ -59,6 +60,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("UNITS")
       ->excludes(native);
   add_options_of_the_table(*subcommand, arguments, without);
+  add_backend_option(*subcommand, arguments->backend);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

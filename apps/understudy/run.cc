@@ -10,9 +10,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
+#include "apps/understudy/backend_option.h"
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/environment.h"
 #include "apps/understudy/installation.h"
@@ -22,6 +24,7 @@
 #include "apps/understudy/trace_option.h"
 #include "spu/assemble.h"
 #include "spu/options.h"
+#include "spu/report/keys.h"
 #include "spu/report/report.h"
 
 namespace understudy::launcher {
@@ -121,16 +124,27 @@ Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
   }
 }
 
+/// The report, with who cast the rays.
+std::string with_backends(const std::string& report, const std::vector<std::string>& backends) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
+  json[spu::report_key::backends] = backends;
+  return json.dump(1, ' ') + "\n";
+}
+
 void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
   const std::vector<spu::MappedCounters> counters = spu::read_counters(folder.path());
   std::vector<const spu::ProcessCounters*> processes;
   processes.reserve(counters.size());
   for (const spu::MappedCounters& process : counters) processes.push_back(process.get());
-  if (options.explain) std::fputs(spu::explanation_text(processes).c_str(), stderr);
+  const std::vector<std::string> backends = backend_choices(folder.path());
+  if (options.explain) {
+    std::fputs(spu::explanation_text(processes).c_str(), stderr);
+    for (const std::string& choice : backends) say(choice);
+  }
   std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
   if (options.report.empty()) return;
   try {
-    spu::replace_file(options.report, spu::report_json(processes));
+    spu::replace_file(options.report, with_backends(spu::report_json(processes), backends));
   } catch (const std::exception& error) {
     say(error.what());
   }
@@ -164,8 +178,14 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   const RunFolder folder;
   std::optional<NodeGroupPlan> plan;
   if (options.nodes > 0 && options.connect.empty() && !options.disable) {
-    plan = NodeGroupPlan{options.nodes, folder.path() / "nodes.sock", folder.path(), options.exchange,
-                         options.pixels};
+    plan = NodeGroupPlan{options.nodes,  folder.path() / "nodes.sock",
+                         folder.path(),  options.exchange,
+                         options.pixels, arguments.backend};
+  } else if (arguments.backend != "cpu") {
+    say(fmt::format(
+        "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
+        "the CPU, as the viewer's own process has OpenGL to itself",
+        arguments.backend));
   }
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
@@ -226,6 +246,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   CLI::App* subcommand = app.add_subcommand("run", "runs a viewer: understudy run [options] -- viewer args…");
   subcommand->footer("Each option can also be given by the environment variable in brackets.");
   add_options_of_the_table(*subcommand, arguments);
+  add_backend_option(*subcommand, arguments->backend);
   const std::map<std::string, Door> doors{
       {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
   subcommand

@@ -33,6 +33,7 @@ struct RunArguments {
   std::map<std::string, std::string> settings;  ///< environment variable → value, as given on the command line
   std::optional<Door> door = Door::audit;       ///< none: the program makes its own chains
   std::filesystem::path trace;                  ///< empty: nothing is recorded
+  std::string backend = "cpu";                  ///< who casts the nodes' rays
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

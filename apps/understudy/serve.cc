@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/understudy/backend_option.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct ServeArguments {
   int nodes = 1;
+  std::string backend = "cpu";
   std::string socket;
   std::string folder;  ///< empty: one of its own
   std::string exchange = "auto";
@@ -62,7 +64,8 @@ int serve(const ServeArguments& arguments) {
   }
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path(), arguments.exchange, arguments.pixels});
+  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path(), arguments.exchange, arguments.pixels,
+                                 arguments.backend});
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
@@ -88,6 +91,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("-n,--nodes", arguments->nodes, "MPI ranks on this machine")
       ->required()
       ->check(CLI::Range(1, spu::max_nodes));
+  add_backend_option(*subcommand, arguments->backend);
   subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
   subcommand
       ->add_option("--folder", arguments->folder,

@@ -54,8 +54,8 @@ struct Outcome {
 
 class Node {
  public:
-  Node(Link& link, const ExchangeSettings& exchange)
-      : link_(link), exchange_(exchange), renderer_(link.rank(), link.size()) {}
+  Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer)
+      : link_(link), exchange_(exchange), renderer_(link.rank(), link.size(), make_renderer) {}
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
@@ -370,8 +370,8 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience,
-              const ExchangeSettings& exchange) {
-  Node node(link, exchange);
+              const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer) {
+  Node node(link, exchange, make_renderer);
   if (link.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

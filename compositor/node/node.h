@@ -9,12 +9,15 @@
 #include "compositor/exchange/link.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/service/limits.h"
+#include "volume/raycast/brick_renderer.h"
 
 namespace understudy::compositor {
 
 /// Collective over `link`: every rank of the group calls it with the same arguments. Returns true when the
 /// launcher behind `control_path` has closed its connection; false, on rank 0, when it could not be reached:
 /// that has been said on stderr, and the other ranks return as well.
+///
+/// Each rank draws its bricks with what `make_renderer` makes.
 ///
 /// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
 /// application gets a refusal. Applications that pause for longer than
@@ -23,6 +26,7 @@ namespace understudy::compositor {
 /// would wait for ever.
 bool run_node(Link& link, const std::string& control_path,
               std::chrono::milliseconds stall_patience = limits::stall_patience,
-              const ExchangeSettings& exchange = {});
+              const ExchangeSettings& exchange = {},
+              const volume::BrickRendererFactory& make_renderer = volume::cpu_renderer);
 
 }  // namespace understudy::compositor

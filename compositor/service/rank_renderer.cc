@@ -7,6 +7,7 @@
 #include <chrono>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "compositor/crop.h"
 #include "compositor/service.h"
@@ -15,6 +16,7 @@
 #include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/kd_tree.h"
+#include "volume/raycast/brick_renderer.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -24,16 +26,16 @@ using namespace volume;
 struct RankRenderer::Volume {
   KdTree tree;
   BrickStore bricks;
-  RayCaster caster;
+  std::unique_ptr<BrickRenderer> renderer;
   std::vector<TexelBox> shown;  ///< by each rank
   enum class State { filling, complete, changing } state = State::filling;
   std::uint64_t version;
   std::vector<std::size_t> changed_blocks;
 
-  Volume(const VolumeDescription& description, int rank, int ranks)
+  Volume(const VolumeDescription& description, int rank, int ranks, const BrickRendererFactory& make_renderer)
       : tree(description, ranks),
         bricks(description, tree.box(rank)),
-        caster(bricks),
+        renderer(make_renderer(bricks)),
         version(description.version) {
     for (int other = 0; other < ranks; ++other)
       shown.push_back(BrickStore::texels_shown(description, tree.box(other)));
@@ -83,7 +85,8 @@ void keep_limits(const VolumeDescription& description, int ranks) {
 
 }  // namespace
 
-RankRenderer::RankRenderer(int rank, int ranks) : rank_(rank), ranks_(ranks) {}
+RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer)
+    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)) {}
 RankRenderer::~RankRenderer() = default;
 
 RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
@@ -111,7 +114,8 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
     throw RequestRefused(fmt::format("{} volumes are held already: forget one first", held));
   // The old one goes first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
-  refusing([&] { volumes_.emplace(key, std::make_unique<Volume>(description, rank_, ranks_)); });
+  refusing(
+      [&] { volumes_.emplace(key, std::make_unique<Volume>(description, rank_, ranks_, make_renderer_)); });
 }
 
 void RankRenderer::begin_change(VolumeKey key, std::uint64_t version) {
@@ -173,7 +177,7 @@ std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
 void RankRenderer::end(VolumeKey key) {
   Volume& volume = find(key);
   if (volume.state == Volume::State::filling) refusing([&] { volume.bricks.finish(); });
-  volume.caster.blocks_changed(volume.changed_blocks);
+  volume.renderer->blocks_changed(volume.changed_blocks);
   volume.changed_blocks.clear();
   volume.state = Volume::State::complete;
 }
@@ -196,7 +200,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
       throw RequestRefused(fmt::format("a picture of {} pixels is over the limit of {}",
                                        request.window.pixels(), limits::max_window_pixels));
     Image result(footprint(request, description, volume.tree.box(rank_)));
-    volume.caster.render(request, result, counts);
+    volume.renderer->render(request, result, counts);
     return result;
   });
   crop_to_content(image, request.op);

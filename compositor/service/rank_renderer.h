@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volume/image.h"
+#include "volume/raycast/brick_renderer.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {
@@ -26,8 +27,8 @@ struct VolumeKey {
 /// sense; what had been there before is then as it was.
 class RankRenderer {
  public:
-  /// Rank `rank` of `ranks`.
-  RankRenderer(int rank, int ranks);
+  /// Rank `rank` of `ranks`, whose bricks are drawn by what `make_renderer` makes.
+  RankRenderer(int rank, int ranks, volume::BrickRendererFactory make_renderer = volume::cpu_renderer);
   ~RankRenderer();
 
   void begin(std::uint64_t client, const volume::VolumeDescription& description);
@@ -57,6 +58,7 @@ class RankRenderer {
 
   int rank_;
   int ranks_;
+  volume::BrickRendererFactory make_renderer_;
   std::map<VolumeKey, std::unique_ptr<Volume>> volumes_;
 };
 

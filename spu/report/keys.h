@@ -9,6 +9,7 @@ constexpr const char* frames = "frames";
 constexpr const char* frames_substituted = "frames_substituted";
 constexpr const char* frames_left = "frames_left";
 constexpr const char* nodes = "nodes";
+constexpr const char* backends = "backends";  ///< of nodes of this run: who cast the rays, and why
 constexpr const char* remote = "remote";  ///< whether the viewer's whole stream was drawn elsewhere
 constexpr const char* processes = "processes";
 constexpr const char* time_ms = "time_ms";

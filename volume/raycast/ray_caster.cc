@@ -15,6 +15,7 @@
 #include "volume/matrix.h"
 #include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
+#include "volume/raycast/map_visibility.h"
 #include "volume/raycast/pre_integration.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/segment_scene.h"
@@ -133,20 +134,6 @@ void validate_fog(const Fog& fog, Operator op) {
     if (!all_finite(entry)) refuse("the fog holds a value that is not finite");
   if (!all_finite(fog.normal) || !std::isfinite(fog.offset))
     refuse("the direction of the fog holds a value that is not finite");
-}
-
-/// Whether a block of colours can show anything: bounds of the mapped components over the block's ranges.
-bool shows(const LinearMap& map, std::span<const BrickStore::Range> texels) {
-  std::array<float, 4> highest{};
-  for (std::size_t row = 0; row < 4; ++row)
-    for (std::size_t k = 0; k < 4; ++k) {
-      const float m = map.matrix[4 * row + k] / 255.0F;
-      highest[row] += std::max(m * texels[k].low, m * texels[k].high);
-    }
-  constexpr float rounding = 1e-5F;  // of the map, so that no fragment above the threshold is lost
-  if (map.alpha_above >= 0 && highest[3] + rounding <= map.alpha_above) return false;
-  if (map.multiply_by_alpha) return highest[3] > 0;
-  return std::any_of(highest.begin(), highest.end(), [](float v) { return v > 0; });
 }
 
 }  // namespace

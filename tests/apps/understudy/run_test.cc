@@ -125,9 +125,16 @@ TEST_F(UnderstudyRun, TellsTheViewersSideItsOptions) {
 }
 
 TEST_F(UnderstudyRun, RefusesAValueThatAnOptionCannotTake) {
-  for (const char* wrong : {"--verify=often", "-n -1", "-n 1000000", "--door window", "--no-such-option"}) {
+  for (const char* wrong :
+       {"--verify=often", "-n -1", "-n 1000000", "--door window", "--backend vulkan", "--no-such-option"}) {
     EXPECT_EQ(understudy("run " + std::string(wrong) + " -- true").status, 2) << wrong;
   }
+}
+
+TEST_F(UnderstudyRun, SaysThatABackendIsForNodes) {
+  const Result result = understudy("run --backend gl -- true");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.output, HasSubstr("--backend gl is for nodes of this run (-n N)"));
 }
 
 TEST_F(UnderstudyRun, ReportsAChainItDoesNotUnderstandBeforeTheViewerStarts) {

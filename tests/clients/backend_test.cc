@@ -1,0 +1,42 @@
+// The same pictures from nodes that cast rays on the CPU, by OpenGL, or by whichever is faster, and a report
+// that says which it was and why.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class Backend : public Stage {
+ protected:
+  /// The last of so many frames on two nodes, and what the report says of backends.
+  std::vector<std::string> draw(const std::string& backend, const std::string& frames,
+                                const std::string& picture) {
+    run_well(under({"-n", "2", "--backend", backend, "--report", file("r.json")}) +
+             engine_viewer("table", {"--frames", frames, "--screenshot", file(picture)}));
+    EXPECT_GT(substituted(json("r.json")), 0) << backend;
+    return json("r.json")["backends"].get<std::vector<std::string>>();
+  }
+};
+
+TEST_F(Backend, OfTheNodesIsToldAndDrawsTheSamePicture) {
+  if (const std::string reason = missing({Need::engine, Need::mpi}); !reason.empty()) GTEST_SKIP() << reason;
+  EXPECT_THAT(draw("cpu", "1", "cpu.png"), IsEmpty());
+  EXPECT_THAT(draw("gl", "1", "gl.png"), testing::AllOf(SizeIs(2), Each(HasSubstr("GL, as asked: "))));
+  EXPECT_THAT(draw("gl:osmesa", "1", "osmesa.png"), testing::AllOf(SizeIs(2), Each(HasSubstr("on OSMesa"))));
+  EXPECT_THAT(draw("auto", "6", "auto.png"), Each(HasSubstr("ns a sample")));
+  for (const char* picture : {"gl.png", "osmesa.png", "auto.png"})
+    EXPECT_LE(told(picture, png("cpu.png"), png(picture)).max, 1) << picture;
+  EXPECT_EQ(leftovers(), "");
+}
+
+}  // namespace
+}  // namespace clients

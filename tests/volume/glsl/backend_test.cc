@@ -1,0 +1,115 @@
+// Who casts the rays: what is asked for, what is measured, and what happens where OpenGL cannot.
+#include "volume/glsl/backend.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/volume/scenes.h"
+#include "volume/glsl/device.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::volume::glsl {
+namespace {
+
+using namespace volume::testing;
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+constexpr int edge = 64;
+
+bool has_opengl() {
+  try {
+    const Device device(Platform::egl);
+    return true;
+  } catch (const ContextUnavailable&) {
+    return false;
+  }
+}
+
+class Told : public ::testing::Test {
+ protected:
+  Told()
+      : texture_(noise(describe({31, 33, 35}, TexelType::u8), 3)),
+        store_(filled(texture_)),
+        request_(request_for(texture_, usual_camera(edge, edge), edge, edge, 60)) {}
+
+  /// The largest difference from the CPU's picture in so many frames.
+  double draw(BackendChooser& chooser, int frames) {
+    Image expected(request_.window);
+    FrameCounts counts;
+    raycast(store_, request_, expected, counts);
+    const auto renderer = chooser.factory()(store_);
+    double worst = 0;
+    for (int frame = 0; frame < frames; ++frame) {
+      Image image(request_.window);
+      FrameCounts same;
+      renderer->render(request_, image, same);
+      EXPECT_EQ(same.samples, counts.samples);
+      worst = std::max(worst, difference(image, expected).max);
+    }
+    return worst;
+  }
+
+  BackendChooser::Tell tell() {
+    return [this](const std::string& line) { told_.push_back(line); };
+  }
+
+  Texture texture_;
+  BrickStore store_;
+  RenderRequest request_;
+  std::vector<std::string> told_;
+};
+
+TEST_F(Told, TheCpuNeedsNoReason) {
+  BackendChooser chooser(Backend::cpu, tell());
+  EXPECT_EQ(draw(chooser, 3), 0);
+  EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(Told, OpenGlIsNamedOnce) {
+  if (!has_opengl()) GTEST_SKIP() << "there is no OpenGL on EGL here";
+  BackendChooser chooser(Backend::egl, tell());
+  EXPECT_LE(draw(chooser, 3), 1e-3);
+  EXPECT_THAT(told_, ElementsAre(AllOf(StartsWith("GL, as asked: "), HasSubstr("on EGL"))));
+}
+
+TEST_F(Told, AutomaticMeasuresBothAndThenStays) {
+  if (!has_opengl()) GTEST_SKIP() << "there is no OpenGL on EGL here";
+  BackendChooser chooser(Backend::automatic, tell());
+  EXPECT_LE(draw(chooser, 4), 1e-3);
+  EXPECT_THAT(told_,
+              ElementsAre(AllOf(AnyOf(StartsWith("GL for u8, over, linear filter, most blocks visible"),
+                                      StartsWith("CPU for u8, over, linear filter, most blocks visible")),
+                                HasSubstr("ns a sample"), HasSubstr("on EGL"))));
+  draw(chooser, 4);  // another volume of the same kind
+  EXPECT_EQ(told_.size(), 1U);
+}
+
+TEST_F(Told, WhatOpenGlLacksTheCpuDraws) {
+  if (!has_opengl()) GTEST_SKIP() << "there is no OpenGL on EGL here";
+  request_.fog = Fog{{0, 0, 1}, 0, {{0, 0, 0, 1}, {1, 1, 1, 0}}};
+  BackendChooser chooser(Backend::gl, tell());
+  EXPECT_EQ(draw(chooser, 2), 0);
+  EXPECT_THAT(told_, ElementsAre("CPU: the GL backend does not draw fog"));
+}
+
+TEST_F(Told, SenselessRequestsAreRefusedAsByTheCpu) {
+  BackendChooser chooser(Backend::gl, tell());
+  const auto renderer = chooser.factory()(store_);
+  request_.texture_to_clip = {};
+  Image image(request_.window);
+  FrameCounts counts;
+  EXPECT_THROW(renderer->render(request_, image, counts), std::invalid_argument);
+}
+
+TEST(BackendNames, AreThoseOfTheCommandLine) {
+  EXPECT_EQ(backend_of("auto"), Backend::automatic);
+  EXPECT_EQ(backend_of("gl:osmesa"), Backend::osmesa);
+  EXPECT_FALSE(backend_of("vulkan"));
+}
+
+}  // namespace
+}  // namespace understudy::volume::glsl

@@ -1,0 +1,192 @@
+#include "volume/glsl/backend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <compare>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "volume/glsl/glsl_ray_caster.h"
+
+namespace understudy::volume::glsl {
+
+namespace {
+
+/// Pictures of a kind that each side draws before the choice; the first one pays for what is made once.
+constexpr int pictures_measured = 2;
+/// Pictures of fewer samples say nothing about speed.
+constexpr std::uint64_t least_samples = 50000;
+
+constexpr std::array<std::pair<std::string_view, Backend>, 5> names{{{"cpu", Backend::cpu},
+                                                                     {"gl", Backend::gl},
+                                                                     {"gl:egl", Backend::egl},
+                                                                     {"gl:osmesa", Backend::osmesa},
+                                                                     {"auto", Backend::automatic}}};
+
+/// What decides about speed, as far as a request tells.
+struct Kind {
+  TexelType type{};
+  Operator op{};
+  Filter filter{};
+  bool mostly_empty = false;
+
+  auto operator<=>(const Kind&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
+};
+
+std::string text_of(const Kind& kind) {
+  constexpr std::array types{"u8", "u16", "f32", "rgba8"};
+  constexpr std::array operators{"over", "max", "min", "add"};
+  return fmt::format("{}, {}, {} filter, {}", types.at(std::size_t(kind.type)),
+                     operators.at(std::size_t(kind.op)), kind.filter == Filter::linear ? "linear" : "nearest",
+                     kind.mostly_empty ? "most blocks empty" : "most blocks visible");
+}
+
+/// Nanoseconds for a sample inside the volume, the best picture of each side.
+struct Speeds {
+  int cpu_pictures = 0, gl_pictures = 0;
+  double cpu = std::numeric_limits<double>::infinity(), gl = cpu;
+  std::optional<bool> gl_is_faster;
+};
+
+}  // namespace
+
+std::optional<Backend> backend_of(std::string_view name) {
+  const auto* const found =
+      std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.first == name; });
+  return found == names.end() ? std::nullopt : std::optional(found->second);
+}
+
+struct BackendChooser::Shared {
+  Backend wish;
+  Tell tell;
+  std::unique_ptr<Device> device;
+  bool device_tried = false;
+  std::map<Kind, Speeds> speeds;  ///< of this node
+  std::set<std::string> told;
+
+  void tell_once(const std::string& line) {
+    if (told.insert(line).second) tell(line);
+  }
+
+  /// Null where there is no OpenGL; that has been told.
+  Device* open_device() {
+    if (std::exchange(device_tried, true)) return device.get();
+    std::string reasons;
+    const auto attempt = [&](Platform platform) {
+      if (device) return;
+      try {
+        device = std::make_unique<Device>(platform);
+      } catch (const std::runtime_error& absent) {
+        reasons += (reasons.empty() ? "" : "; ") + std::string(absent.what());
+      }
+    };
+    if (wish != Backend::osmesa) attempt(Platform::egl);
+    if (wish != Backend::egl) attempt(Platform::osmesa);
+    if (!device) tell_once("CPU: " + reasons);
+    return device.get();
+  }
+};
+
+class BackendChooser::Renderer final : public BrickRenderer {
+ public:
+  Renderer(Shared& shared, const BrickStore& store)
+      : shared_(shared), store_(store), cpu_(cpu_renderer(store)) {}
+
+  void blocks_changed(std::span<const std::size_t> blocks) override {
+    cpu_->blocks_changed(blocks);
+    if (gl_) gl_->blocks_changed(blocks);
+  }
+
+  void render(const RenderRequest& request, Image& out, FrameCounts& counts) override {
+    FrameCounts mine;
+    if (!draw_with_opengl(request, out, mine)) draw_on_cpu(request, out, mine);
+    mostly_empty_ = 2 * mine.blocks_empty > mine.blocks;
+    counts += mine;
+  }
+
+ private:
+  Kind kind_of(const RenderRequest& request) const {
+    return {store_.description().type, request.op, request.filter, mostly_empty_};
+  }
+
+  bool draw_with_opengl(const RenderRequest& request, Image& out, FrameCounts& counts) {
+    if (shared_.wish == Backend::cpu || failed_ || store_.empty()) return false;
+    if (shared_.wish == Backend::automatic && !wanted(kind_of(request))) return false;
+    Device* device = shared_.open_device();
+    if (device == nullptr) return false;
+    if (!gl_) gl_ = std::make_unique<GlslRayCaster>(store_, *device);
+    if (const auto reason = gl_->obstacle(request)) {
+      shared_.tell_once(fmt::format("CPU: the GL backend does not draw {}", *reason));
+      return false;
+    }
+    try {
+      measured(request, counts, &Speeds::gl, &Speeds::gl_pictures, [&] { gl_->render(request, out, counts); });
+    } catch (const std::runtime_error& error) {
+      failed_ = true;
+      gl_.reset();
+      shared_.tell_once(fmt::format("CPU for volume {}: {}", store_.description().id, error.what()));
+      return false;
+    }
+    if (shared_.wish != Backend::automatic)
+      shared_.tell_once(fmt::format("GL, as asked: {}", device->description()));
+    return true;
+  }
+
+  void draw_on_cpu(const RenderRequest& request, Image& out, FrameCounts& counts) {
+    measured(request, counts, &Speeds::cpu, &Speeds::cpu_pictures, [&] { cpu_->render(request, out, counts); });
+  }
+
+  /// Whether the next picture of this kind is OpenGL's: those after the CPU's while measuring, and all if it
+  /// was faster.
+  bool wanted(const Kind& kind) const {
+    const auto found = shared_.speeds.find(kind);
+    if (found == shared_.speeds.end()) return false;
+    const Speeds& speeds = found->second;
+    return speeds.gl_is_faster.value_or(speeds.cpu_pictures >= pictures_measured);
+  }
+
+  template <class Draw>
+  void measured(const RenderRequest& request, const FrameCounts& counts, double Speeds::*speed,
+                int Speeds::*pictures, Draw draw) {
+    const auto start = std::chrono::steady_clock::now();
+    draw();
+    const double ns =
+        std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+    if (shared_.wish != Backend::automatic || counts.samples < least_samples) return;
+    const Kind kind = kind_of(request);
+    Speeds& speeds = shared_.speeds[kind];
+    if (speeds.gl_is_faster) return;
+    speeds.*speed = std::min(speeds.*speed, ns / double(counts.samples));
+    ++(speeds.*pictures);
+    if (speeds.cpu_pictures < pictures_measured || speeds.gl_pictures < pictures_measured) return;
+    speeds.gl_is_faster = speeds.gl < speeds.cpu;
+    shared_.tell_once(fmt::format("{} for {}: GL takes {:.2f} ns a sample, the CPU {:.2f} ({})",
+                                  *speeds.gl_is_faster ? "GL" : "CPU", text_of(kind), speeds.gl, speeds.cpu,
+                                  shared_.device->description()));
+  }
+
+  Shared& shared_;
+  const BrickStore& store_;
+  std::unique_ptr<BrickRenderer> cpu_;
+  std::unique_ptr<GlslRayCaster> gl_;
+  bool failed_ = false;        ///< OpenGL, on this volume
+  bool mostly_empty_ = false;  ///< the last picture's blocks
+};
+
+BackendChooser::BackendChooser(Backend wish, Tell tell)
+    : shared_(std::make_unique<Shared>(Shared{wish, std::move(tell), nullptr, false, {}, {}})) {}
+BackendChooser::~BackendChooser() = default;
+
+BrickRendererFactory BackendChooser::factory() {
+  return [this](const BrickStore& store) -> std::unique_ptr<BrickRenderer> {
+    return std::make_unique<Renderer>(*shared_, store);
+  };
+}
+
+}  // namespace understudy::volume::glsl

@@ -1,0 +1,67 @@
+// One OpenGL context with its entry points and the programs that were made in it. All ray casters of a process
+// can share one; it serves one thread at a time.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "volume/glsl/functions.h"
+#include "volume/glsl/march_shader.h"
+#include "volume/glsl/offscreen_context.h"
+
+namespace understudy::volume::glsl {
+
+/// The GL backend cannot draw this request or this volume, and the message says why; the CPU can.
+class NotSupported : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class Platform { egl, osmesa };
+
+class Device {
+ public:
+  /// Throws ContextUnavailable.
+  explicit Device(Platform platform);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  /// What OpenGL calls itself and its version, with the way to it: "llvmpipe (LLVM 15.0.6, 256 bits),
+  /// OpenGL 4.5 (Core Profile) Mesa 22.3.6, on EGL".
+  const std::string& description() const { return description_; }
+  int max_texture_edge() const { return max_texture_edge_; }
+  int max_volume_edge() const { return max_volume_edge_; }
+
+  /// Holds the context on the calling thread; what is current must not be held twice.
+  class Current {
+   public:
+    explicit Current(Device& device) : context_(*device.context_) { context_.make_current(); }
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+    ~Current() { context_.release(); }
+
+   private:
+    OffscreenContext& context_;
+  };
+
+  // All that follows wants the context to be current.
+
+  const Functions& gl() const { return gl_; }
+  /// Linked and kept. Throws std::runtime_error with the compiler's words.
+  const MarchProgram& program(const MarchVariant& variant);
+  /// Throws NotSupported naming `what` when OpenGL has reported an error.
+  void check(const char* what) const;
+
+ private:
+  std::unique_ptr<OffscreenContext> context_;
+  Functions gl_;
+  std::string description_;
+  int max_texture_edge_ = 0;
+  int max_volume_edge_ = 0;
+  std::map<MarchVariant, MarchProgram> programs_;
+};
+
+}  // namespace understudy::volume::glsl

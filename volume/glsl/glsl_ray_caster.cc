@@ -1,0 +1,346 @@
+#include "volume/glsl/glsl_ray_caster.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "volume/glsl/field_texture.h"
+#include "volume/raycast/map_visibility.h"
+#include "volume/raycast/ray_caster.h"
+#include "volume/raycast/ray_setup.h"
+#include "volume/raycast/skip_map.h"
+#include "volume/raycast/transfer_table.h"
+
+namespace understudy::volume::glsl {
+
+namespace {
+
+using Texel4 = std::array<float, 4>;
+
+double largest_texel(TexelType type) {
+  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
+}
+
+void bind(const Functions& gl, Unit unit, GLenum target, GLuint texture) {
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + GLint(unit)));
+  gl.BindTexture(target, texture);
+}
+
+void set_filter(const Functions& gl, GLenum target, GLint filter) {
+  gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
+  gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
+  gl.TexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    gl.TexParameteri(target, axis, GL_CLAMP_TO_EDGE);
+}
+
+}  // namespace
+
+/// What depends on the classification alone, and on whether the operator is `min`.
+struct GlslRayCaster::Prepared {
+  Classification classification;
+  bool keeps_clear_samples;
+  std::optional<TransferTable> function;
+  SkipMap skip;
+  Texture distances;
+  Texture table;
+
+  Prepared(const Functions& gl, const BrickStore& store, const Classification& from, bool keeps_clear)
+      : classification(from),
+        keeps_clear_samples(keeps_clear),
+        function(make_function(store, from)),
+        skip(skip_map(store)),
+        distances(gl),
+        table(gl) {
+    upload_distances(gl, store);
+    if (!function) return;
+    const std::vector<Rgba>& entries = std::get<TransferFunction>(classification).entries;
+    bind(gl, Unit::table, GL_TEXTURE_1D, table.name());
+    gl.TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, GLsizei(entries.size()), 0, GL_RGBA, GL_FLOAT, entries.data());
+    set_filter(gl, GL_TEXTURE_1D, GL_LINEAR);
+  }
+
+  static std::optional<TransferTable> make_function(const BrickStore& store, const Classification& from) {
+    const auto* function = std::get_if<TransferFunction>(&from);
+    if (!function) return std::nullopt;
+    return TransferTable(*function, store.description().type, 0.0F);
+  }
+
+  SkipMap skip_map(const BrickStore& store) const {
+    std::vector<bool> all(store.blocks());
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      const auto ranges = store.ranges(b);
+      all[b] = keeps_clear_samples ? ranges[0].low <= ranges[0].high
+               : function          ? function->shows(ranges[0])
+                                   : shows(std::get<LinearMap>(classification), ranges);
+    }
+    return SkipMap(store.block_counts(), std::move(all));
+  }
+
+  void upload_distances(const Functions& gl, const BrickStore& store) const {
+    const auto& counts = store.block_counts();
+    bind(gl, Unit::distances, GL_TEXTURE_3D, distances.name());
+    gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, counts[0], counts[1], counts[2], 0, GL_RED_INTEGER,
+                  GL_UNSIGNED_BYTE, skip.distances());
+    set_filter(gl, GL_TEXTURE_3D, GL_NEAREST);
+  }
+};
+
+/// The rays of one picture, a pixel each, as the shader reads them.
+struct GlslRayCaster::Rays {
+  int width = 0;
+  int height = 0;
+  std::vector<Texel4> starts, steps;
+
+  /// Sets up the rays of `pixels`; returns whether any has a sample.
+  bool set_up(const RaySetup& setup, const RenderRequest& request, const Rect& pixels, FrameCounts& counts) {
+    width = pixels.width;
+    height = pixels.height;
+    starts.resize(pixels.pixels());
+    steps.resize(pixels.pixels());
+    tbb::combinable<FrameCounts> partial;
+    const int strip_rows = (height + strip_height - 1) / strip_height;
+    tbb::parallel_for(tbb::blocked_range<int>(0, strip_rows), [&](const tbb::blocked_range<int>& range) {
+      FrameCounts& mine = partial.local();
+      RayStrip strip;
+      for (int row = range.begin(); row < range.end(); ++row)
+        for (int x = 0; x < width; x += tile_width) {
+          const int y = row * strip_height;
+          const int columns = std::min(tile_width, width - x), rows = std::min(strip_height, height - y);
+          set_up_strip(setup, request, pixels.x + x, pixels.y + y, columns, rows, strip);
+          for (int j = 0; j < rows; ++j)
+            for (int i = 0; i < columns; ++i) {
+              const auto r = std::size_t(j * tile_width + i);
+              const std::size_t pixel = std::size_t(y + j) * std::size_t(width) + std::size_t(x + i);
+              const int first = strip.first[r], last = strip.last[r];
+              starts[pixel] = {strip.start[0][r], strip.start[1][r], strip.start[2][r], float(first)};
+              steps[pixel] = {strip.step[0][r], strip.step[1][r], strip.step[2][r], float(last)};
+              if (first > last) continue;
+              ++mine.rays;
+              mine.samples += std::uint64_t(last - first + 1);
+            }
+        }
+    });
+    FrameCounts all;
+    partial.combine_each([&](const FrameCounts& c) { all += c; });
+    counts += all;
+    return all.rays > 0;
+  }
+};
+
+/// All that lives in the context.
+struct GlslRayCaster::Resources {
+  FieldTexture field;
+  Texture starts, steps, picture, taken;
+  GLuint framebuffer = 0;
+  int width = 0, height = 0;  ///< of the textures that have a texel per pixel
+  /// The latest first: a viewer whose framebuffer keeps alpha asks for two pictures of every frame.
+  std::array<std::unique_ptr<Prepared>, 2> prepared;
+  Rays rays;
+  std::vector<float> counted;
+
+  Resources(Device& device, const BrickStore& store)
+      : field(device, store),
+        starts(device.gl()),
+        steps(device.gl()),
+        picture(device.gl()),
+        taken(device.gl()) {
+    device.gl().GenFramebuffers(1, &framebuffer);
+  }
+
+  void resize(Device& device, int to_width, int to_height) {
+    if (to_width <= width && to_height <= height) return;
+    const Functions& gl = device.gl();
+    width = std::max(width, to_width);
+    height = std::max(height, to_height);
+    const auto make = [&](const Texture& texture, GLint format, GLenum channels) {
+      bind(gl, Unit::ray_starts, GL_TEXTURE_2D, texture.name());
+      gl.TexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, GL_FLOAT, nullptr);
+      set_filter(gl, GL_TEXTURE_2D, GL_NEAREST);
+    };
+    make(starts, GL_RGBA32F, GL_RGBA);
+    make(steps, GL_RGBA32F, GL_RGBA);
+    make(picture, GL_RGBA32F, GL_RGBA);
+    make(taken, GL_R32F, GL_RED);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, picture.name(), 0);
+    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, taken.name(), 0);
+    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    gl.DrawBuffers(2, both);
+    device.check("making textures for a picture");
+    if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      width = height = 0;
+      throw NotSupported("this OpenGL does not draw into float textures");
+    }
+  }
+
+  void upload_rays(const Functions& gl) {
+    const auto upload = [&](Unit unit, const Texture& texture, const std::vector<Texel4>& texels) {
+      bind(gl, unit, GL_TEXTURE_2D, texture.name());
+      gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, rays.width, rays.height, GL_RGBA, GL_FLOAT, texels.data());
+    };
+    upload(Unit::ray_starts, starts, rays.starts);
+    upload(Unit::ray_steps, steps, rays.steps);
+  }
+
+  void read_counts(const Functions& gl, FrameCounts& counts) {
+    counted.resize(std::size_t(rays.width) * std::size_t(rays.height));
+    gl.ReadBuffer(GL_COLOR_ATTACHMENT1);
+    gl.ReadPixels(0, 0, rays.width, rays.height, GL_RED, GL_FLOAT, counted.data());
+    for (const float samples : counted) {
+      counts.samples_taken += std::uint64_t(std::abs(samples));
+      counts.rays_terminated += samples < 0 ? 1 : 0;
+    }
+  }
+};
+
+GlslRayCaster::GlslRayCaster(const BrickStore& store, Device& device) : store_(store), device_(device) {}
+
+GlslRayCaster::~GlslRayCaster() {
+  if (!resources_) return;
+  try {
+    const Device::Current current(device_);
+    device_.gl().DeleteFramebuffers(1, &resources_->framebuffer);
+    resources_.reset();
+  } catch (const std::exception&) {
+    // A context that cannot be made current any more has lost its textures already.
+  }
+}
+
+std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request) const {
+  if (std::holds_alternative<PairTable>(request.classification)) return "slabs with a table of pairs";
+  if (request.fog) return "fog";
+  if (request.method != Method::post_classified) return "pre-integrated segments";
+  if (!request.surfaces.empty()) return "surfaces";
+  if (request.light) return "light";
+  if (const auto* function = std::get_if<TransferFunction>(&request.classification);
+      function && function->entries.size() > std::size_t(device_.max_texture_edge()))
+    return fmt::format("a transfer function of {} entries, where textures take {}", function->entries.size(),
+                       device_.max_texture_edge());
+  if (std::max(request.window.width, request.window.height) > device_.max_texture_edge())
+    return fmt::format("a picture of {} x {} pixels, where textures take {}", request.window.width,
+                       request.window.height, device_.max_texture_edge());
+  return std::nullopt;
+}
+
+void GlslRayCaster::blocks_changed(std::span<const std::size_t> blocks) {
+  if (resources_) changed_.insert(changed_.end(), blocks.begin(), blocks.end());
+}
+
+void GlslRayCaster::set_uniforms(const MarchProgram& program, const RenderRequest& request,
+                                 const Prepared& prepared, const std::array<float, 3>& top,
+                                 const std::array<float, 3>& rounding) const {
+  const Functions& gl = device_.gl();
+  const double unit = largest_texel(store_.description().type);
+  gl.UseProgram(program.name);
+  std::array<float, 3> scale{}, has_border{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    scale[axis] = 1.0F / float(resources_->field.size()[axis]);
+    has_border[axis] = store_.description().wrap[axis] == Wrap::border ? 1.0F : 0.0F;
+  }
+  gl.Uniform3fv(program.texture_origin, 1, resources_->field.origin().data());
+  gl.Uniform3fv(program.texture_scale, 1, scale.data());
+  gl.Uniform3iv(program.first_block, 1, store_.first_block().data());
+  gl.Uniform3fv(program.top, 1, top.data());
+  gl.Uniform3fv(program.rounding, 1, rounding.data());
+  gl.Uniform3fv(program.has_border, 1, has_border.data());
+  Rgba border = store_.border();
+  for (float& component : border) component = float(component / unit);
+  gl.Uniform4fv(program.border, 1, border.data());
+  gl.Uniform1f(program.termination, request.termination);
+  if (prepared.function) {
+    const TransferTable& table = *prepared.function;
+    gl.Uniform1f(program.table_low, float(table.low() / unit));
+    gl.Uniform1f(program.table_scale,
+                 float(std::min(table.scale() * unit, double(std::numeric_limits<float>::max()))));
+    gl.Uniform1f(program.table_last, table.last());
+  } else {
+    const auto& map = std::get<LinearMap>(prepared.classification);
+    gl.UniformMatrix4fv(program.map, 1, GL_TRUE, map.matrix.data());
+    gl.Uniform1f(program.multiply_by_alpha, map.multiply_by_alpha ? 1.0F : 0.0F);
+    gl.Uniform1f(program.alpha_above, map.alpha_above);
+  }
+}
+
+void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts) {
+  if (!store_.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
+  validate(store_.description(), request);
+  if (const auto reason = obstacle(request))
+    throw NotSupported(fmt::format("not supported by the GL backend: {}", *reason));
+  if (out.rgba.size() != 4 * out.rect.pixels())
+    throw std::invalid_argument(fmt::format("an image of {} x {} pixels with {} values", out.rect.width,
+                                            out.rect.height, out.rgba.size()));
+  std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
+  if (store_.empty()) return;
+
+  const Device::Current current(device_);
+  const Functions& gl = device_.gl();
+  if (!resources_) resources_ = std::make_unique<Resources>(device_, store_);
+  Resources& here = *resources_;
+  if (!changed_.empty()) {
+    here.field.blocks_changed(changed_);
+    for (const auto& prepared : here.prepared)
+      if (prepared) {
+        prepared->skip = prepared->skip_map(store_);
+        prepared->upload_distances(gl, store_);
+      }
+    changed_.clear();
+  }
+  const bool keeps_clear_samples = request.op == Operator::min;
+  const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
+    return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
+           prepared->classification == request.classification;
+  };
+  if (!fits(here.prepared[0])) here.prepared[0].swap(here.prepared[1]);
+  if (!fits(here.prepared[0]))
+    here.prepared[0] = std::make_unique<Prepared>(gl, store_, request.classification, keeps_clear_samples);
+  const Prepared& prepared = *here.prepared[0];
+  FrameCounts mine;  // what fails is not counted: the CPU will count it
+  mine.blocks = store_.blocks();
+  mine.blocks_empty = prepared.skip.empty_blocks();
+
+  const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
+  const bool any_sample = !pixels.empty() && (request.steps || request.planes.count > 0);
+  const RaySetup setup(request, store_);
+  if (!any_sample || !here.rays.set_up(setup, request, pixels, mine)) {
+    counts += mine;
+    return;
+  }
+
+  here.resize(device_, pixels.width, pixels.height);
+  here.upload_rays(gl);
+  bind(gl, Unit::field, GL_TEXTURE_3D, here.field.name());
+  bind(gl, Unit::distances, GL_TEXTURE_3D, prepared.distances.name());
+  bind(gl, Unit::table, GL_TEXTURE_1D, prepared.table.name());
+  const TexelType type = store_.description().type;
+  const auto& wrap = store_.description().wrap;
+  MarchVariant variant;
+  variant.colours = type == TexelType::rgba8;
+  variant.bordered =
+      request.filter == Filter::linear && std::find(wrap.begin(), wrap.end(), Wrap::border) != wrap.end();
+  variant.filter = request.filter;
+  variant.op = request.op;
+  set_uniforms(device_.program(variant), request, prepared, setup.top, setup.rounding);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, here.framebuffer);
+  gl.Viewport(0, 0, pixels.width, pixels.height);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+
+  gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, out.rect.width);
+  gl.ReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_FLOAT, out.at(pixels.x, pixels.y));
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  here.read_counts(gl, mine);
+  device_.check("drawing the volume");
+  counts += mine;
+}
+
+}  // namespace understudy::volume::glsl

@@ -1,0 +1,216 @@
+#include "volume/glsl/march_shader.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace understudy::volume::glsl {
+
+namespace {
+
+// One triangle over all pixels.
+constexpr const char* vertex_source = R"(#version 330 core
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }
+)";
+
+// Blocks are looked up and termination is tested once per eight samples: between them lies straight code.
+// Samples in blocks that show nothing add nothing, so it does no harm when some of the eight lie there.
+constexpr const char* fragment_source = R"(
+uniform sampler2D ray_starts;   // lattice position of sample 0, and the ray's first sample
+uniform sampler2D ray_steps;    // from sample to sample, and the ray's last sample
+uniform sampler3D field;        // a texel per lattice point
+uniform usampler3D distances;   // per block, see SkipMap
+uniform vec3 texture_origin, texture_scale;
+uniform ivec3 first_block;
+uniform vec3 top, rounding;
+uniform vec3 has_border;
+uniform vec4 border;
+uniform float termination;
+#ifdef COLOURS
+uniform mat4 map;
+uniform float multiply_by_alpha, alpha_above;
+#else
+uniform sampler1D table;
+uniform float table_low, table_scale, table_last;
+#endif
+
+layout(location = 0) out vec4 pixel;
+layout(location = 1) out float taken;  // samples; negative when the ray became opaque
+
+vec3 start, step_;
+
+TEXEL sample_field(float k) {
+#if defined(NEAREST) || defined(BORDERED)
+  vec3 free = k * step_ + start;
+#endif
+#ifdef NEAREST
+  vec3 p = clamp(free, vec3(0.0), top);
+  return texelFetch(field, ivec3(p + 0.5 - texture_origin), 0).SWIZZLE;
+#else
+  // Beyond its outermost texels the texture repeats them, as the lattice does.
+  TEXEL inside = textureLod(field, k * (step_ * texture_scale) + (start - texture_origin + 0.5) * texture_scale, 0.0).SWIZZLE;
+#ifdef BORDERED
+  vec3 beyond = abs(free - clamp(free, vec3(0.0), top)) * has_border;
+  vec3 weight = max(1.0 - beyond, 0.0);
+  return mix(border.SWIZZLE, inside, weight.x * weight.y * weight.z);
+#else
+  return inside;
+#endif
+#endif
+}
+
+vec4 classified(TEXEL value) {
+#ifdef COLOURS
+  vec4 colour = clamp(map * value, 0.0, 1.0);
+  if (colour.a <= alpha_above) return vec4(NEUTRAL);
+  colour.rgb *= mix(1.0, colour.a, multiply_by_alpha);
+  return colour;
+#else
+  float place = clamp((value - table_low) * table_scale, 0.0, table_last);
+  return textureLod(table, (place + 0.5) / (table_last + 1.0), 0.0);
+#endif
+}
+
+void main() {
+  vec4 from = texelFetch(ray_starts, ivec2(gl_FragCoord.xy), 0);
+  vec4 along = texelFetch(ray_steps, ivec2(gl_FragCoord.xy), 0);
+  start = from.xyz;
+  step_ = along.xyz;
+  float k = from.w, last = along.w;
+  vec3 speed = max(abs(step_), vec3(1e-20));
+  vec4 sum = vec4(NEUTRAL);
+  float count = 0.0;
+  taken = 0.0;
+  while (k <= last) {
+    // First all rays of a group leap, then all take samples: what one does, the others wait for.
+    for (;;) {
+      vec3 p = clamp(k * step_ + start, vec3(0.0), top);
+      vec3 block = floor(p * 0.125);
+      float away = float(texelFetch(distances, ivec3(block) - first_block, 0).r);
+      if (away == 0.0) break;
+      // All blocks fewer than `away` steps away show nothing; rounding must not carry us past their faces.
+      vec3 inside = p - 8.0 * block;
+      vec3 room = mix(inside + 8.0 * (away - 1.0), 8.0 * away - inside, greaterThan(step_, vec3(0.0)));
+      vec3 steps = (room - rounding) / speed * (1.0 - 1e-6);
+      k += floor(max(min(min(steps.x, steps.y), steps.z), 0.0)) + 1.0;
+      if (k > last) break;
+    }
+    if (k > last) break;
+    for (int i = 0; i < 8; ++i) {
+      float here = k + float(i);
+      vec4 colour = classified(sample_field(min(here, last)));
+      if (here > last) colour = vec4(NEUTRAL);
+      COMPOSE
+    }
+    count += min(8.0, last - k + 1.0);
+    k += 8.0;
+#ifdef OVER
+    if (1.0 - sum.a < termination) {
+      taken = -count;
+      break;
+    }
+#endif
+  }
+  pixel = sum;
+  if (taken == 0.0) taken = count;
+}
+)";
+
+const char* composition(Operator op) {
+  switch (op) {
+    case Operator::over:
+      return "sum += (1.0 - sum.a) * colour;";
+    case Operator::add:
+      return "sum += colour;";
+    case Operator::max:
+      return "sum = max(sum, colour);";
+    case Operator::min:
+      return "sum = min(sum, colour);";
+  }
+  return "";
+}
+
+std::string defines(const MarchVariant& variant) {
+  std::string text = "#version 330 core\n";
+  const auto define = [&](bool when, const char* what) {
+    if (when) text += fmt::format("#define {}\n", what);
+  };
+  define(variant.colours, "COLOURS");
+  define(variant.colours, "TEXEL vec4");
+  define(variant.colours, "SWIZZLE rgba");
+  define(!variant.colours, "TEXEL float");
+  define(!variant.colours, "SWIZZLE r");
+  define(variant.bordered, "BORDERED");
+  define(variant.filter == Filter::nearest, "NEAREST");
+  define(variant.op == Operator::over, "OVER");
+  // The largest float, without a literal that some compilers would round up to infinity.
+  define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
+  define(variant.op != Operator::min, "NEUTRAL 0.0");
+  return text + fmt::format("#define COMPOSE {}\n", composition(variant.op));
+}
+
+/// A shader or program that goes when linking ends, in whatever way.
+class Shader {
+ public:
+  Shader(const Functions& gl, GLenum stage, const std::string& source)
+      : gl_(gl), name_(gl.CreateShader(stage)) {
+    const char* text = source.c_str();
+    gl.ShaderSource(name_, 1, &text, nullptr);
+    gl.CompileShader(name_);
+  }
+  Shader(const Shader&) = delete;
+  Shader& operator=(const Shader&) = delete;
+  ~Shader() { gl_.DeleteShader(name_); }
+  GLuint name() const { return name_; }
+
+ private:
+  const Functions& gl_;
+  GLuint name_;
+};
+
+}  // namespace
+
+MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant) {
+  const Shader vertex(gl, GL_VERTEX_SHADER, vertex_source);
+  const Shader fragment(gl, GL_FRAGMENT_SHADER, defines(variant) + fragment_source);
+  MarchProgram program;
+  program.name = gl.CreateProgram();
+  gl.AttachShader(program.name, vertex.name());
+  gl.AttachShader(program.name, fragment.name());
+  gl.LinkProgram(program.name);
+  GLint linked = 0;
+  gl.GetProgramiv(program.name, GL_LINK_STATUS, &linked);
+  if (linked == 0) {
+    std::string words(1024, '\0');
+    GLsizei length = 0;
+    gl.GetProgramInfoLog(program.name, GLsizei(words.size()), &length, words.data());
+    words.resize(std::size_t(length));
+    gl.DeleteProgram(program.name);
+    throw std::runtime_error(fmt::format("OpenGL refuses the ray caster's shader: {}", words));
+  }
+  const auto at = [&](const char* name) { return gl.GetUniformLocation(program.name, name); };
+  program.texture_origin = at("texture_origin");
+  program.texture_scale = at("texture_scale");
+  program.first_block = at("first_block");
+  program.top = at("top");
+  program.rounding = at("rounding");
+  program.has_border = at("has_border");
+  program.border = at("border");
+  program.table_low = at("table_low");
+  program.table_scale = at("table_scale");
+  program.table_last = at("table_last");
+  program.map = at("map");
+  program.multiply_by_alpha = at("multiply_by_alpha");
+  program.alpha_above = at("alpha_above");
+  program.termination = at("termination");
+  gl.UseProgram(program.name);
+  gl.Uniform1i(at("ray_starts"), GLint(Unit::ray_starts));
+  gl.Uniform1i(at("ray_steps"), GLint(Unit::ray_steps));
+  gl.Uniform1i(at("field"), GLint(Unit::field));
+  gl.Uniform1i(at("distances"), GLint(Unit::distances));
+  gl.Uniform1i(at("table"), GLint(Unit::table));
+  return program;
+}
+
+}  // namespace understudy::volume::glsl

@@ -1,0 +1,46 @@
+// The fragment shader that walks along one pixel's ray, in the variants that requests ask for.
+#pragma once
+
+#include <compare>
+
+#include "volume/glsl/functions.h"
+#include "volume/request.h"
+
+namespace understudy::volume::glsl {
+
+/// What the shader knows when it is compiled: a variant holds no code for what its request lacks.
+struct MarchVariant {
+  bool colours = false;  ///< texels are RGBA, through a LinearMap
+  bool bordered = false;
+  Filter filter = Filter::linear;
+  Operator op = Operator::over;
+
+  auto operator<=>(const MarchVariant&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
+};
+
+/// Texture units, fixed at link time.
+enum class Unit : GLint { ray_starts, ray_steps, field, distances, table };
+
+struct MarchProgram {
+  GLuint name = 0;
+  // Where uniforms lie; -1 in variants without them.
+  GLint texture_origin = -1;  ///< lattice position of the field texture's first texel
+  GLint texture_scale = -1;   ///< 1 / its size
+  GLint first_block = -1;
+  GLint top = -1;
+  GLint rounding = -1;
+  GLint has_border = -1;
+  GLint border = -1;
+  GLint table_low = -1;  ///< of normalised values
+  GLint table_scale = -1;
+  GLint table_last = -1;
+  GLint map = -1;
+  GLint multiply_by_alpha = -1;
+  GLint alpha_above = -1;
+  GLint termination = -1;
+};
+
+/// Wants a current context. Throws std::runtime_error with the compiler's words.
+MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant);
+
+}  // namespace understudy::volume::glsl

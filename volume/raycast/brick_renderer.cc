@@ -1,0 +1,27 @@
+#include "volume/raycast/brick_renderer.h"
+
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::volume {
+
+namespace {
+
+class CpuRenderer final : public BrickRenderer {
+ public:
+  explicit CpuRenderer(const BrickStore& store) : caster_(store) {}
+  void blocks_changed(std::span<const std::size_t> blocks) override { caster_.blocks_changed(blocks); }
+  void render(const RenderRequest& request, Image& out, FrameCounts& counts) override {
+    caster_.render(request, out, counts);
+  }
+
+ private:
+  RayCaster caster_;
+};
+
+}  // namespace
+
+std::unique_ptr<BrickRenderer> cpu_renderer(const BrickStore& store) {
+  return std::make_unique<CpuRenderer>(store);
+}
+
+}  // namespace understudy::volume

@@ -1,0 +1,39 @@
+// What draws the cells of one BrickStore: the ray caster on the CPU, or another that keeps its contract
+// (raycast/ray_caster.h). Whoever holds bricks is given the means to make one.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "volume/brick/brick_store.h"
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+class BrickRenderer {
+ public:
+  virtual ~BrickRenderer() = default;
+
+  /// These blocks of the store show other texels than at the last render().
+  virtual void blocks_changed(std::span<const std::size_t> blocks) = 0;
+
+  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral.
+  virtual void render(const RenderRequest& request, Image& out, FrameCounts& counts) = 0;
+
+ protected:
+  BrickRenderer() = default;
+  BrickRenderer(const BrickRenderer&) = default;
+  BrickRenderer(BrickRenderer&&) = default;
+  BrickRenderer& operator=(const BrickRenderer&) = default;
+  BrickRenderer& operator=(BrickRenderer&&) = default;
+};
+
+/// The store outlives what is made for it.
+using BrickRendererFactory = std::function<std::unique_ptr<BrickRenderer>(const BrickStore&)>;
+
+/// The ray caster on the CPU.
+std::unique_ptr<BrickRenderer> cpu_renderer(const BrickStore& store);
+
+}  // namespace understudy::volume

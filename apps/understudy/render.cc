@@ -235,12 +235,17 @@ int render(const RenderArguments& arguments) {
         compositor::linked_loading_service(socket, {patience, patience, patience, patience, patience});
     figures = render_with(*service, scene, arguments);
   };
-  if (!arguments.connect.empty())
-    with_linked(arguments.connect);
-  else if (arguments.nodes > 0)
-    with_own_nodes(arguments.nodes, with_linked);
-  else
-    figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
+  try {
+    if (!arguments.connect.empty())
+      with_linked(arguments.connect);
+    else if (arguments.nodes > 0)
+      with_own_nodes(arguments.nodes, with_linked);
+    else
+      figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
+  } catch (const compositor::ServiceLost& lost) {
+    throw std::runtime_error(
+        fmt::format("no picture was made: render again, or in this process, without nodes ({})", lost.what()));
+  }
   if (!arguments.report.empty()) write_render_report(arguments.report, figures);
   std::fputs(summary_text(figures).c_str(), stdout);
   return 0;

@@ -97,7 +97,8 @@ class Field {
 template <typename Texel>
 void store(std::span<const float> values, float top, std::byte* to) {
   for (const float value : values) {
-    const auto texel = Texel(std::clamp(value, 0.0F, 1.0F) * top + 0.5F);
+    constexpr float to_nearest = 0.5F;
+    const auto texel = Texel(std::clamp(value, 0.0F, 1.0F) * top + to_nearest);
     std::memcpy(to, &texel, sizeof texel);
     to += sizeof texel;
   }

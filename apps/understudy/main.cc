@@ -8,6 +8,7 @@
 #include "apps/understudy/doctor.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/print.h"
+#include "apps/understudy/render.h"
 #include "apps/understudy/replay.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) try {
   launcher::add_print(app, chosen);
   launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
+  launcher::add_render(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);
   launcher::add_units(app, chosen);

@@ -127,6 +127,25 @@ Picture read_pfm(const std::filesystem::path& path) {
   return picture;
 }
 
+void write_float_map(const std::filesystem::path& path, const Picture& picture, int first, int channels) {
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(picture.width) * picture.height * channels);
+  for (int y = picture.height - 1; y >= 0; --y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const float* const pixel = picture.pixel(x, y) + first;
+      values.insert(values.end(), pixel, pixel + channels);
+    }
+  }
+  std::ofstream file(path, std::ios::binary);
+  file << (channels == 3 ? "PF" : "Pf") << '\n'
+       << picture.width << ' ' << picture.height << '\n'
+       << (std::endian::native == std::endian::little ? "-1.0\n" : "1.0\n");
+  file.write(reinterpret_cast<const char*>(values.data()),
+             static_cast<std::streamsize>(values.size() * sizeof(float)));
+  file.close();
+  if (!file) fail(path, "cannot be written; check that the folder exists and has room");
+}
+
 }  // namespace
 
 Picture read_picture(const std::filesystem::path& path) {
@@ -151,6 +170,14 @@ void write_png(const std::filesystem::path& path, const Picture& picture) {
   });
   if (png_image_write_to_file(&png.image, path.c_str(), 0, bytes.data(), 0, nullptr) == 0)
     fail(path, png.image.message);
+}
+
+void write_pfm(const std::filesystem::path& path, const Picture& picture) {
+  write_float_map(path, picture, 0, 3);
+  if (!picture.has_alpha) return;
+  std::filesystem::path beside = path;
+  beside.replace_filename(path.stem().string() + "_alpha.pfm");
+  write_float_map(beside, picture, 3, 1);
 }
 
 }  // namespace understudy::launcher

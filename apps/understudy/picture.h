@@ -27,4 +27,8 @@ Picture read_picture(const std::filesystem::path& path);
 /// Values outside 0 to 1 are clamped. Throws std::runtime_error.
 void write_png(const std::filesystem::path& path, const Picture& picture);
 
+/// Colours as they are, and beside them their alpha when there is one, named as read_picture() expects it.
+/// Throws std::runtime_error.
+void write_pfm(const std::filesystem::path& path, const Picture& picture);
+
 }  // namespace understudy::launcher

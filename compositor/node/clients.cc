@@ -99,6 +99,8 @@ std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
       case MessageType::forget_volume:
       case MessageType::pair_table:
       case MessageType::render:
+      case MessageType::load_volume:
+      case MessageType::continue_load:
         return message;
       default:
         throw MalformedMessage("an application does not send this type of message");

@@ -18,6 +18,8 @@
 #include "compositor/node/clients.h"
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
+#include "compositor/service/load_protocol.h"
+#include "compositor/service/loads.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/rank_renderer.h"
 #include "volume/brick/texel_box.h"
@@ -45,6 +47,7 @@ struct Outcome {
   std::array<char, limits::max_text_bytes> reason{};  ///< ends with a zero
   volume::Rect footprint;
   volume::FrameCounts counts;
+  RankLoad load;
 
   void refuse(const char* why) {
     refused = true;
@@ -55,7 +58,10 @@ struct Outcome {
 class Node {
  public:
   Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer)
-      : link_(link), exchange_(exchange), renderer_(link.rank(), link.size(), make_renderer) {}
+      : link_(link),
+        exchange_(exchange),
+        renderer_(link.rank(), link.size(), make_renderer),
+        loads_(renderer_, link.rank()) {}
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
@@ -76,6 +82,7 @@ class Node {
   ExchangeSettings exchange_;
   std::optional<LinkCost> link_cost_;  // measured before the first picture that needs a choice
   RankRenderer renderer_;
+  Loads loads_;
   /// By application, and there by place.
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
@@ -86,6 +93,10 @@ class Node {
   std::vector<Rank> visible_order_;
   volume::Image image_;
 };
+
+bool is_load(MessageType type) {
+  return type == MessageType::load_volume || type == MessageType::continue_load;
+}
 
 const Outcome* first_refusal(const std::vector<Outcome>& outcomes) {
   const auto found = std::ranges::find_if(outcomes, &Outcome::refused);
@@ -153,6 +164,7 @@ void Node::follow() {
 }
 
 void Node::forget_client(std::uint64_t client) {
+  loads_.forget_client(client);
   renderer_.forget_client(client);
   pair_tables_.erase(client);
 }
@@ -278,6 +290,11 @@ void Node::request(Clients& clients, Clients::Request request) {
   const std::vector<Outcome> outcomes = perform(order, request.message.payload);
   if (const Outcome* refusal = first_refusal(outcomes))
     return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
+  if (is_load(order.type)) {
+    std::vector<RankLoad> loads;
+    for (const Outcome& outcome : outcomes) loads.push_back(outcome.load);
+    return clients.reply(request, MessageType::loading, encode(loads));
+  }
   if (order.type != MessageType::render) return clients.reply(request, MessageType::done, {});
 
   RenderedReply rendered;
@@ -306,6 +323,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
       case MessageType::begin_volume: {
         const volume::VolumeDescription description = decode_volume(payload);
         filling = VolumeKey{order.client, description.id};
+        loads_.forget(*filling);
         renderer_.begin(order.client, description);
         break;
       }
@@ -322,9 +340,26 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         room_ = 0;
         renderer_.end(*filling);
         break;
-      case MessageType::forget_volume:
-        renderer_.forget({order.client, decode_id(payload)});
+      case MessageType::forget_volume: {
+        const VolumeKey key{order.client, decode_id(payload)};
+        loads_.forget(key);
+        renderer_.forget(key);
         break;
+      }
+      case MessageType::load_volume: {
+        const LoadRequest load = decode_load_request(payload);
+        filling = VolumeKey{order.client, load.volume.id};
+        loads_.begin(*filling, load);
+        mine.load = loads_.figures(*filling);
+        break;
+      }
+      case MessageType::continue_load: {
+        const VolumeKey key{order.client, decode_id(payload)};
+        if (loads_.knows(key)) filling = key;
+        loads_.read_on(key);
+        mine.load = loads_.figures(key);
+        break;
+      }
       case MessageType::pair_table: {
         KeptPairTable kept = decode_pair_table(payload);
         pair_tables_[order.client][std::size_t(kept.place)] = std::move(kept.table);
@@ -344,7 +379,10 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   } catch (const std::exception& error) {
     mine.refuse(error.what());
   }
-  return agree(mine, filling);
+  std::vector<Outcome> outcomes = agree(mine, filling);
+  const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
+  if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*filling);
+  return outcomes;
 }
 
 // What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
@@ -352,7 +390,10 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
   Outcome mine = outcome;
   std::vector<Outcome> outcomes(std::size_t(link_.size()));
   link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
-  if (filling && first_refusal(outcomes)) renderer_.forget(*filling);
+  if (filling && first_refusal(outcomes)) {
+    loads_.forget(*filling);
+    renderer_.forget(*filling);
+  }
   return outcomes;
 }
 

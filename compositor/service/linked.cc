@@ -11,6 +11,8 @@
 
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
+#include "compositor/service/load_protocol.h"
+#include "compositor/service/loading_service.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/sent_pair_tables.h"
 #include "volume/brick/texel_box.h"
@@ -21,7 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class LinkedService : public RenderService {
+class LinkedService : public LoadingService {
  public:
   LinkedService(std::string address, const Patience& patience)
       : address_(std::move(address)), patience_(patience) {
@@ -47,6 +49,13 @@ class LinkedService : public RenderService {
   void begin_volume(const volume::VolumeDescription& volume) override {
     give_up_posted();
     post(MessageType::begin_volume, encode(volume));
+  }
+
+  std::vector<RankLoad> begin_load(const LoadRequest& wanted) override {
+    return load(MessageType::load_volume, encode(wanted));
+  }
+  std::vector<RankLoad> continue_load(volume::VolumeId id) override {
+    return load(MessageType::continue_load, encode_id(id));
   }
 
   void begin_change(volume::VolumeId id, std::uint64_t version) override {
@@ -126,6 +135,12 @@ class LinkedService : public RenderService {
   int nodes() const override { return ranks_; }
 
  private:
+  std::vector<RankLoad> load(MessageType type, const std::vector<std::byte>& payload) {
+    give_up_posted();
+    const Message reply = request(type, payload, patience_.load, MessageType::loading);
+    return conversation([&] { return decode_loads(reply.payload); });
+  }
+
   // Where the nodes have the table; it is sent where they have not.
   int place_of(const volume::PairTable& pairs) {
     if (const std::optional<int> place = pair_tables_.find(pairs)) return *place;
@@ -249,6 +264,10 @@ class LinkedService : public RenderService {
 }  // namespace
 
 std::unique_ptr<RenderService> linked_service(const std::string& address, const Patience& patience) {
+  return std::make_unique<LinkedService>(address, patience);
+}
+
+std::unique_ptr<LoadingService> linked_loading_service(const std::string& address, const Patience& patience) {
   return std::make_unique<LinkedService>(address, patience);
 }
 

@@ -16,6 +16,8 @@ struct Patience {
   std::chrono::milliseconds send = limits::send_patience;
   std::chrono::milliseconds reply = limits::reply_patience;
   std::chrono::milliseconds render = limits::render_patience;
+  /// One step of a load: a compressed file is read through up to where a rank's share begins.
+  std::chrono::milliseconds load = std::chrono::minutes(10);
 };
 
 /// Throws ServiceLost.

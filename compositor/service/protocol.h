@@ -38,7 +38,11 @@ enum class MessageType : std::uint16_t {
   done,
   rendered,
   refused,  ///< payload: the reason
-  last = refused
+  // volumes that the nodes read from files (load_protocol.h)
+  load_volume,    ///< from an application to rank 0
+  continue_load,  ///< the same
+  loading,        ///< the reply to both
+  last = loading
 };
 
 struct MessageHeader {

@@ -174,6 +174,10 @@ std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
   return volume::bytes_per_texel(find(key).bricks.description().type);
 }
 
+std::size_t RankRenderer::bytes(VolumeKey key) const {
+  return find(key).bricks.bytes();
+}
+
 void RankRenderer::end(VolumeKey key) {
   Volume& volume = find(key);
   if (volume.state == Volume::State::filling) refusing([&] { volume.bricks.finish(); });

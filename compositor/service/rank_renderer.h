@@ -40,6 +40,8 @@ class RankRenderer {
   /// Texels of this rank's share, one box after the other.
   void add_texels(VolumeKey key, std::span<const volume::TexelBox> shares, std::span<const std::byte> texels);
   std::size_t bytes_per_texel(VolumeKey key) const;
+  /// What the bricks of this rank take.
+  std::size_t bytes(VolumeKey key) const;
   void end(VolumeKey key);
   void forget(VolumeKey key);
   void forget_client(std::uint64_t client);

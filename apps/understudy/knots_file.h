@@ -1,0 +1,17 @@
+// Transfer functions in files:
+//   {"positions": "range", "knots": [{"at": 0.2, "colour": [1, 0.5, 0.2], "opacity": 0}, ...]}
+// "positions" is "range" (0 is the volume's least value, 1 its greatest; so without it) or "values"; opacity is
+// that of one voxel's length.
+#pragma once
+
+#include <string>
+
+#include "volume/transfer_knots.h"
+
+namespace understudy::launcher {
+
+/// A file, where there is one of this name, or a built-in table. Throws std::runtime_error and
+/// std::invalid_argument: which file, what is wrong, what to do.
+volume::TransferKnots read_knots(const std::string& file_or_name);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,12 @@
+// `understudy render VOLUME [-n N] --out P.png`: one picture of a volume in a file, by nodes or in this
+// process, without a viewer and without OpenGL.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+void add_render(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

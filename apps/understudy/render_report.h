@@ -1,0 +1,35 @@
+// What a rendering without a viewer says about itself: one line, and a JSON report (docs/report.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compositor/service/loading_service.h"
+#include "volume/file/texel_stream.h"
+#include "volume/request.h"
+
+namespace understudy::launcher {
+
+struct RenderFigures {
+  std::string file;
+  volume::FileDescription description;
+  volume::TexelMapping mapping;
+  int width = 0;
+  int height = 0;
+  double step = 0;
+  int nodes = 0;  ///< 0: in this process
+  double open_ms = 0;
+  double load_ms = 0;
+  std::vector<double> frame_ms;
+  volume::FrameCounts counts;               ///< of the last frame
+  std::vector<compositor::RankLoad> ranks;  ///< after the last frame
+};
+
+/// The values in the volume and how they became texels, summed over the ranks.
+volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks);
+
+std::string summary_text(const RenderFigures& figures);
+/// Throws std::runtime_error.
+void write_render_report(const std::string& path, const RenderFigures& figures);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,75 @@
+// One rank in this process that reads its files itself.
+#include <array>
+
+#include "compositor/service/loading_service.h"
+#include "compositor/service/loads.h"
+#include "compositor/service/rank_renderer.h"
+#include "volume/file/file_error.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+class EmbeddedLoadingService : public LoadingService {
+ public:
+  std::vector<RankLoad> begin_load(const LoadRequest& request) override {
+    return told(key_of(request.volume.id), [&](VolumeKey key) { loads_.begin(key, request); });
+  }
+  std::vector<RankLoad> continue_load(volume::VolumeId id) override {
+    return told(key_of(id), [&](VolumeKey key) { loads_.read_on(key); });
+  }
+
+  void begin_volume(const volume::VolumeDescription& volume) override {
+    loads_.forget(key_of(volume.id));
+    renderer_.begin(application, volume);
+  }
+  void begin_change(volume::VolumeId id, std::uint64_t version) override {
+    renderer_.begin_change(key_of(id), version);
+  }
+  void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
+                  std::span<const std::byte> texels) override {
+    renderer_.check_texels(key_of(id), boxes, texels.size());
+    renderer_.add_texels(key_of(id), boxes, texels);
+  }
+  void end_volume(volume::VolumeId id) override { renderer_.end(key_of(id)); }
+  void forget_volume(volume::VolumeId id) override {
+    loads_.forget(key_of(id));
+    renderer_.forget(key_of(id));
+  }
+  Rendered render(const volume::RenderRequest& request) override {
+    volume::FrameCounts counts;
+    image_ = renderer_.render(application, request, counts);
+    return {image_.view(), counts};
+  }
+  int nodes() const override { return 0; }
+
+ private:
+  static constexpr std::uint64_t application = 0;
+  static VolumeKey key_of(volume::VolumeId id) { return {application, id}; }
+
+  template <class Step>
+  std::vector<RankLoad> told(VolumeKey key, Step step) {
+    try {
+      step(key);
+    } catch (const volume::FileError& error) {
+      loads_.forget(key);
+      renderer_.forget(key);
+      throw RequestRefused(error.what());
+    }
+    const RankLoad figures = loads_.figures(key);
+    if (figures.done()) loads_.complete(key);
+    return {figures};
+  }
+
+  RankRenderer renderer_{0, 1};
+  Loads loads_{renderer_, 0};
+  volume::Image image_;
+};
+
+}  // namespace
+
+std::unique_ptr<LoadingService> embedded_loading_service() {
+  return std::make_unique<EmbeddedLoadingService>();
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,56 @@
+// A render service whose ranks read volumes themselves: each opens the file and reads its own bricks, so a
+// volume passes through no process that does not show it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compositor/service.h"
+#include "compositor/service/linked.h"
+#include "volume/file/texel_stream.h"
+
+namespace understudy::compositor {
+
+struct LoadRequest {
+  /// Size and texel type are those of the file; all of it is stored.
+  volume::VolumeDescription volume;
+  std::string file;  ///< as volume::open_volume takes it; a path is absolute
+  volume::FileHints hints;
+  volume::TexelChoice texels;
+};
+
+/// What one rank has of a volume that it loads.
+struct RankLoad {
+  std::uint64_t texels_done = 0;
+  std::uint64_t texels_in_all = 0;  ///< its share, with what it shows beyond its own cells
+  std::uint64_t bytes_read = 0;     ///< of the file
+  std::uint64_t brick_bytes = 0;    ///< what it keeps
+  std::uint64_t peak_bytes = 0;     ///< the most memory that the process ever had resident
+  double low = 0;                   ///< least and greatest value; low > high when there was none
+  double high = -1;
+  double largest_error = 0;  ///< between a value and that of its texel
+  std::uint64_t not_numbers = 0;
+
+  bool done() const { return texels_done == texels_in_all; }
+};
+
+class LoadingService : public RenderService {
+ public:
+  /// Opens the file on every rank; an id that exists is replaced. Returns what each rank is about to read. A
+  /// file that one rank cannot use is refused, with the reason, and so is a volume of another size or texel
+  /// type.
+  virtual std::vector<RankLoad> begin_load(const LoadRequest& request) = 0;
+  /// Every rank reads on for a while; the volume is complete once all are done(). From then on this only tells
+  /// what each rank has.
+  virtual std::vector<RankLoad> continue_load(volume::VolumeId id) = 0;
+};
+
+/// In this process, on all cores: one rank.
+std::unique_ptr<LoadingService> embedded_loading_service();
+
+/// The node group behind a launcher's socket. Throws ServiceLost.
+std::unique_ptr<LoadingService> linked_loading_service(const std::string& address, const Patience& patience);
+
+}  // namespace understudy::compositor

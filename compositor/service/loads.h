@@ -1,0 +1,47 @@
+// The volumes that one rank reads from files: its own box of each, a part at a time, so that a rank that loads
+// can be asked in between how far it is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "compositor/service/loading_service.h"
+#include "compositor/service/rank_renderer.h"
+#include "volume/file/texel_stream.h"
+
+namespace understudy::compositor {
+
+class Loads {
+ public:
+  /// So much of a file is read in one go.
+  static constexpr std::size_t part_bytes = std::size_t(16) << 20;
+
+  /// Texels go to `renderer`, as rank `rank` of it.
+  Loads(RankRenderer& renderer, int rank) : renderer_(renderer), rank_(rank) {}
+
+  bool knows(VolumeKey key) const { return loads_.contains(key); }
+  /// Begins the volume, and opens its file. Throws RequestRefused and volume::FileError.
+  void begin(VolumeKey key, const LoadRequest& request);
+  /// Throws the same; what had been read is then of no use.
+  void read_on(VolumeKey key);
+  RankLoad figures(VolumeKey key) const;
+  /// Once all ranks are done.
+  void complete(VolumeKey key);
+
+  void forget(VolumeKey key) { loads_.erase(key); }
+  void forget_client(std::uint64_t client);
+
+ private:
+  struct Load {
+    std::optional<volume::TexelStream> stream;  ///< none: complete
+    RankLoad figures;                           ///< but for memory
+  };
+
+  RankRenderer& renderer_;
+  int rank_;
+  std::map<VolumeKey, Load> loads_;
+};
+
+}  // namespace understudy::compositor

@@ -1,0 +1,237 @@
+// `understudy render` as its user sees it: pictures of files without a viewer, in one process and on nodes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/compare.h"
+#include "apps/understudy/picture.h"
+#include "tests/apps/viewer/temporary_folder.h"
+
+namespace understudy::launcher {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using viewer_test::TemporaryFolder;
+using Json = nlohmann::json;
+
+struct Result {
+  int status = 0;
+  std::string output;  ///< both channels
+};
+
+Result shell(const std::string& command) {
+  Result result;
+  std::FILE* output = popen(("exec 2>&1; " + command).c_str(), "r");
+  std::array<char, 4096> part{};
+  for (std::size_t count = 0; (count = fread(part.data(), 1, part.size(), output)) > 0;)
+    result.output.append(part.data(), count);
+  const int status = pclose(output);
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  return result;
+}
+
+class Render : public ::testing::Test {
+ protected:
+  /// The arguments go through the shell.
+  Result render(const std::string& arguments) const {
+    return shell(std::string(UNDERSTUDY_PROGRAM) + " render --out " + folder_.file("p.png") + " " + arguments);
+  }
+  Json report() const { return Json::parse(std::ifstream(folder_.file("r.json"))); }
+
+  /// A ball with a soft rim, brighter along x, in double precision.
+  std::string ball(int side) const {
+    std::vector<double> values;
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+          const double r = std::hypot(x - side / 2.0, y - side / 2.0, z - side / 2.0) / side;
+          values.push_back((0.5 - 0.5 * std::tanh((r - 0.35) / 0.05)) * (1 + double(x) / side) - 1.0 / 3);
+        }
+    const std::string name =
+        "ball_" + std::to_string(side) + "x" + std::to_string(side) + "x" + std::to_string(side);
+    return folder_.write(name + "_f64.raw", std::as_bytes(std::span(values)));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Render, APictureAndAReportOfAFile) {
+  const std::string file = ball(40);
+  const Result result = render(file + " --table vessels --size 120x90 --frames 3 --report " +
+                               folder_.file("r.json") + " --save-float " + folder_.file("f.pfm"));
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 40 x 40 of f64, in this process"), HasSubstr("3 frames"),
+                                   HasSubstr("became f32 texels")));
+  const Picture picture = read_picture(folder_.file("p.png"));
+  EXPECT_EQ(picture.width, 120);
+  EXPECT_EQ(picture.height, 90);
+  const float* middle = picture.pixel(60, 45);
+  EXPECT_GT(middle[0] + middle[1] + middle[2], 0.5F) << "the ball is to be seen";
+  const float* corner = picture.pixel(2, 2);
+  EXPECT_EQ(corner[0] + corner[1] + corner[2], 0.0F);
+  const Picture exact = read_picture(folder_.file("f.pfm"));
+  EXPECT_TRUE(exact.has_alpha);
+  EXPECT_GT(exact.pixel(60, 45)[3], 0.5F);
+  EXPECT_EQ(exact.pixel(2, 2)[3], 0.0F);
+  EXPECT_NEAR(exact.pixel(60, 45)[0], middle[0], 0.5 / 255 + 1e-6) << "the PNG is the picture, rounded";
+
+  const Json json = report();
+  EXPECT_EQ(json["volume"]["size"], Json({40, 40, 40}));
+  EXPECT_EQ(json["volume"]["scalar_type"], "f64");
+  EXPECT_EQ(json["volume"]["texel_type"], "f32");
+  EXPECT_NEAR(double(json["volume"]["values"][0]), -1.0 / 3, 0.01);
+  EXPECT_GT(double(json["volume"]["largest_conversion_error"]), 0);
+  EXPECT_LT(double(json["volume"]["largest_conversion_error"]), 1e-6);
+  EXPECT_EQ(json["frames_ms"].size(), 3U);
+  EXPECT_EQ(json["nodes"], 0);
+  EXPECT_GT(json["samples"], json["samples_taken"]);
+  EXPECT_EQ(json["left_out"]["samples_skipped"],
+            std::int64_t(json["samples"]) - std::int64_t(json["samples_taken"]));
+  ASSERT_EQ(json["ranks"].size(), 1U);
+  EXPECT_GE(json["ranks"][0]["bytes_read"], 40 * 40 * 40 * 8);
+  EXPECT_LE(json["ranks"][0]["bytes_read"], 40 * 40 * 40 * 8 + 4);
+  EXPECT_GT(json["ranks"][0]["peak_bytes"], json["ranks"][0]["brick_bytes"]);
+}
+
+TEST_F(Render, SmallerStepsComeNearerToOnePicture) {
+  const std::string file = ball(32);
+  std::vector<Picture> pictures;
+  for (const char* step : {"2", "1", "0.5", "0.125"}) {
+    ASSERT_EQ(
+        render(file + " --table rainbow --size 60x60 --step " + step + " --save-float " + folder_.file("f.pfm"))
+            .status,
+        0);
+    pictures.push_back(read_picture(folder_.file("f.pfm")));
+  }
+  double before = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double rms = difference(pictures[i], pictures.back()).rms;
+    std::printf("rms %.2e\n", rms);
+    EXPECT_LT(rms, before / 1.5);
+    before = rms;
+  }
+}
+
+TEST_F(Render, TheWaysToSayTheSameGiveTheSamePicture) {
+  const std::string file = ball(24);
+  const std::string common = " --size 50x50 --save-float " + folder_.file("f.pfm");
+  ASSERT_EQ(render(file + common).status, 0);
+  const Picture expected = read_picture(folder_.file("f.pfm"));
+  // The built-in table in a file, by range and by the raw scalars' hints.
+  const std::string knots =
+      folder_.write("grey.json", std::string(R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
+                                             {"at": 1, "colour": [1, 1, 1], "opacity": 0.1}]})"));
+  std::filesystem::copy(file, folder_.file("plain"));
+  ASSERT_EQ(
+      render(folder_.file("plain") + " --volume-size 24 24 24 --type f64 --table " + knots + common).status, 0);
+  EXPECT_EQ(difference(read_picture(folder_.file("f.pfm")), expected).max, 0);
+  // Sixteen bits over the values' range are nearly floats.
+  ASSERT_EQ(render(file + " --texels u16 --range=-0.34,1.67" + common).status, 0);
+  const double apart = difference(read_picture(folder_.file("f.pfm")), expected).max;
+  EXPECT_GT(apart, 0);
+  EXPECT_LT(apart, 2e-3);
+}
+
+TEST_F(Render, LoadingIsShown) {
+  const Result result = render("synthetic:200x300x800:u8:shells --size 20x20 --progress");
+  ASSERT_EQ(result.status, 0) << result.output;
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("loading   0 %"), HasSubstr("loading 100 %"), HasSubstr("by 1 rank")));
+  int last = -1, lines = 0;
+  for (std::size_t at = 0; (at = result.output.find("loading ", at)) != std::string::npos; at += 8, ++lines) {
+    const int percent = std::stoi(result.output.substr(at + 8, 3));
+    EXPECT_GE(percent, last);
+    last = percent;
+  }
+  EXPECT_GE(lines, 3) << "steps of some MiB";
+  EXPECT_THAT(render("synthetic:8x8x8 --size 20x20").output, Not(HasSubstr("loading")))
+      << "no terminal, no bar";
+}
+
+TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
+  const std::string file = ball(8);
+  const auto trouble = [&](const std::string& arguments) {
+    const Result result = render(arguments);
+    EXPECT_NE(result.status, 0) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("p.png"))) << arguments;
+    return result.output;
+  };
+  const auto table = [&](const std::string& knots) {
+    return file + " --table " + folder_.write("t.json", knots);
+  };
+  EXPECT_THAT(trouble(folder_.file("nothing_8x8x8.raw")), HasSubstr("check the path"));
+  EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
+  EXPECT_THAT(trouble(file + " --table nothing"), HasSubstr("grey, engine, ct"));
+  EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
+  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'knots'"));
+  EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
+              HasSubstr("too few"));
+  EXPECT_THAT(trouble(table(R"({"knots": [{"at": 1, "colour": [0,0,0], "opacity": 0},
+                                          {"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
+              HasSubstr("sort them"));
+  EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": null}]})")),
+              HasSubstr("knot 1: 'opacity' is missing or no number"));
+  EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0},
+                                          {"at": 1, "colour": [0,0,0], "opacity": -1}]})")),
+              HasSubstr("opacity is -1"));
+  EXPECT_THAT(trouble(file + " --camera 10,20"), HasSubstr("30,20,4"));
+  EXPECT_THAT(trouble(file + " --camera 10,200,4"), HasSubstr("-90 to 90"));
+  EXPECT_THAT(trouble(file + " --size 100"), HasSubstr("512x512"));
+  EXPECT_THAT(trouble(file + " --size 0x10"), HasSubstr("a side"));
+  EXPECT_THAT(trouble(file + " --step 0"), HasSubstr("positive"));
+  EXPECT_THAT(trouble(file + " --texels u8"), HasSubstr("--range"));
+  EXPECT_THAT(trouble("synthetic:8x8"), HasSubstr("synthetic:512x512x512:u8:shells"));
+}
+
+#ifdef UNDERSTUDY_HAS_NODES
+
+TEST_F(Render, NodesGiveThePictureOfOneProcessAndReadTheirSharesAlone) {
+  const std::string file = ball(48), common = file + " --table rainbow --size 90x80 --save-float " +
+                                              folder_.file("f.pfm") + " --report " + folder_.file("r.json");
+  ASSERT_EQ(render(common).status, 0);
+  const Picture expected = read_picture(folder_.file("f.pfm"));
+  for (const int nodes : {1, 2, 4}) {
+    const Result result = render(common + " -n " + std::to_string(nodes));
+    ASSERT_EQ(result.status, 0) << result.output;
+    const Difference apart = difference(read_picture(folder_.file("f.pfm")), expected);
+    std::printf("%d nodes: at most %.1e apart\n", nodes, apart.max);
+    EXPECT_LE(apart.max, 1e-5) << nodes;
+    const Json json = report();
+    EXPECT_EQ(json["nodes"], nodes);
+    ASSERT_EQ(json["ranks"].size(), std::size_t(nodes));
+    constexpr double all = 48.0 * 48 * 48 * 8;
+    double sum = 0;
+    for (const Json& rank : json["ranks"]) {
+      EXPECT_LE(double(rank["bytes_read"]), 1.35 * all / nodes + 4);
+      sum += double(rank["bytes_read"]);
+    }
+    EXPECT_GE(sum, all);
+  }
+}
+
+// The nodes see the end of a file that the launcher never read.
+TEST_F(Render, WhatANodeFindsWrongIsSaid) {
+  const std::string name = folder_.write("half_60x60x60_u8.raw", std::string(60 * 60 * 30, 'x'));
+  ASSERT_EQ(shell("gzip " + name).status, 0);
+  const Result result = render(name + ".gz -n 2");
+  EXPECT_EQ(result.status, 1) << result.output;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("half_60x60x60_u8.raw.gz"), HasSubstr("truncated")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("p.png")));
+}
+
+#endif
+
+}  // namespace
+}  // namespace understudy::launcher

@@ -1,0 +1,186 @@
+// Nodes that read volumes themselves: ranks are threads, sockets and files are real.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <memory>
+
+#include "compositor/exchange/thread_link.h"
+#include "compositor/node/node.h"
+#include "compositor/service/load_protocol.h"
+#include "compositor/service/loading_service.h"
+#include "tests/compositor/group_scene.h"
+#include "volume/brick/brick_store.h"
+#include "volume/brick/texel_box.h"
+#include "volume/kd_tree.h"
+
+namespace understudy::compositor {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace testing;
+using volume::TexelType;
+
+class LoadTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    // The launcher goes first: its group then ends, and is joined.
+    launcher_.reset();
+    group_ = {};
+  }
+
+  /// 0: in this process.
+  std::unique_ptr<LoadingService> service(int ranks) {
+    if (ranks == 0) return embedded_loading_service();
+    group_ = std::jthread([this, ranks] { run_ranks(ranks, [&](Link& link) { run_node(link, path_); }); });
+    EXPECT_TRUE(launcher_->wait_for_group());
+    return linked_loading_service(path_, {});
+  }
+  void dismiss() {
+    launcher_->ask([](Broker& broker) { broker.dismiss_node_group(); });
+    if (group_.joinable()) group_.join();
+  }
+
+  std::string write(const std::string& name, std::span<const std::byte> bytes) const {
+    const std::string path = folder_ / name.c_str();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    return path;
+  }
+
+  ScratchFolder folder_;
+  std::string path_ = folder_ / "control";
+  std::unique_ptr<Launcher> launcher_ = std::make_unique<Launcher>(path_);
+  std::jthread group_;
+};
+
+const char* name_of(TexelType type) {
+  return type == TexelType::u8 ? "u8" : type == TexelType::u16 ? "u16" : "f32";
+}
+
+std::vector<RankLoad> load(LoadingService& service, const LoadRequest& request) {
+  std::vector<RankLoad> ranks = service.begin_load(request);
+  while (!std::ranges::all_of(ranks, &RankLoad::done)) {
+    const std::vector<RankLoad> before = ranks;
+    ranks = service.continue_load(request.volume.id);
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      EXPECT_GE(ranks[i].texels_done, before[i].texels_done);
+      EXPECT_TRUE(before[i].done() || ranks[i].texels_done > before[i].texels_done) << "every step gets on";
+    }
+  }
+  return ranks;
+}
+
+TEST_F(LoadTest, WhatRanksReadGivesThePictureOfWhatIsSentAndEachReadsItsShare) {
+  for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32}) {
+    const Texture texture = some_texture(7, type);
+    const std::string file = write("v_41x37x29_" + std::string(name_of(type)) + ".raw", texture.texels);
+    const auto sent = embedded_service();
+    upload(*sent, texture);
+    const volume::RenderRequest request = some_request(texture);
+    const volume::Image expected = picture_of(*sent, request);
+    ASSERT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
+    for (const int ranks : {0, 1, 3, 4}) {
+      const auto loading = service(ranks);
+      const std::vector<RankLoad> figures = load(*loading, {texture.description, file, {}, {}});
+      ASSERT_EQ(figures.size(), std::size_t(std::max(ranks, 1)));
+      EXPECT_LE(largest_difference(picture_of(*loading, request), expected), 1e-5) << ranks;
+      const volume::KdTree tree(texture.description, std::max(ranks, 1));
+      for (std::size_t rank = 0; rank < figures.size(); ++rank) {
+        const std::uint64_t share =
+            volume::texels_in(volume::BrickStore::texels_shown(texture.description, tree.box(int(rank))));
+        EXPECT_EQ(figures[rank].texels_in_all, share);
+        EXPECT_GE(figures[rank].bytes_read, share * volume::bytes_per_texel(type));
+        EXPECT_LE(figures[rank].bytes_read, share * volume::bytes_per_texel(type) + 4)
+            << "what formats are known by";
+        EXPECT_GT(figures[rank].brick_bytes, share) << "bricks hold a texel more than once";
+        EXPECT_GT(figures[rank].peak_bytes, figures[rank].brick_bytes);
+        EXPECT_LE(figures[rank].low, figures[rank].high);
+      }
+      dismiss();
+    }
+  }
+}
+
+TEST_F(LoadTest, AVolumeIsNotCompleteBeforeAllRanksAre) {
+  const auto loading = service(2);
+  const Texture texture = some_texture(7, TexelType::u8);
+  const LoadRequest request{texture.description, write("v_41x37x29_u8.raw", texture.texels), {}, {}};
+  EXPECT_THROW(loading->continue_load(7), RequestRefused) << "nothing was begun";
+  loading->begin_load(request);
+  EXPECT_THROW(loading->render(some_request(texture)), RequestRefused);
+  load(*loading, request);
+  EXPECT_NO_THROW(loading->render(some_request(texture)));
+  EXPECT_TRUE(loading->continue_load(7)[1].done()) << "the figures may be asked for again";
+  loading->forget_volume(7);
+  EXPECT_THROW(loading->continue_load(7), RequestRefused);
+}
+
+TEST_F(LoadTest, WhatIsWrongWithAFileComesBackAndTheServiceGoesOn) {
+  const Texture texture = some_texture(7, TexelType::u8);
+  const std::string good = write("v_41x37x29_u8.raw", texture.texels);
+  for (const int ranks : {0, 3}) {
+    const auto loading = service(ranks);
+    const auto refusal = [&](const LoadRequest& request) -> std::string {
+      try {
+        load(*loading, request);
+      } catch (const RequestRefused& error) {
+        return error.what();
+      }
+      return "(loaded)";
+    };
+    LoadRequest request{texture.description, good + "x", {}, {}};
+    EXPECT_THAT(refusal(request), HasSubstr("check the path"));
+    request.file = good;
+    request.volume.size = request.volume.stored.high = {41, 37, 28};
+    EXPECT_THAT(refusal(request), HasSubstr("is not the volume of 41 x 37 x 28 texels"));
+    // Half of a compressed file: only those that read its end can know.
+    const std::string half =
+        write("half_41x37x29_u8.raw", std::span(texture.texels).first(std::size_t(41 * 37 * 15)));
+    ASSERT_EQ(std::system(("gzip -f " + half).c_str()), 0);
+    request = {texture.description, half + ".gz", {}, {}};
+    EXPECT_THAT(refusal(request), HasSubstr("truncated"));
+    EXPECT_THROW(loading->render(some_request(texture)), RequestRefused) << "it is known to none";
+    request.file = good;
+    load(*loading, request);
+    EXPECT_GT(loading->render(some_request(texture)).counts.samples_taken, 0U);
+    dismiss();
+  }
+}
+
+TEST(LoadProtocol, MessagesComeBackAsTheyWereAndCutOnesAreMalformed) {
+  LoadRequest request{some_texture().description, "/a/b_41x37x29.raw", {}, {}};
+  for (const bool told : {false, true}) {
+    if (told) {
+      request.hints = {{{41, 37, 29}}, volume::ScalarType::f64, true};
+      request.texels = {TexelType::u16, {{-1.5, 2e300}}};
+    }
+    const std::vector<std::byte> bytes = encode(request);
+    const LoadRequest back = decode_load_request(bytes);
+    EXPECT_EQ(back.volume, request.volume);
+    EXPECT_EQ(back.file, request.file);
+    EXPECT_EQ(back.hints, request.hints);
+    EXPECT_EQ(back.texels, request.texels);
+    for (std::size_t cut = 0; cut < bytes.size(); ++cut)
+      EXPECT_THROW(decode_load_request(std::span(bytes).first(cut)), MalformedMessage) << cut;
+  }
+  request.file = std::string("a\0b", 3);
+  EXPECT_THROW(decode_load_request(encode(request)), MalformedMessage);
+  request.file = std::string(5000, 'x');
+  EXPECT_THROW(decode_load_request(encode(request)), MalformedMessage);
+
+  const std::vector<RankLoad> ranks{{1, 2, 3, 4, 5, -6.5, 7, 8, 9}, {}};
+  const std::vector<std::byte> bytes = encode(ranks);
+  const std::vector<RankLoad> back = decode_loads(bytes);
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_EQ(encode(back), bytes);
+  EXPECT_EQ(back[0].low, -6.5);
+  EXPECT_EQ(back[0].not_numbers, 9U);
+  for (std::size_t cut = 0; cut < bytes.size(); ++cut)
+    EXPECT_THROW(decode_loads(std::span(bytes).first(cut)), MalformedMessage) << cut;
+}
+
+}  // namespace
+}  // namespace understudy::compositor

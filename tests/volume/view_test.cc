@@ -1,0 +1,129 @@
+// Transfer functions from knots, and the camera that goes around a volume.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/volume/scenes.h"
+#include "volume/orbit_camera.h"
+#include "volume/raycast/ray_caster.h"
+#include "volume/transfer_knots.h"
+
+namespace understudy::volume::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string trouble_with(const TransferKnots& knots) {
+  try {
+    check(knots);
+    return {};
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(TransferKnots, WhatMakesNoSenseIsRefusedWithTheKnot) {
+  const TransferKnots::Knot low{0, {0, 0, 0}, 0}, high{1, {1, 1, 1}, 0.5};
+  EXPECT_EQ(trouble_with({false, {low, high}}), "");
+  EXPECT_THAT(trouble_with({false, {}}), HasSubstr("0 knots are too few"));
+  EXPECT_THAT(trouble_with({false, {low}}), HasSubstr("1 knots are too few"));
+  EXPECT_THAT(trouble_with({false, {high, low}}), HasSubstr("knot 2: it stands at 0"));
+  EXPECT_THAT(trouble_with({false, {low, {1, {}, -0.1}}}), HasSubstr("knot 2: its opacity is -0.1"));
+  EXPECT_THAT(trouble_with({false, {low, {1, {}, std::nan("")}}}), HasSubstr("its opacity is nan"));
+  EXPECT_THAT(trouble_with({false, {{std::nan(""), {}, 0}, high}}), HasSubstr("knot 1: its place"));
+  EXPECT_THAT(trouble_with({false, {low, {1, {0, 2, 0}, 0}}}), HasSubstr("a component of 2"));
+  EXPECT_THAT(trouble_with({false, {low, low}}), HasSubstr("different places"));
+  EXPECT_THROW(knots_named("nothing"), std::invalid_argument);
+  EXPECT_THROW(sampled(knots_named("grey"), 0, 1, 0), std::invalid_argument);
+  for (const char* name : {"grey", "engine", "ct", "vessels", "rainbow"}) {
+    EXPECT_EQ(trouble_with(knots_named(name)), "") << name;
+    EXPECT_THAT(built_in_knots(), HasSubstr(name));
+  }
+}
+
+TEST(TransferKnots, OpacityFollowsTheStepAndRunsLinearlyBetweenKnots) {
+  const TransferKnots knots{false, {{0, {0, 0, 0}, 0}, {0.5, {0.4, 0.6, 0.8}, 0.2}, {1, {1, 1, 1}, 1}}};
+  const TransferFunction one = sampled(knots, 10, 30, 1), half = sampled(knots, 10, 30, 0.5);
+  EXPECT_EQ(one.low, 10);
+  EXPECT_EQ(one.high, 30);
+  ASSERT_EQ(one.entries.size(), half.entries.size());
+  const std::size_t last = one.entries.size() - 1;
+  EXPECT_NEAR(one.entries[last / 4][3], 0.1, 1e-4);
+  EXPECT_EQ(one.entries[last][3], 1);
+  EXPECT_EQ(half.entries[last][3], 1);
+  EXPECT_NEAR(one.entries[last / 2][0], 0.2 * 0.4, 1e-3) << "premultiplied";
+  for (std::size_t i = 0; i <= last; i += 100) {
+    const double twice = 1 - std::pow(1 - double(half.entries[i][3]), 2);
+    EXPECT_NEAR(twice, one.entries[i][3], 1e-6) << "two half steps let through what one step does";
+  }
+  // A fog so thin that 1 - opacity is 1 in float survives.
+  const TransferFunction fog =
+      sampled(TransferKnots{true, {{0, {1, 1, 1}, 1e-12}, {1, {1, 1, 1}, 1e-12}}}, 0, 9, 0.5);
+  EXPECT_FLOAT_EQ(fog.entries[7][3], 5e-13F);
+  EXPECT_EQ(fog.high, 1) << "knots of values know no range";
+  // Two knots at one place make a step.
+  const TransferFunction step = sampled(
+      TransferKnots{true, {{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0.5}, {2, {1, 1, 1}, 0.5}}}, 0,
+      1, 1);
+  EXPECT_EQ(step.entries[last / 2][3], 0);
+  EXPECT_EQ(step.entries[last / 2 + 1][3], 0.5F);
+}
+
+TEST(OrbitCamera, LooksAtTheMiddleFromEverySideAndFromThePoles) {
+  VolumeDescription volume = describe({40, 30, 20}, TexelType::u8);
+  for (const double azimuth : {0.0, 90.0, 200.0})
+    for (const double elevation : {-90.0, 0.0, 35.0, 90.0}) {
+      const RenderRequest request = orbit_request(volume, {1, 1, 2}, {azimuth, elevation, 4}, 60, 40, 1);
+      const Vec4 middle = transform_point(request.texture_to_clip, {0.5, 0.5, 0.5});
+      EXPECT_NEAR(middle[0] / middle[3], 0, 1e-12);
+      EXPECT_NEAR(middle[1] / middle[3], 0, 1e-12);
+      EXPECT_NEAR(middle[3], 4, 1e-12);
+      EXPECT_NO_THROW(validate(volume, [&] {
+        RenderRequest with_table = request;
+        with_table.classification = smooth_table();
+        return with_table;
+      }()));
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec4 c = transform_point(request.texture_to_clip,
+                                       {double(corner & 1), double(corner >> 1 & 1), double(corner >> 2 & 1)});
+        for (int k = 0; k < 3; ++k) EXPECT_LE(std::abs(c[std::size_t(k)]), c[3] * 1.0001) << "in sight";
+      }
+    }
+  // From 0 one looks along y: x to the right, z up.
+  const Matrix4 front = orbit_request(volume, {1, 1, 1}, {0, 0, 4}, 50, 50, 1).texture_to_clip;
+  EXPECT_GT(transform_point(front, {1, 0.5, 0.5})[0], 0.1);
+  EXPECT_GT(transform_point(front, {0.5, 0.5, 1})[1], 0.1);
+  EXPECT_LT(transform_point(front, {0.5, 0, 0.5})[3], transform_point(front, {0.5, 1, 0.5})[3]);
+}
+
+TEST(OrbitCamera, StepsAreInVoxels) {
+  const Texture texture = sampled(describe({32, 32, 32}, TexelType::u8), constant_field(1));
+  const BrickStore store = filled(texture);
+  for (const double step : {0.5, 1.0, 2.0}) {
+    RenderRequest request = orbit_request(texture.description, {1, 1, 1}, {0, 0, 1000}, 1, 1, step);
+    request.classification =
+        sampled(TransferKnots{true, {{0, {1, 1, 1}, 0.02}, {1, {1, 1, 1}, 0.02}}}, 0, 1, step);
+    Image image(request.window);
+    FrameCounts counts;
+    raycast(store, request, image, counts);
+    EXPECT_NEAR(double(counts.samples), 32 / step, 1);
+    EXPECT_NEAR(image.rgba[3], 1 - std::pow(0.98, 32), 0.01) << "whatever the step";
+  }
+}
+
+TEST(OrbitCamera, WhatMakesNoSenseIsRefused) {
+  const VolumeDescription volume = describe({8, 8, 8}, TexelType::u8);
+  const Vec3 unit{1, 1, 1};
+  EXPECT_THROW(orbit_request(volume, unit, {0, 91, 4}, 10, 10, 1), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {0, 0, 0}, 10, 10, 1), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {std::nan(""), 0, 4}, 10, 10, 1), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {0, 0, 4}, 0, 10, 1), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {0, 0, 4}, 10, 10, 0), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {0, 0, 4}, 10, 10, std::nan("")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

@@ -1,0 +1,17 @@
+// NIfTI-1 and NIfTI-2 volumes (.nii, .hdr with .img, each also .gz).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "volume/file/volume_file.h"
+
+namespace understudy::volume {
+
+/// By the name.
+bool is_nifti(const std::string& path);
+
+/// The first volume of a series. Throws FileError.
+std::unique_ptr<VolumeFile> open_nifti(const std::string& path);
+
+}  // namespace understudy::volume

@@ -1,0 +1,18 @@
+// NRRD volumes, header and data in one file or in two (teem.sourceforge.net/nrrd/format.html). Encodings: raw
+// and gzip.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "volume/file/volume_file.h"
+
+namespace understudy::volume {
+
+/// By the first bytes.
+bool is_nrrd(const std::string& path);
+
+/// A scalar volume of three axes (where there are more, axes of length 1 do not count). Throws FileError.
+std::unique_ptr<VolumeFile> open_nrrd(const std::string& path);
+
+}  // namespace understudy::volume

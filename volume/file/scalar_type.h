@@ -1,0 +1,21 @@
+// Scalars as files have them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace understudy::volume {
+
+enum class ScalarType : std::uint8_t { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
+
+std::size_t bytes_per_scalar(ScalarType type);
+
+/// "u8", "i8", ... "f64".
+std::string_view name_of(ScalarType type);
+
+/// By these names or the long ones: "uint8", "int16", "float32", "float64".
+std::optional<ScalarType> scalar_type_named(std::string_view name);
+
+}  // namespace understudy::volume

@@ -1,0 +1,129 @@
+#include "volume/file/volume_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "volume/brick/cell_lattice.h"
+#include "volume/brick/texel_box.h"
+#include "volume/file/file_error.h"
+#include "volume/file/nifti.h"
+#include "volume/file/nrrd.h"
+#include "volume/file/raw.h"
+#include "volume/file/synthetic.h"
+#include "volume/file/vti.h"
+
+namespace understudy::volume {
+
+namespace {
+
+void swap_byte_order(std::span<std::byte> bytes, std::size_t scalar) {
+  for (std::size_t at = 0; at + scalar <= bytes.size(); at += scalar)
+    std::reverse(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + scalar));
+}
+
+class DenseVolume : public VolumeFile {
+ public:
+  DenseVolume(const FileDescription& description, DenseScalars scalars, std::uint64_t bytes)
+      : VolumeFile(description), scalars_(std::move(scalars)), bytes_(bytes) {}
+
+  void read(const TexelBox& box, std::span<std::byte> scalars) override {
+    const std::array<int, 3>& size = description().size;
+    const std::size_t scalar = bytes_per_scalar(description().type);
+    if (!contains({{0, 0, 0}, size}, box) || scalars.size() != texels_in(box) * scalar)
+      throw FileError(fmt::format("{}: a part was asked for that the volume does not have", path()));
+    // What lies together is read together.
+    const bool rows = box.low[0] == 0 && box.high[0] == size[0];
+    const bool slices = rows && box.low[1] == 0 && box.high[1] == size[1];
+    const int row_step = rows ? box.high[1] - box.low[1] : 1,
+              slice_step = slices ? box.high[2] - box.low[2] : 1;
+    std::span<std::byte> left = scalars;
+    for (int z = box.low[2]; z < box.high[2]; z += slice_step)
+      for (int y = box.low[1]; y < box.high[1]; y += row_step) {
+        const std::size_t count =
+            std::size_t(box.high[0] - box.low[0]) * std::size_t(row_step) * std::size_t(slice_step) * scalar;
+        const std::uint64_t first =
+            (std::uint64_t(z) * std::uint64_t(size[1]) + std::uint64_t(y)) * std::uint64_t(size[0]) +
+            std::uint64_t(box.low[0]);
+        fetch(first * scalar, left.first(count));
+        left = left.subspan(count);
+      }
+    if (scalars_.nothing_follows && box.high == size) expect_end();
+    if (scalars_.big_endian != (std::endian::native == std::endian::big) && scalar > 1)
+      swap_byte_order(scalars, scalar);
+  }
+
+  std::uint64_t bytes_read() const override { return scalars_.bytes->bytes_from_file(); }
+
+ private:
+  const std::string& path() const { return scalars_.bytes->path(); }
+
+  void fetch(std::uint64_t at, std::span<std::byte> to) {
+    const std::size_t got = scalars_.bytes->read(scalars_.offset + at, to);
+    if (got < to.size())
+      throw FileError(fmt::format(
+          "{}: truncated: {} bytes of scalars were expected, only {} are there; {}", path(), bytes_,
+          got == 0 ? "fewer than " + std::to_string(at + 1) : std::to_string(at + got), scalars_.advice));
+  }
+
+  void expect_end() {
+    // Of a plain file the length was compared when it was opened.
+    if (scalars_.bytes->size()) return;
+    std::byte one_more{};
+    if (scalars_.bytes->read(scalars_.offset + bytes_, {&one_more, 1}) > 0)
+      throw FileError(fmt::format("{}: more than the expected {} bytes of scalars are there; {}", path(),
+                                  bytes_, scalars_.advice));
+  }
+
+  DenseScalars scalars_;
+  std::uint64_t bytes_;
+};
+
+}  // namespace
+
+std::uint64_t checked_bytes(const std::array<std::int64_t, 3>& size, ScalarType type, const std::string& path) {
+  std::uint64_t bytes = bytes_per_scalar(type);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (size[axis] < 1 || size[axis] > max_axis_texels)
+      throw FileError(
+          fmt::format("{}: {} scalars along axis {}, not 1 to {}; check the size, or cut the volume", path,
+                      size[axis], axis, max_axis_texels));
+    bytes *= std::uint64_t(size[axis]);  // 2^45 at most
+  }
+  return bytes;
+}
+
+double believable_spacing(double spacing) {
+  constexpr double smallest = 1e-30, largest = 1e30;
+  spacing = std::abs(spacing);
+  return spacing >= smallest && spacing <= largest ? spacing : 1.0;
+}
+
+std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, DenseScalars scalars) {
+  const std::string& path = scalars.bytes->path();
+  const std::array<int, 3>& size = description.size;
+  const std::uint64_t bytes = checked_bytes({size[0], size[1], size[2]}, description.type, path);
+  if (const std::optional<std::uint64_t> there = scalars.bytes->size()) {
+    const std::uint64_t found = *there - std::min(scalars.offset, *there);
+    if (found < bytes)
+      throw FileError(fmt::format("{}: truncated: {} bytes of scalars were expected, {} are there; {}", path,
+                                  bytes, found, scalars.advice));
+    if (found > bytes && scalars.nothing_follows)
+      throw FileError(fmt::format("{}: {} bytes of scalars were expected, {} are there; {}", path, bytes, found,
+                                  scalars.advice));
+  }
+  return std::make_unique<DenseVolume>(description, std::move(scalars), bytes);
+}
+
+std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints) {
+  if (is_synthetic(name)) return open_synthetic(name);
+  if (is_nifti(name)) return open_nifti(name);
+  if (is_vti(name)) return open_vti(name);
+  if (is_nrrd(name)) return open_nrrd(name);
+  return open_raw(name, hints);
+}
+
+}  // namespace understudy::volume

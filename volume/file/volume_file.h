@@ -1,0 +1,80 @@
+// A volume in a file, of which any box can be read without the rest.
+//
+// NRRD is known by its first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also with .gz), and
+// a name that begins with "synthetic:" needs no file. Everything else is raw scalars, whose size and type come
+// from the caller or from the name (engine.256x256x110, head_256x256x113_int16be.raw.gz).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "volume/file/byte_source.h"
+#include "volume/file/scalar_type.h"
+#include "volume/request.h"
+
+namespace understudy::volume {
+
+/// What the user says about a file that does not say it itself: of raw files only.
+struct FileHints {
+  std::optional<std::array<int, 3>> size;
+  std::optional<ScalarType> type;
+  std::optional<bool> big_endian;
+
+  bool operator==(const FileHints&) const = default;
+};
+
+struct FileDescription {
+  std::array<int, 3> size{};
+  Vec3 spacing{1, 1, 1};  ///< between scalars, in any unit
+  ScalarType type = ScalarType::u8;
+  /// A scalar s of the file means the value offset + scale * s.
+  double scale = 1;
+  double offset = 0;
+};
+
+class VolumeFile {
+ public:
+  explicit VolumeFile(const FileDescription& description) : description_(description) {}
+  virtual ~VolumeFile() = default;
+
+  const FileDescription& description() const { return description_; }
+
+  /// The scalars of `box`, tightly packed, x fastest, in native byte order. Boxes in the order of the file (x
+  /// fastest, z slowest) are read in one pass, also from compressed files. Throws FileError.
+  virtual void read(const TexelBox& box, std::span<std::byte> scalars) = 0;
+  /// What has been read of the file so far, headers included.
+  virtual std::uint64_t bytes_read() const = 0;
+
+ private:
+  FileDescription description_;
+};
+
+/// Reads no more than the header. Throws FileError.
+std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {});
+
+/// Scalars that lie one after the other, x fastest, from `offset` of `bytes` on.
+struct DenseScalars {
+  std::unique_ptr<ByteSource> bytes;
+  std::uint64_t offset = 0;
+  bool big_endian = false;
+  bool nothing_follows = false;  ///< bytes behind the last scalar are an error
+  /// What to try when there are too few bytes or too many.
+  std::string advice;
+};
+
+/// What a format's reader ends in. Checks the description's sizes, and as far as it is known the number of
+/// bytes.
+std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, DenseScalars scalars);
+
+/// The bytes of all scalars. Throws FileError, naming `path`, when an axis is empty or longer than a volume can
+/// be.
+std::uint64_t checked_bytes(const std::array<std::int64_t, 3>& size, ScalarType type, const std::string& path);
+
+/// What may stand between two scalars: anything but a positive finite number that can be squared becomes 1.
+double believable_spacing(double spacing);
+
+}  // namespace understudy::volume

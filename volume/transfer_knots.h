@@ -1,0 +1,35 @@
+// Transfer functions as people write them: colour and opacity at a few values, linear in between.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "volume/classification.h"
+
+namespace understudy::volume {
+
+struct TransferKnots {
+  struct Knot {
+    double at = 0;
+    std::array<double, 3> colour{};  ///< plain, not multiplied by opacity, 0 to 1
+    double opacity = 0;              ///< of one unit of length, 0 to 1
+  };
+
+  bool of_values = false;   ///< `at` is a value; otherwise 0 is the volume's least value and 1 its greatest
+  std::vector<Knot> knots;  ///< rising; two at one place make a step
+};
+
+/// Throws std::invalid_argument naming the knot: fewer than two, not rising, not finite, out of range.
+void check(const TransferKnots& knots);
+
+/// A built-in one. Throws std::invalid_argument, with the names that there are.
+TransferKnots knots_named(const std::string& name);
+/// "grey, engine, ..."
+std::string built_in_knots();
+
+/// The table for samples `step` units of length apart, over the values from `low` to `high` of the volume; its
+/// range is in values. Opacity becomes 1 - (1 - opacity)^step. Throws as check() does, and for a step that is
+/// no positive number.
+TransferFunction sampled(const TransferKnots& knots, double low, double high, double step);
+
+}  // namespace understudy::volume

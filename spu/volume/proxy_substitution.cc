@@ -1,10 +1,14 @@
 // The volume unit's way for ray casters: from the draw of a box to a request.
 #include <algorithm>
 
+#include "compositor/blend.h"
+#include "compositor/service/limits.h"
 #include "spu/volume/proxy/march.h"
+#include "spu/volume/proxy/ray_ends.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/verify.h"
 #include "volume/footprint.h"
+#include "volume/raycast/ray_caster.h"
 
 namespace understudy::spu {
 namespace {
@@ -42,10 +46,25 @@ ApplicationPicture fullest_part(const ApplicationPicture& whole) {
   return fullest;
 }
 
-void show(volume::RenderRequest& request, const March& march) {
-  request.steps = march.steps;
-  request.op = march.extreme.value_or(volume::Operator::over);
-  request.classification = asked_of_nodes(march);
+/// Planes where rays begin and end.
+std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
+  std::vector<volume::HalfSpace> planes = box.cuts;
+  planes.insert(planes.end(), cuts.clipping.begin(), cuts.clipping.end());
+  return planes;
+}
+
+/// The request for a march through a volume that is cut.
+void ask(volume::RenderRequest& request, const March& march, const ProxyBox& box, const Cuts& cuts) {
+  ask_nodes(march, request);
+  request.clip_planes = cuts.parts.front();
+  const std::vector<volume::HalfSpace> planes = ends_of(box, cuts);
+  if (!planes.empty() && march.steps.divided)
+    throw Doubt{"planes cut a ray caster's box whose rays are divided evenly"};
+  // One number a pixel travels to the nodes.
+  if (!planes.empty() &&
+      volume::footprint(request, request.region).pixels() > std::size_t(compositor::limits::max_ray_offsets))
+    throw Doubt{"planes cut a ray caster's box in more pixels than the nodes take beginnings of rays for"};
+  end_rays_at(planes, march.past_planes, request);
 }
 
 }  // namespace
@@ -59,7 +78,9 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
     s.slices.region = box.region;
   };
   describe_volume(s);
-  const auto context_of = [&] { return MarchContext{context(), s.run, parts, known.texture, known.range}; };
+  const auto context_of = [&] {
+    return MarchContext{context(), s.run, parts, known.texture, known.range, !s.cuts.clipping.empty()};
+  };
   std::vector<CoordinateSpace> spaces;
   if (known.march) {
     spaces = {known.march->space};
@@ -68,12 +89,21 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
     if (spaces.empty())
       throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
   }
-  use(box_in(context_of(), spaces.front()));
+  ProxyBox box = box_in(context_of(), spaces.front());
+  use(box);
+  s.cuts = read_cuts(context(), s.pipeline.program, box.camera.texture_to_clip);
+  if (known.march && known.march->clipped == s.cuts.clipping.empty()) known.march.reset();
   upload(s, service);  // says what values there are
 
   const MarchContext measured = context_of();
   MarchInputs inputs = march_inputs(measured, chain_.group());
-  ProxyBox box{s.slices.region, *s.fit};
+  if (known.march && !known.march->from_inside && !box.cuts.empty() &&
+      inputs.fixed == known.march_inputs.fixed) {
+    // Rays of all directions, which may show that the step was not known in every one.
+    auto again = with_new_steps(measured, *known.march, box);
+    if (const auto* reason = std::get_if<std::string>(&again)) throw Doubt{*reason};
+    known.march = std::get<March>(std::move(again));
+  }
   const bool same = known.march && inputs == known.march_inputs;
   const bool holds = same || (known.march && inputs.fixed == known.march_inputs.fixed &&
                               still_marches(measured, *known.march, box));
@@ -97,16 +127,37 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
     }
   }
   known.march_inputs = std::move(inputs);
-  use(box_in(measured, known.march->space));
+  box = box_in(measured, known.march->space);
+  use(box);
   compose_request(s);
-  show(s.request, *known.march);
+  s.opaque = s.request.depth;
+  s.ray_ends = ends_of(box, s.cuts);
+  ask(s.request, *known.march, box, s.cuts);
+}
+
+void VolumeUnit::complete_picture(Substitution& s, compositor::RenderService& service, const March& march,
+                                  volume::Image& picture, volume::FrameCounts& counts) {
+  // The nodes leave out the rim that shows nothing.
+  volume::Image whole(volume::footprint(s.request, s.request.region));
+  std::fill(whole.rgba.begin(), whole.rgba.end(), volume::neutral_value(s.request.op));
+  compositor::blend(s.request.op, whole, picture.view());
+  picture = std::move(whole);
+  for (std::size_t part = 1; part < s.cuts.parts.size(); ++part) {
+    s.request.clip_planes = s.cuts.parts[part];
+    const compositor::Rendered rendered = service.render(s.request);
+    compositor::blend(s.request.op, picture, rendered.image);
+    counts += rendered.counts;
+  }
+  s.request.depth = s.opaque;
+  if (needs_finish(march)) finish_picture(march, picture);
+  if (march.sum && march.sum->everywhere) cover_entered(s.ray_ends, s.request, march.sum->alpha, picture);
 }
 
 March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& service,
                                const std::vector<March>& marches) {
   const auto record = chain_.group().programs().program(s.pipeline.program);
-  const MarchContext measured{context(), s.run, stages(s.pipeline.program, *record), s.volume.texture,
-                              s.volume.range};
+  const MarchContext measured{context(),        s.run,          stages(s.pipeline.program, *record),
+                              s.volume.texture, s.volume.range, !s.cuts.clipping.empty()};
   std::optional<ApplicationPicture> looked_at;
   const March* best = nullptr;
   double least = 0;
@@ -116,7 +167,6 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.fit = box->camera;
     s.slices.region = box->region;
     compose_request(s);
-    show(s.request, march);
     if (!looked_at) {
       s.drawn =
           application_picture(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
@@ -124,11 +174,15 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
       looked_at = fullest_part(*s.drawn);
     }
     s.request.window = intersection(s.request.window, looked_at->rect);
+    s.opaque = s.request.depth;
+    s.ray_ends = ends_of(*box, s.cuts);
+    ask(s.request, march, *box, s.cuts);
     const compositor::Rendered rendered = service.render(s.request);
     volume::Image picture;
     picture.rect = rendered.image.rect;
     picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
-    if (march.extreme) classify_extremes(march, picture);
+    volume::FrameCounts counts;
+    complete_picture(s, service, march, picture, counts);
     const double difference = difference_between(s.pipeline, *looked_at, picture.view()).mean_square;
     if (best != nullptr && difference >= least) continue;
     best = &march;

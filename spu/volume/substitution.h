@@ -36,6 +36,10 @@ struct VolumeUnit::Substitution {
   FragmentInputs fragment{};
   std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end
   SliceSet slices{};
+  Cuts cuts{};                                ///< of a ray caster
+  std::vector<volume::HalfSpace> ray_ends{};  ///< planes where its rays begin and end
+  /// Of the application's opaque geometry, where the request's own depth tells ends of rays as well.
+  std::optional<volume::DepthImage> opaque{};
   std::vector<ObservedSlab> slabs{};  ///< what may be the second coordinates of slabs
   volume::RenderRequest request{};
   std::optional<ApplicationPicture> drawn{};  ///< the application's own, where that was drawn already

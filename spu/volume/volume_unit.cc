@@ -246,7 +246,7 @@ const char* name_of(const Blending& blending) {
 }
 
 /// Where the samples lie, in words.
-std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size) {
+std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size, bool cut_rays) {
   if (!request.steps) {
     return fmt::format("{} slices {:.5f} of the texture apart", request.planes.count,
                        std::abs(request.planes.spacing));
@@ -256,16 +256,15 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
   for (std::size_t k = 0; k < 3; ++k) {
     a_texel[k] = volume::length({steps.metric[k], steps.metric[3 + k], steps.metric[6 + k]}) / size[k];
   }
-  std::string jitter;
-  if (steps.offsets) {
-    jitter = fmt::format(", every ray later by a {} x {} texture of the program", steps.offsets->width,
-                         steps.offsets->height);
-  }
+  const std::string_view jitter = !steps.offsets ? ""
+                                  : cut_rays     ? ", every ray from the planes that cut the box"
+                                                 : ", every ray later by a texture of the program";
   return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
                      jitter,
                      request.op == volume::Operator::max   ? ", maximum"
                      : request.op == volume::Operator::min ? ", minimum"
+                     : request.op == volume::Operator::add ? ", sum"
                                                            : "");
 }
 
@@ -731,7 +730,7 @@ void VolumeUnit::explain(const Substitution& s) {
                   "{} of {} colours, {} clip planes, {}{}",
                   s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
                   name_of(s.volume.texture.type), s.volume.texture.format_name,
-                  sampling_of(s.request, s.volume.texture.size),
+                  sampling_of(s.request, s.volume.texture.size, !s.ray_ends.empty()),
                   s.request.filter == volume::Filter::linear ? "linear" : "nearest",
                   std::holds_alternative<volume::LinearMap>(s.request.classification) ? "colours in the texels"
                   : s.request.slab ? "table of pairs probed from the program"
@@ -782,15 +781,19 @@ void VolumeUnit::substitute(const Run& run) {
   const Blending& blending = s.pipeline.blending;
   volume::Image picture;
   volume::ImageView shown = rendered.image;
-  const bool extremes = s.proxy && s.volume.march->extreme;
-  if (options.debug_tint || blending.alpha_stands_apart() || extremes) {
+  volume::FrameCounts counts = rendered.counts;
+  const bool finished_here = s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
+  if (options.debug_tint || blending.alpha_stands_apart() || finished_here) {
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
   }
-  if (extremes) classify_extremes(*s.volume.march, picture);
+  if (finished_here) {
+    complete_picture(s, service, *s.volume.march, picture, counts);
+    shown = picture.view();
+  }
+  if (s.proxy) s.request.depth = s.opaque;
   verify(s, shown);
-  volume::FrameCounts counts = rendered.counts;
   if (!options.save_frames.empty()) {
     const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown,
                                            volume::neutral_value(blending.op));

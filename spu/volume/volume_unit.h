@@ -104,6 +104,10 @@ class VolumeUnit final : public Unit {
   void compose_proxy_request(Substitution& s, compositor::RenderService& service);
   /// The march whose picture is most like the application's.
   March choose_march(Substitution& s, compositor::RenderService& service, const std::vector<March>& marches);
+  /// From the nodes' picture of a ray caster to what it shows, together with the parts that cropping has left
+  /// behind the nearest.
+  void complete_picture(Substitution& s, compositor::RenderService& service, const March& march,
+                        volume::Image& picture, volume::FrameCounts& counts);
   void verify(Substitution& s, const volume::ImageView& image);
   void explain(const Substitution& s);
   /// The phase between runs.

@@ -1,5 +1,6 @@
 #include "box_ray_caster.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -17,7 +18,10 @@ constexpr const char* fragment_source =
     "uniform sampler3D field; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, jittered, noisy, reads_depth;\n"
-    "uniform vec2 window;\n"
+    "uniform vec2 window; uniform float past_planes;\n"
+    "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
+    "in_clippingPlanes[49];\n"
+    "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
     "in vec3 place; out vec4 colour;\n"
     "vec4 classified(vec3 at) {\n"
     "  vec4 c = texture(table, texture(field, at).r);\n"
@@ -30,6 +34,17 @@ constexpr const char* fragment_source =
     "  }\n"
     "  return vec4(c.rgb * c.a, c.a);\n"
     "}\n"
+    "bool kept(vec3 at) {\n"
+    "  int region = 1, stride = 1;\n"
+    "  for (int k = 0; k < 3; ++k, stride *= 3) {\n"
+    "    for (int side = 0; side < 2; ++side) {\n"
+    "      vec4 plane = vec4(0.0, 0.0, 0.0, 1.0);\n"
+    "      plane[k] = in_croppingPlanes[2 * k + side];\n"
+    "      if (at[k] >= (in_inverseTextureDatasetMatrix[0] * plane)[k]) region += stride;\n"
+    "    }\n"
+    "  }\n"
+    "  return in_croppingFlags[region] != 0;\n"
+    "}\n"
     "void main() {\n"
     "  if (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0) discard;\n"
     "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
@@ -37,6 +52,24 @@ constexpr const char* fragment_source =
     "  vec3 to_exit = (vec3(greaterThan(step, vec3(0.0))) - place) / step;\n"
     "  float steps = min(to_exit.x, min(to_exit.y, to_exit.z));\n"
     "  float first = 1.0, count = floor(steps);\n"
+    "  mat4 to_world = in_volumeMatrix[0] * in_textureDatasetMatrix[0];\n"
+    "  float begin = 0.0, end_of_ray = steps;\n"
+    "  for (int i = 0; i < int(in_clippingPlanes[0]); i += 6) {\n"
+    "    vec3 normal = vec3(in_clippingPlanes[i + 4], in_clippingPlanes[i + 5], in_clippingPlanes[i + 6]);\n"
+    "    vec3 point = vec3(in_clippingPlanes[i + 1], in_clippingPlanes[i + 2], in_clippingPlanes[i + 3]);\n"
+    "    float above = dot(normal, (to_world * vec4(place, 1.0)).xyz - point);\n"
+    "    float rise = dot(normal, mat3(to_world) * step);\n"
+    "    if (rise > 0.0) begin = max(begin, -above / rise);\n"
+    "    else end_of_ray = min(end_of_ray, -above / rise);\n"
+    "  }\n"
+    "  if (begin >= end_of_ray) discard;\n"
+    "  if (begin > 0.0 || end_of_ray < steps)\n"
+    "  {\n"
+    "    float shown = end_of_ray - begin;\n"
+    "    if (end_of_ray < steps && past_planes > 0.0) shown = max(shown, 1.0) + past_planes;\n"
+    "    count = floor(min(shown, steps - begin));\n"
+    "  }\n"
+    "  vec3 from = place + begin * step;\n"
     "  if (divided) { count = floor(steps + 0.5); step *= steps / count; first = 0.0; }\n"
     "  if (jittered) first = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5) + 0.5;\n"
     "  if (noisy) first = texture(noise, gl_FragCoord.xy / vec2(textureSize(noise, 0))).r;\n"
@@ -49,18 +82,21 @@ constexpr const char* fragment_source =
     "    end = inverse_camera * end;\n"
     "    count = min(count, ceil(length((end.xyz / end.w - place) * extent) / one_step));\n"
     "  }\n"
-    "  vec4 sum = vec4(0.0); float largest = 0.0, least = 1.0;\n"
+    "  vec4 sum = vec4(0.0); float largest = 0.0, least = 1.0, grey = 0.0;\n"
     "  for (float i = 0.0; i < count && sum.a < 0.999; ++i) {\n"
-    "    vec3 at = place + (first + i) * step;\n"
+    "    vec3 at = from + (first + i) * step;\n"
+    "    if (!kept(at)) continue;\n"
     "    vec4 sample_colour = classified(at);\n"
     "    if (composition == 0) sum += (1.0 - sum.a) * sample_colour;\n"
     "    if (composition == 2) sum += sample_colour;\n"
     "    largest = max(largest, texture(field, at).r);\n"
     "    least = min(least, texture(field, at).r);\n"
+    "    grey += sample_colour.a * texture(field, at).r;\n"
     "  }\n"
     "  if (composition == 3) largest = least;\n"
     "  if (composition == 1 || composition == 3) { vec4 c = texture(table, largest); sum = vec4(c.rgb * c.a, "
     "c.a); }\n"
+    "  if (composition == 4) sum = vec4(vec3(min(grey, 1.0)), 1.0);\n"
     "  sum.a = min(sum.a, 1.0);\n"
     "  colour = straight && sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : sum;\n"
     "}\n";
@@ -127,7 +163,7 @@ Camera camera_of(const MarchStyle& c, double angle) {
       {{cosine, 0, sine},
        {std::sin(tilt) * sine, std::cos(tilt), -std::sin(tilt) * cosine},
        {-std::cos(tilt) * sine, std::sin(tilt), std::cos(tilt) * cosine}}};
-  const double near = 0.5;
+  const double near = c.near;
   const double far = 10;
   const double f = c.parallel ? 1.0 : 2.8;
   const double zz = c.parallel ? -2 / (far - near) : (far + near) / (near - far);
@@ -178,10 +214,91 @@ Camera camera_of(const MarchStyle& c, double angle) {
   return camera;
 }
 
+using Corner = std::array<double, 3>;
+
+void append_fan(const std::vector<Corner>& polygon, std::vector<GLfloat>& triangles) {
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    for (const std::size_t corner : {std::size_t(0), i - 1, i})
+      for (const double x : polygon[corner]) triangles.push_back(GLfloat(x));
+  }
+}
+
+/// The box's triangles where the camera sees them behind `depth`, closed there by one more face.
+std::vector<GLfloat> triangles_behind(const Camera& camera, double depth) {
+  const auto behind = [&](const Corner& p) {
+    double w = camera.forward[15] - depth;
+    for (std::size_t k = 0; k < 3; ++k) w += camera.forward[4 * k + 3] * p[k];
+    return w;
+  };
+  const std::vector<GLfloat> whole = box_triangles();
+  std::vector<GLfloat> triangles;
+  std::vector<Corner> rim;
+  for (std::size_t first = 0; first < whole.size(); first += 9) {
+    std::vector<Corner> part;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto corner = [&](std::size_t n) {
+        const GLfloat* from = whole.data() + first + 3 * (n % 3);
+        return Corner{from[0], from[1], from[2]};
+      };
+      const Corner a = corner(i);
+      const Corner b = corner(i + 1);
+      if (behind(a) >= 0) part.push_back(a);
+      if ((behind(a) >= 0) == (behind(b) >= 0)) continue;
+      const double s = behind(a) / (behind(a) - behind(b));
+      Corner crossing{};
+      for (std::size_t k = 0; k < 3; ++k) crossing[k] = a[k] + s * (b[k] - a[k]);
+      part.push_back(crossing);
+      rim.push_back(crossing);
+    }
+    append_fan(part, triangles);
+  }
+  // The rim lies in a plane of constant depth: turned about its middle, as the eye sees it.
+  const auto seen = [&](const Corner& p) {
+    std::array<double, 2> place{camera.forward[12], camera.forward[13]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[0] += camera.forward[4 * k] * p[k];
+      place[1] += camera.forward[4 * k + 1] * p[k];
+    }
+    return place;
+  };
+  std::array<double, 2> middle{};
+  for (const Corner& p : rim) {
+    for (std::size_t k = 0; k < 2; ++k) middle[k] += seen(p)[k] / double(rim.size());
+  }
+  const auto turn = [&](const Corner& p) { return std::atan2(seen(p)[1] - middle[1], seen(p)[0] - middle[0]); };
+  std::sort(rim.begin(), rim.end(), [&](const Corner& a, const Corner& b) { return turn(a) < turn(b); });
+  append_fan(rim, triangles);
+  return triangles;
+}
+
 void set_matrix(const DispatchTable& gl, GLuint program, const char* name, const Matrix& matrix) {
   std::array<GLfloat, 16> values{};
   for (std::size_t i = 0; i < 16; ++i) values[i] = GLfloat(matrix[i]);
   gl.UniformMatrix4fv(gl.GetUniformLocation(program, name), 1, GL_FALSE, values.data());
+}
+
+/// The dataset is the box in its own unit; the world lies elsewhere.
+void set_cuts(const DispatchTable& gl, const MarchStyle& style, GLuint program) {
+  Matrix to_dataset{};
+  Matrix to_texture{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    to_dataset[5 * k] = double(style.extent[k]);
+    to_texture[5 * k] = 1 / double(style.extent[k]);
+  }
+  to_dataset[15] = to_texture[15] = 1;
+  set_matrix(gl, program, "in_textureDatasetMatrix[0]", to_dataset);
+  set_matrix(gl, program, "in_inverseTextureDatasetMatrix[0]", to_texture);
+  set_matrix(gl, program, "in_volumeMatrix[0]", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
+  const auto at = [&](const char* name) { return gl.GetUniformLocation(program, name); };
+  gl.Uniform1fv(at("in_croppingPlanes[0]"), 6, style.cropping_planes.data());
+  std::array<GLint, 32> flags{};
+  for (std::size_t region = 0; region < 27; ++region)
+    flags[region + 1] = GLint(style.kept_regions >> region & 1U);
+  gl.Uniform1iv(at("in_croppingFlags[0]"), GLsizei(flags.size()), flags.data());
+  std::vector<GLfloat> planes{GLfloat(6 * style.clipping_planes.size())};
+  for (const auto& plane : style.clipping_planes) planes.insert(planes.end(), plane.begin(), plane.end());
+  gl.Uniform1fv(at("in_clippingPlanes[0]"), GLsizei(planes.size()), planes.data());
+  gl.Uniform1f(at("past_planes"), style.past_planes);
 }
 
 }  // namespace
@@ -226,7 +343,8 @@ void BoxRayCaster::set_up(GlApplication& app) {
   set_table(app, style.composition == MarchStyle::Composition::maximum ||
                          style.composition == MarchStyle::Composition::minimum
                      ? 0.9F
-                     : 0.2F);
+                 : style.composition == MarchStyle::Composition::grey_sum ? 0.05F
+                                                                          : 0.2F);
   depth_ = texture(GL_TEXTURE2, GL_TEXTURE_2D, GL_NEAREST);
   const std::vector<GLfloat> far(std::size_t(GlApplication::size) * GlApplication::size, 1.0F);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, GlApplication::size, GlApplication::size, 0,
@@ -249,11 +367,10 @@ void BoxRayCaster::set_up(GlApplication& app) {
   program_ = program_of(gl, vertex_source, fragment_source);
   wall_program_ = program_of(gl, wall_vertices, wall_fragments);
   const std::vector<GLfloat> triangles = box_triangles();
-  GLuint buffer = 0;
   gl.GenVertexArrays(1, &box_);
   gl.BindVertexArray(box_);
-  gl.GenBuffers(1, &buffer);
-  gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+  gl.GenBuffers(1, &corners_);
+  gl.BindBuffer(GL_ARRAY_BUFFER, corners_);
   gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
                 GL_STATIC_DRAW);
   gl.EnableVertexAttribArray(0);
@@ -303,7 +420,16 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
-  gl().DrawArrays(GL_TRIANGLES, 0, 36);
+  set_cuts(gl(), style, program_);
+  GLsizei corners = 36;
+  if (style.closed_before_eye) {
+    const std::vector<GLfloat> triangles = triangles_behind(camera, 1.1 * style.near);
+    gl().BindBuffer(GL_ARRAY_BUFFER, corners_);
+    gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
+                    GL_STREAM_DRAW);
+    corners = GLsizei(triangles.size() / 3);
+  }
+  gl().DrawArrays(GL_TRIANGLES, 0, corners);
   gl().Disable(GL_BLEND);
   gl().Disable(GL_CULL_FACE);
 }

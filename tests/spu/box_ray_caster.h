@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "gl_application.h"
 
@@ -10,7 +11,7 @@ namespace understudy::spu::testing {
 
 /// How it marches.
 struct MarchStyle {
-  enum class Composition { over, maximum, sum, minimum };
+  enum class Composition { over, maximum, sum, minimum, grey_sum };
 
   Composition composition = Composition::over;
   bool premultiplied = true;  ///< what the shader writes, and the blend function
@@ -23,6 +24,16 @@ struct MarchStyle {
   std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
   float step = 0.02F;
   double distance = 3;  ///< of the eye from the middle of the box
+  double near = 0.5;    ///< the near plane
+  /// The box is cut off before the near plane, and closed there, before it is drawn.
+  bool closed_before_eye = false;
+  /// Planes of a grid of 27 regions, in the dataset's coordinates, and the regions that are kept, x fastest.
+  std::array<float, 6> cropping_planes{};
+  std::uint32_t kept_regions = all_regions;
+  static constexpr std::uint32_t all_regions = (1U << 27U) - 1;
+  /// A point and a normal each, in the world's coordinates: rays begin and end there.
+  std::vector<std::array<float, 6>> clipping_planes;
+  float past_planes = 0;  ///< so many steps behind one there still are samples
 };
 
 class BoxRayCaster {
@@ -37,11 +48,13 @@ class BoxRayCaster {
   void set_noise(GlApplication& app, unsigned seed) const;
 
   MarchStyle style;
+  GLuint program() const { return program_; }
 
  private:
   GLuint program_ = 0;
   GLuint wall_program_ = 0;
   GLuint box_ = 0;
+  GLuint corners_ = 0;
   GLuint depth_ = 0;
 };
 

@@ -91,8 +91,29 @@ bool wholly_in_view(const volume::Matrix4& texture_to_clip, const volume::Box& b
   return true;
 }
 
-RaysThroughBox::RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box)
-    : clip_to_texture_(volume::inverse(texture_to_clip).value_or(volume::identity())), box_(box) {
+bool wholly_in_view(const ObservedPolygons& polygons) {
+  return std::all_of(polygons.vertices.begin(), polygons.vertices.end(),
+                     [](const ObservedVertex& v) { return v.clip[3] > 0 && v.clip[2] > -v.clip[3]; });
+}
+
+RaysThroughBox::RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box,
+                               const std::vector<volume::HalfSpace>& cuts)
+    : clip_to_texture_(volume::inverse(texture_to_clip).value_or(volume::identity())), box_(box), cuts_(cuts) {
+  if (!cuts_.empty()) {
+    // Its middle may lie outside of the view, or behind the eye.
+    constexpr int places = 8;  // to each side
+    double longest = 0;
+    for (int y = -places; y <= places; ++y) {
+      for (int x = -places; x <= places; ++x) {
+        const std::array<double, 2> place{0.9 * x / places, 0.9 * y / places};
+        const auto through = way(place[0], place[1]);
+        if (!through || volume::length(*through) <= longest) continue;
+        longest = volume::length(*through);
+        middle_ = place;
+      }
+    }
+    return;
+  }
   const Vec3 centre = scale(add(box.low, box.high), 0.5);
   const Vec4 clip = volume::transform_point(texture_to_clip, centre);
   middle_ = {clip[0] / clip[3], clip[1] / clip[3]};
@@ -116,6 +137,13 @@ std::optional<Vec3> RaysThroughBox::way(double x, double y) const {
     }
     enter = std::max(enter, std::min(low / along[k], high / along[k]));
     leave = std::min(leave, std::max(low / along[k], high / along[k]));
+  }
+  for (const volume::HalfSpace& cut : cuts_) {
+    const double value = volume::dot(cut.normal, ends[0]) + cut.offset;
+    const double slope = volume::dot(cut.normal, along);
+    if (slope > 0) enter = std::max(enter, -value / slope);
+    if (slope < 0) leave = std::min(leave, -value / slope);
+    if (slope == 0 && value < 0) return std::nullopt;
   }
   if (!(enter < leave)) return std::nullopt;
   return scale(along, leave - enter);

@@ -16,22 +16,27 @@ std::optional<volume::Box> box_of(const ObservedPolygons& polygons, const volume
 /// True when all of the box lies before the eye and behind the near plane: then every ray enters at a face.
 bool wholly_in_view(const volume::Matrix4& texture_to_clip, const volume::Box& box);
 
-/// The rays of a camera through a box.
+/// The same of the vertices that were drawn.
+bool wholly_in_view(const ObservedPolygons& polygons);
+
+/// The rays of a camera through a box, which cuts may have made smaller.
 class RaysThroughBox {
  public:
   /// `texture_to_clip` must be regular.
-  RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box);
+  RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box,
+                 const std::vector<volume::HalfSpace>& cuts = {});
 
   /// From entry to exit, in texture space, on the ray at normalised device coordinates (x, y); null where it
   /// misses the box.
   std::optional<volume::Vec3> way(double x, double y) const;
 
-  /// Where the middle of the box is seen.
+  /// Where the middle of the box is seen; of a box with cuts, where most of it lies behind another.
   std::array<double, 2> middle() const { return middle_; }
 
  private:
   volume::Matrix4 clip_to_texture_;
   volume::Box box_;
+  std::vector<volume::HalfSpace> cuts_;
   std::array<double, 2> middle_{};
 };
 

@@ -41,7 +41,8 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
       with_swizzle_(context.version >= 330),
       viewport_(rectangle(gl_, GL_VIEWPORT)),
       scissor_(rectangle(gl_, GL_SCISSOR_BOX)),
-      saved_(context) {
+      saved_(context),
+      lifted_(context, run.pipeline().program) {
   std::array<GLint, 2> largest{};
   gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data());
   fine_ = std::min({finest_viewport, int(largest[0]), int(largest[1])});

@@ -1,11 +1,12 @@
 // The application's own draw over fields that are known: its volume is replaced by one value, its depth texture
-// by the far plane, its framebuffer by a float one. Everything is put back.
+// by the far plane, its framebuffer by a float one, its cuts are lifted. Everything is put back.
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
+#include "spu/volume/proxy/cuts.h"
 #include "spu/volume/run.h"
 #include "spu/volume/saved_state.h"
 #include "spu/volume/texels.h"
@@ -62,6 +63,7 @@ class FieldProbe {
   std::array<GLint, 4> scissor_{};
   int fine_ = 0;  ///< edge of the viewport that rays are picked from
   SavedState saved_;
+  LiftedCuts lifted_;
   std::vector<GLuint> textures_;
   std::vector<int> tiled_units_;  ///< whose 2-D texture is borrowed for tiles
   GLuint colour_ = 0;

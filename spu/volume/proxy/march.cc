@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "spu/volume/proxy/cut_box.h"
+#include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/matrix.h"
@@ -40,8 +42,13 @@ Rgba premultiplied(Rgba fragment, bool already) {
   return fragment;
 }
 
+float brightest_channel(const Rgba& colour) {
+  return std::max({colour[0], colour[1], colour[2]});
+}
+
 /// One of `n` equal samples that make up `ray`, both premultiplied.
-Rgba sample_of(const Rgba& ray, double n) {
+Rgba sample_of(const March& march, const Rgba& ray, double n) {
+  if (march.sum) return {float(ray[0] / n), float(ray[1] / n), float(ray[2] / n), 1};
   if (n == 1) return ray;
   Rgba sample{};
   sample[3] = float(-std::expm1(std::log1p(-std::min(double(ray[3]), 1.0)) / n));
@@ -50,7 +57,12 @@ Rgba sample_of(const Rgba& ray, double n) {
   return sample;
 }
 
-Rgba ray_of(const Rgba& sample, double n) {
+Rgba ray_of(const March& march, const Rgba& sample, double n) {
+  if (march.sum) {
+    Rgba ray{0, 0, 0, march.sum->alpha};
+    for (std::size_t c = 0; c < 3; ++c) ray[c] = std::min(float(sample[c] * n), march.sum->ceiling);
+    return ray;
+  }
   Rgba ray{};
   ray[3] = float(-std::expm1(n * std::log1p(-std::min(double(sample[3]), 1.0))));
   const float times = sample[3] > 0 ? ray[3] / sample[3] : float(n);
@@ -74,6 +86,33 @@ float largest_difference(const Rgba& a, const Rgba& b) {
   float largest = 0;
   for (std::size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(a[c] - b[c]));
   return largest;
+}
+
+/// How much of a ray's samples is seen: between nothing and 1, but for sums that shine brighter.
+float amount(const March& march, const Rgba& ray) {
+  return march.sum ? brightest_channel(ray) / std::min(1.0F, march.sum->ceiling) : ray[3];
+}
+
+/// Samples that are added up under one opacity, as `through` and `briefly`, a long ray and a short one over the
+/// same fields, show them.
+std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
+  constexpr float same = 1e-3F;
+  const float alpha = through.front()[3];
+  if (!(alpha > 0)) return std::nullopt;
+  for (const auto* rays : {&through, &briefly}) {
+    for (const Rgba& ray : *rays) {
+      if (!(std::abs(ray[3] - alpha) <= same)) return std::nullopt;
+    }
+  }
+  PlainSum sum{alpha, false};
+  float largest = 0;
+  for (const Rgba& ray : through) largest = std::max(largest, brightest_channel(ray));
+  // A sum that several values reach is where the program stops counting.
+  const auto reached_by = std::count_if(through.begin(), through.end(), [&](const Rgba& ray) {
+    return largest - brightest_channel(ray) <= 1e-6F * largest;
+  });
+  if (reached_by > 1) sum.ceiling = largest;
+  return sum;
 }
 
 struct Ray {
@@ -112,14 +151,15 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
 
 /// Counts of samples on rays all over the box.
 std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
-                                                                const RaysThroughBox& rays, float value) {
+                                                                const RaysThroughBox& rays,
+                                                                const March& march) {
   const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<CountedRay> counted;
-  std::vector<double> opacities;
+  std::vector<double> amounts;
   std::vector<Rgba> colours;
   for (int band = 0; band < bands; ++band) {
     const int y = std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2));
-    const auto fragments = probe.rows(y, 2, value);
+    const auto fragments = probe.rows(y, 2, march.translucent);
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!reached(fragments[i])) continue;
       const int column = int(i) % probe.width();
@@ -128,18 +168,19 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
       if (!way) continue;
       counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});
       colours.push_back(premultiplied(fragments[i], already));
-      opacities.push_back(colours.back()[3]);
+      amounts.push_back(double(amount(march, colours.back())));
     }
   }
   if (counted.size() < 64) return "too little of the box is in view to measure its rays";
-  const auto most = std::max_element(opacities.begin(), opacities.end());
-  const std::vector<double> counts = counts_from_opacities(opacities);
+  const auto most = std::max_element(amounts.begin(), amounts.end());
+  const std::vector<double> counts = march.sum ? counts_from_amounts(amounts) : counts_from_opacities(amounts);
+  if (counts.empty() && march.sum) return "the colours of a ray's samples do not add up";
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
   // Colour over opacity stays what it is for one sample.
-  const std::size_t longest = std::size_t(most - opacities.begin());
+  const std::size_t longest = std::size_t(most - amounts.begin());
   for (std::size_t i = 0; i < counted.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const double expected = double(colours[longest][c]) / *most * opacities[i];
+      const double expected = double(colours[longest][c]) / *most * amounts[i];
       if (std::abs(colours[i][c] - expected) > 0.01)
         return "the colours of a ray's samples are not composed by over";
     }
@@ -202,6 +243,7 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
                                          const RaysThroughBox& rays, const volume::RaySteps& rule,
                                          March& march) {
   constexpr float opaque = 0.6F;
+  constexpr float saturated = 0.97F;
   constexpr double most_samples_of_shortest = 8;
   const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<float> values;
@@ -215,20 +257,24 @@ std::optional<std::string> measure_table(const MarchContext& measured, FieldProb
     const double wanted = march.extreme ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
     const Ray ray = ray_of_length(rays, rule, wanted);
     const double n = march.extreme ? 1 : samples_of_length(rule, ray.length);
-    if (entries.empty() && (n < 1 || n > most_samples_of_shortest))
-      return "no short ray is in view: the opacity of one sample cannot be told";
+    if (entries.empty() && n < 1) return "no short ray is in view: the opacity of one sample cannot be told";
+    const bool long_at_best = entries.empty() && n > most_samples_of_shortest;
     if (!entries.empty() && std::abs(n - samples) > samples / 2) continue;
     const auto fragments = probe.at(ray.x, ray.y, values);
     if (!finite(fragments)) return "the fragment stage gives colours that are not finite";
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       const Rgba colour = premultiplied(fragments[i], already);
+      const float seen = amount(march, colour);
+      // Whatever more a sample had, a ray of many would look alike.
+      if (long_at_best && seen > saturated)
+        return "no short ray is in view: the opacity of one sample cannot be told";
       if (entries.size() <= i) {
-        entries.push_back(sample_of(colour, n));
-        shortest.push_back(colour[3]);
-      } else if (colour[3] < opaque) {
+        entries.push_back(march.extreme ? colour : sample_of(march, colour, n));
+        shortest.push_back(seen);
+      } else if (seen < opaque) {
         // An opacity that does not grow with the way is that floor.
-        const bool grows = colour[3] > shortest[i] + 1e-5F;
-        entries[i] = grows ? sample_of(colour, n) : Rgba{};
+        const bool grows = seen > shortest[i] + 1e-5F;
+        entries[i] = grows ? sample_of(march, colour, n) : Rgba{0, 0, 0, march.sum ? 1.0F : 0.0F};
       }
     }
     if (march.extreme) break;
@@ -273,6 +319,16 @@ std::size_t components(GLenum type) {
   }
 }
 
+/// What the polygons of a draw enclose.
+std::optional<CutBox> body_of(const Capture& capture) {
+  if (const auto box = box_of(capture.polygons, capture.fit->texture_to_clip)) return CutBox{*box, {}};
+  return cut_box_of(capture.polygons);
+}
+
+bool is_cut(const CutBox& body) {
+  return volume::length(body.cut.normal) > 0;
+}
+
 }  // namespace
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) {
@@ -287,6 +343,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
+    if (tells_cuts(uniform.name)) continue;  // measured without
     const GLint location = gl.GetUniformLocation(pipeline.program, uniform.name.c_str());
     if (location < 0) continue;
     std::array<GLfloat, 16> value{};
@@ -308,11 +365,11 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
 bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen) {
   constexpr std::size_t most_triangles = 4096;  // of a box
   if (seen.polygons.count() > most_triangles) return false;
-  if (seen.fit && box_of(seen.polygons, seen.fit->texture_to_clip)) return true;
+  if (seen.fit && body_of(seen)) return true;
   return std::any_of(stages.inputs.begin(), stages.inputs.end(), [&](const StageInput& input) {
     if (input.integer || input.components < 3 || input.name == seen.coordinate) return false;
     const Capture capture = capture_vertices(context, run, stages, input.name);
-    return capture.fit && box_of(capture.polygons, capture.fit->texture_to_clip);
+    return capture.fit && body_of(capture);
   });
 }
 
@@ -323,16 +380,17 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
     if (input.integer || input.components < 3) continue;
     const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, input.name);
     if (!capture.fit) continue;
-    const auto box = box_of(capture.polygons, capture.fit->texture_to_clip);
-    if (!box) continue;
+    const auto body = body_of(capture);
+    if (!body) continue;
+    const volume::Box& box = body->box;
     bool unit = true;
     bool texels = true;
     CoordinateSpace in_texels{input.name};
     for (std::size_t k = 0; k < 3; ++k) {
       const double n = size[k];
       const double slack = 1.01 / n;
-      unit = unit && box->low[k] >= -slack && box->high[k] <= 1 + slack;
-      texels = texels && box->low[k] >= -1.01 && box->high[k] <= n + 1.01;
+      unit = unit && box.low[k] >= -slack && box.high[k] <= 1 + slack;
+      texels = texels && box.low[k] >= -1.01 && box.high[k] <= n + 1.01;
       in_texels.scale[k] = 1 / n;
     }
     if (unit) return {{input.name}};
@@ -347,16 +405,21 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space) {
   const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, space.input);
   if (!capture.fit || capture.fit->residual > max_fit_residual) return std::nullopt;
-  auto box = box_of(capture.polygons, capture.fit->texture_to_clip);
-  if (!box || !wholly_in_view(capture.fit->texture_to_clip, *box)) return std::nullopt;
-  ProxyBox proxy{*box, *capture.fit};
+  const auto body = body_of(capture);
+  if (!body || !wholly_in_view(capture.polygons)) return std::nullopt;
+  if (!is_cut(*body) && !wholly_in_view(capture.fit->texture_to_clip, body->box)) return std::nullopt;
+  ProxyBox proxy{body->box, *capture.fit, {}};
+  volume::HalfSpace cut{{}, body->cut.offset};
   volume::Matrix4 to_input = volume::identity();
   for (std::size_t k = 0; k < 3; ++k) {
-    proxy.region.low[k] = space.scale[k] * box->low[k] + space.offset[k];
-    proxy.region.high[k] = space.scale[k] * box->high[k] + space.offset[k];
+    proxy.region.low[k] = space.scale[k] * body->box.low[k] + space.offset[k];
+    proxy.region.high[k] = space.scale[k] * body->box.high[k] + space.offset[k];
+    cut.normal[k] = body->cut.normal[k] / space.scale[k];
+    cut.offset -= cut.normal[k] * space.offset[k];
     to_input[5 * k] = 1 / space.scale[k];
     to_input[4 * k + 3] = -space.offset[k] / space.scale[k];
   }
+  if (is_cut(*body)) proxy.cuts.push_back(cut);
   proxy.camera.texture_to_clip = volume::multiply(capture.fit->texture_to_clip, to_input);
   return proxy;
 }
@@ -367,7 +430,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   FieldProbe probe(measured.context, measured.run, measured.texture);
   if (!probe.complete()) return "the driver offers no float framebuffer to probe with";
   const auto& size = measured.texture.size;
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   volume::RaySteps texels;
   for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = size[k];
 
@@ -381,11 +444,14 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   const auto briefly = probe.at(brief.x, brief.y, values);
   if (!finite(through) || !finite(briefly)) return "the fragment stage gives colours that are not finite";
   March march;
+  march.clipped = measured.clipped;
+  march.from_inside = !box.cuts.empty();
   // Whatever the way through it, one value has one colour: samples are not composed.
   march.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!(largest_difference(through[i], briefly[i]) <= 2e-3F)) march.extreme.reset();
   }
+  if (!march.extreme) march.sum = plain_sum(through, briefly);
   const auto reference_way = rays.way(middle[0], middle[1]);
   if (march.extreme && (!reference_way || steps_of_way(texels, *reference_way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
@@ -394,8 +460,9 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   march.translucent = values[tried / 2];
   float nearest = 0.48F;
   for (std::size_t i = 0; i < through.size() && !march.extreme; ++i) {
-    if (!reached(through[i]) || std::abs(through[i][3] - 0.5F) > nearest) continue;
-    nearest = std::abs(through[i][3] - 0.5F);
+    const float far_from_half = std::abs(amount(march, through[i]) - 0.5F);
+    if (!reached(through[i]) || far_from_half > nearest) continue;
+    nearest = far_from_half;
     march.translucent = values[i];
   }
   if (nearest == 0.48F && !march.extreme)
@@ -408,6 +475,14 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   const Rgba sloping = probe.at_slope(middle[0], middle[1], one, slight).front();
   if (!(largest_difference(flat, sloping) <= 0.02F)) return "the colour depends on the gradient (lighting)";
 
+  if (march.sum) {
+    constexpr double none = 0.02;  // of a texel
+    const auto dark = std::find_if(through.begin(), through.end(),
+                                   [](const Rgba& ray) { return brightest_channel(ray) == 0; });
+    if (dark != through.end())
+      march.sum->everywhere =
+          shortest_seen(probe, rays, texels, values[std::size_t(dark - through.begin())], *dark) < none;
+  }
   std::vector<volume::RaySteps> rules;
   if (march.extreme) {
     const auto brightest = std::max_element(through.begin(), through.end(),
@@ -418,7 +493,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
             : 0;
     rules = rules_for_extremes(size, shortest);
   } else {
-    const auto count = [&] { return counted_rays(measured, probe, rays, march.translucent); };
+    const auto count = [&] { return counted_rays(measured, probe, rays, march); };
     const auto counted = count();
     if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
     const auto& all = std::get<std::vector<CountedRay>>(counted);
@@ -433,7 +508,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
     for (const StepFit& fit : fits) {
       std::vector<volume::RaySteps> of_fit = rules_of(fit);
       // A way in equal parts has as many wherever the first one begins.
-      if (march.jitter) of_fit.resize(1);
+      if (march.jitter || measured.clipped || !box.cuts.empty()) of_fit.resize(1);
       rules.insert(rules.end(), of_fit.begin(), of_fit.end());
     }
   }
@@ -455,11 +530,16 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
       march.steps = rule;
       // The step that reaches the opaque geometry is usually taken before it is noticed.
       march.steps.past_depth = ends_at_depth ? 1 : 0;
-      marches.push_back(march);
-      // Fields of one value do not tell which extreme it is.
-      if (!march.extreme) continue;
-      marches.push_back(march);
-      marches.back().extreme = volume::Operator::min;
+      // Planes end rays as opaque geometry does; where no ray leaves by one, both pictures are alike.
+      for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
+        if (!measured.clipped && past_planes != march.steps.past_depth) continue;
+        march.past_planes = past_planes;
+        marches.push_back(march);
+        // Fields of one value do not tell which extreme it is.
+        if (!march.extreme) continue;
+        marches.push_back(march);
+        marches.back().extreme = volume::Operator::min;
+      }
     }
   }
   return marches;
@@ -469,7 +549,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   March changed = march;
   changed.table.low = measured.range[0];
   changed.table.high = measured.range[1];
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   {
     FieldProbe probe(measured.context, measured.run, measured.texture);
     if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
@@ -485,7 +565,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   float nearest = 0.48F;
   const auto& table = changed.table;
   for (std::size_t i = 0; i < table.entries.size() && !march.extreme; ++i) {
-    const float through = ray_of(table.entries[i], steps_of_way(march.steps, *way))[3];
+    const float through = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, *way)));
     if (std::abs(through - 0.5F) >= nearest) continue;
     nearest = std::abs(through - 0.5F);
     changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
@@ -494,12 +574,32 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   return changed;
 }
 
+std::variant<March, std::string> with_new_steps(const MarchContext& measured, const March& march,
+                                                const ProxyBox& box) {
+  March changed = march;
+  changed.from_inside = true;
+  if (march.extreme) return changed;  // taken at one step or another, it is the same
+  FieldProbe probe(measured.context, measured.run, measured.texture);
+  if (!probe.complete() || !held_still(measured, probe, march))
+    return "the driver offers no float framebuffer to probe with";
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  const auto counted = counted_rays(measured, probe, rays, march);
+  if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
+  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), measured.texture.size)) {
+    const volume::RaySteps rule = rules_of(fit).front();
+    if (fit.unexplained > most_unexplained || rule.first != march.steps.first) continue;
+    changed.steps.metric = rule.metric;
+    return changed;
+  }
+  return "the steps of rays are others where the eye is inside";
+}
+
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr float same_colour = 5e-3F;
   FieldProbe probe(measured.context, measured.run, measured.texture);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const double wanted = march.extreme ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);
   const Ray shortest = ray_of_length(rays, march.steps, wanted);
   constexpr int looked_at = 16;
@@ -513,7 +613,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
     if (march.extreme) return largest_difference(got, sample) <= same_colour;
     // A ray whose end falls on a sample may have one more or less.
     for (const double count : {n, n - 1, n + 1}) {
-      if (count >= 1 && largest_difference(got, ray_of(sample, count)) <= same_colour) return true;
+      if (count >= 1 && largest_difference(got, ray_of(march, sample, count)) <= same_colour) return true;
     }
     return false;
   };
@@ -533,8 +633,14 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
                   samples_of_length(march.steps, steps_of_way(march.steps, *way)));
 }
 
-volume::Classification asked_of_nodes(const March& march) {
-  if (!march.extreme) return march.table;
+void ask_nodes(const March& march, volume::RenderRequest& request) {
+  request.steps = march.steps;
+  if (!march.extreme) {
+    request.op = march.sum ? volume::Operator::add : volume::Operator::over;
+    request.classification = march.table;
+    return;
+  }
+  request.op = *march.extreme;
   // The value travels in the first channel. Where the lowest one is invisible, blocks of nothing else add
   // nothing to a maximum; to a minimum they do.
   const Rgba& lowest = march.table.entries.front();
@@ -544,17 +650,26 @@ volume::Classification asked_of_nodes(const March& march) {
   ramp.low = march.table.low;
   ramp.high = march.table.high;
   ramp.entries = {{0, 0, 0, all_visible ? 1.0F : 0.0F}, {1, 0, 0, 1}};
-  return ramp;
+  request.classification = ramp;
 }
 
-void classify_extremes(const March& march, volume::Image& picture) {
+bool needs_finish(const March& march) {
+  return march.extreme || march.sum;
+}
+
+void finish_picture(const March& march, volume::Image& picture) {
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     Rgba colour{};
     // Pixels without samples hold what changes no extreme.
     const float sampled = picture.rgba[i + 3];
-    if (sampled > 0 && sampled <= 1)
+    if (march.sum) {
+      // Alpha counts samples.
+      if (sampled > 0)
+        colour = ray_of(march, {picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2], 1}, 1);
+    } else if (sampled > 0 && sampled <= 1) {
       colour = table_at(table, table.low + picture.rgba[i] * (table.high - table.low));
+    }
     std::copy(colour.begin(), colour.end(), picture.rgba.begin() + std::ptrdiff_t(i));
   }
 }

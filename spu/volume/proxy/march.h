@@ -5,6 +5,7 @@
 // volume unit takes the one whose picture is the application's.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -33,6 +34,14 @@ struct CoordinateSpace {
 struct ProxyBox {
   volume::Box region;
   CameraFit camera;
+  std::vector<volume::HalfSpace> cuts;  ///< where the application has cut it off before the near plane
+};
+
+/// Samples that are added up, where opacity says no more than that there are any.
+struct PlainSum {
+  float alpha = 1;          ///< of every ray
+  bool everywhere = false;  ///< rays so short that they have no sample show it too
+  float ceiling = std::numeric_limits<float>::infinity();  ///< the largest sum that is shown
 };
 
 struct March {
@@ -41,9 +50,13 @@ struct March {
   /// Operator::max or Operator::min: samples are not composed, the largest (least) value of the ray is
   /// classified by `table`.
   std::optional<volume::Operator> extreme;
+  std::optional<PlainSum> sum;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
   float translucent = 0;           ///< a value whose field lets a long ray through
+  bool clipped = false;            ///< whether there were clipping planes
+  bool from_inside = false;        ///< whether the steps were measured with the eye inside
+  double past_planes = 0;          ///< samples up to so many steps behind one by which a ray leaves still count
 };
 
 /// What a march was measured under. While `fixed` stays, and a look at a few rays says so, it holds: the camera
@@ -61,6 +74,7 @@ struct MarchContext {
   const ProgramStages& stages;
   const TextureDescription& texture;
   std::array<float, 2> range;  ///< of the texels' values
+  bool clipped = false;        ///< rays begin or end at clipping planes
 };
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);
@@ -73,8 +87,8 @@ bool draws_box(const GlContext& context, const Run& run, const ProgramStages& st
 /// that fits the texture's.
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
 
-/// The box of the draw in the texture space of `space`; null when it is no whole box (the near plane has cut
-/// it).
+/// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has
+/// cut it).
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space);
 
 /// Either marches that may be the application's, or why there are none, in words that end in the report.
@@ -85,12 +99,19 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 /// The march with the transfer function that the program has now; null when more than that has changed.
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
+/// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
+std::variant<March, std::string> with_new_steps(const MarchContext& measured, const March& march,
+                                                const ProxyBox& box);
+
 /// Whether a few rays still are as `march` says.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);
 
-/// What the nodes are asked to show for a march, and what their picture becomes: colours as they are, or, of
-/// extreme values, the colours that these have.
-volume::Classification asked_of_nodes(const March& march);
-void classify_extremes(const March& march, volume::Image& picture);
+/// What the nodes are asked to show for a march.
+void ask_nodes(const March& march, volume::RenderRequest& request);
+
+/// What their picture then becomes: of extreme values the colours that these have, of sums what is shown of
+/// them. Samples that are composed by over already are the picture.
+bool needs_finish(const March& march);
+void finish_picture(const March& march, volume::Image& picture);
 
 }  // namespace understudy::spu

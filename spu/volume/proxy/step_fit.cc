@@ -201,12 +201,16 @@ std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::arra
 }
 
 std::vector<double> counts_from_opacities(std::span<const double> opacities) {
-  constexpr double whole = 0.1;  // how far a count may be from a whole number
-  std::vector<double> depths;    // optical
+  std::vector<double> depths;  // optical
   for (const double a : opacities) {
     if (!(a >= 0 && a < 1)) return {};
     depths.push_back(-std::log1p(-a));
   }
+  return counts_from_amounts(depths);
+}
+
+std::vector<double> counts_from_amounts(const std::vector<double>& depths) {
+  constexpr double whole = 0.1;  // how far a count may be from a whole number
   std::vector<double> sorted = depths;
   std::sort(sorted.begin(), sorted.end());
   if (sorted.empty() || !(sorted.back() > 0)) return {};

@@ -39,6 +39,9 @@ std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::arra
 /// opacities are not of that kind.
 std::vector<double> counts_from_opacities(std::span<const double> opacities);
 
+/// The same of amounts that grow by one sample's with every sample.
+std::vector<double> counts_from_amounts(const std::vector<double>& amounts);
+
 /// Rules that count as `fit` does: constant steps, and ways divided evenly, from their beginning or from the
 /// middle of the first part.
 std::vector<volume::RaySteps> rules_of(const StepFit& fit);

@@ -1,0 +1,148 @@
+#include "spu/volume/proxy/ray_ends.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "spu/volume/proxy/step_fit.h"
+#include "volume/footprint.h"
+#include "volume/matrix.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::Vec3;
+using volume::Vec4;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A stretch of a ray, in units of the way from its point on the near plane to that on the far one.
+struct Stretch {
+  double enter = -infinity;
+  double leave = infinity;
+
+  /// Keeps where value + t * slope >= 0.
+  void keep(double value, double slope) {
+    if (slope > 0) enter = std::max(enter, -value / slope);
+    if (slope < 0) leave = std::min(leave, -value / slope);
+    if (slope == 0 && value < 0) leave = -infinity;
+  }
+};
+
+Vec3 point(const Vec4& homogeneous) {
+  return {homogeneous[0] / homogeneous[3], homogeneous[1] / homogeneous[3], homogeneous[2] / homogeneous[3]};
+}
+
+/// The ray of one pixel: its stretch in the box, and what planes leave of that.
+struct PixelRay {
+  PixelRay(const volume::RenderRequest& request, const volume::Matrix4& clip_to_texture,
+           const std::vector<volume::HalfSpace>& planes, int x, int y)
+      : depth_range(request.depth_range) {
+    const double ndc_x = 2 * (x + 0.5 - request.viewport.x) / request.viewport.width - 1;
+    const double ndc_y = 2 * (y + 0.5 - request.viewport.y) / request.viewport.height - 1;
+    const Vec4 near = volume::transform(clip_to_texture, {ndc_x, ndc_y, -1, 1});
+    const Vec4 far = volume::transform(clip_to_texture, {ndc_x, ndc_y, 1, 1});
+    w_near = near[3];
+    w_far = far[3];
+    const Vec3 start = point(near);
+    along = volume::subtract(point(far), start);
+    for (std::size_t k = 0; k < 3; ++k) {
+      in_box.keep(start[k] - request.region.low[k], along[k]);
+      in_box.keep(request.region.high[k] - start[k], -along[k]);
+    }
+    kept = in_box;
+    for (const volume::HalfSpace& plane : planes)
+      kept.keep(volume::dot(plane.normal, start) + plane.offset, volume::dot(plane.normal, along));
+  }
+
+  /// Depth is linear in homogeneous coordinates, not in t.
+  double depth_at(double t) const {
+    const double s = t > 0 ? t * w_near / (t * w_near + (1 - t) * w_far) : 0;
+    return depth_range[0] + s * (depth_range[1] - depth_range[0]);
+  }
+
+  /// Before opaque geometry at `depth`.
+  bool enters_before(float depth) const {
+    return kept.enter < kept.leave && depth_at(kept.enter) <= double(depth);
+  }
+
+  std::array<double, 2> depth_range;
+  double w_near = 1;
+  double w_far = 1;
+  Vec3 along{};
+  Stretch in_box;
+  Stretch kept;
+};
+
+/// Window depths of the application's opaque geometry, or farther than any.
+volume::DepthImage depths_over(const volume::Rect& rect, const volume::RenderRequest& request) {
+  constexpr float beyond_every_depth = 2;
+  volume::DepthImage image;
+  image.rect = rect;
+  image.depth.assign(rect.pixels(), beyond_every_depth);
+  if (!request.depth) return image;
+  const volume::DepthImage& known = *request.depth;
+  image.or_equal = known.or_equal;
+  const volume::Rect both = volume::intersection(rect, known.rect);
+  for (int y = both.y; y < both.y + both.height; ++y) {
+    const auto from =
+        known.depth.begin() + (std::ptrdiff_t(y - known.rect.y) * known.rect.width + (both.x - known.rect.x));
+    std::copy_n(from, both.width,
+                image.depth.begin() + (std::ptrdiff_t(y - rect.y) * rect.width + (both.x - rect.x)));
+  }
+  return image;
+}
+
+}  // namespace
+
+void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_planes,
+                 volume::RenderRequest& request) {
+  constexpr auto no_sample = float(volume::max_planes);  // begins behind the end of every ray
+  const auto back = volume::inverse(request.texture_to_clip);
+  const volume::Rect rect = volume::footprint(request, request.region);
+  if (planes.empty() || !back || rect.empty() || !request.steps) return;
+  volume::RaySteps& steps = *request.steps;
+  volume::DepthImage depth = depths_over(rect, request);
+  volume::RayOffsets offsets{rect.width, rect.height, std::vector<float>(rect.pixels(), no_sample)};
+  std::size_t pixel = 0;
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    for (int x = rect.x; x < rect.x + rect.width; ++x, ++pixel) {
+      const PixelRay ray(request, *back, planes, x, y);
+      if (!ray.enters_before(depth.depth[pixel])) continue;
+      const double steps_along = steps_of_way(steps, ray.along);
+      const double noise = steps.offsets ? steps.offsets->at(x, y) : 0;
+      const auto tile_x = std::size_t((x % rect.width + rect.width) % rect.width);
+      const auto tile_y = std::size_t((y % rect.height + rect.height) % rect.height);
+      offsets.steps[tile_y * std::size_t(rect.width) + tile_x] =
+          float((ray.kept.enter - ray.in_box.enter) * steps_along + noise);
+      if (ray.kept.leave >= ray.in_box.leave) continue;
+      // Who looks for the end after a sample has been taken takes the first one anyway.
+      const double way = (ray.kept.leave - ray.kept.enter) * steps_along;
+      const double shown = past_planes > 0 ? std::max(way, steps.first) + past_planes : way;
+      const double end = ray.kept.enter + (shown - steps.past_depth) / steps_along;
+      depth.depth[pixel] = std::min(depth.depth[pixel], float(ray.depth_at(end)));
+    }
+  }
+  steps.offsets = std::move(offsets);
+  request.depth = std::move(depth);
+}
+
+void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
+                   float alpha, volume::Image& picture) {
+  const auto back = volume::inverse(request.texture_to_clip);
+  if (!back) return;
+  const volume::DepthImage depth = depths_over(picture.rect, request);
+  std::size_t pixel = 0;
+  for (int y = picture.rect.y; y < picture.rect.y + picture.rect.height; ++y) {
+    for (int x = picture.rect.x; x < picture.rect.x + picture.rect.width; ++x, ++pixel) {
+      float& covered = picture.rgba[4 * pixel + 3];
+      if (covered == 0 && PixelRay(request, *back, planes, x, y).enters_before(depth.depth[pixel]))
+        covered = alpha;
+    }
+  }
+}
+
+}  // namespace understudy::spu

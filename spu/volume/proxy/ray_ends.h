@@ -1,0 +1,21 @@
+// Rays that begin and end at planes inside their box, in the words of a request: every pixel's ray begins so
+// many steps later, and ends at the depth of the plane that it leaves by.
+#pragma once
+
+#include <vector>
+
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+/// Cuts the rays of `request`, whose samples lie on steps that are not divided. Behind a plane by which a ray
+/// leaves, samples up to `past_planes` steps still count.
+void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_planes,
+                 volume::RenderRequest& request);
+
+/// Gives `alpha` to the pixels without it whose rays enter the box, between the planes, before opaque geometry.
+void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
+                   float alpha, volume::Image& picture);
+
+}  // namespace understudy::spu

@@ -1,0 +1,274 @@
+// Ray casters whose volume is cut: by cropping, by clipping planes, by the near plane around an eye that is
+// inside; and those that add their samples up.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "box_ray_caster.h"
+#include "spu/volume/proxy/cut_box.h"
+#include "spu/volume/proxy/cuts.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+using Composition = MarchStyle::Composition;
+
+constexpr double alike = 45;    // dB
+constexpr double another = 35;  // dB; below, a picture is another one
+constexpr std::uint32_t middle_region = 1U << 13U;
+
+class CutScene {
+ public:
+  explicit CutScene(const MarchStyle& style) : app(GlApplication::start(Profile::core)), caster(style) {
+    if (app) caster.set_up(*app);
+  }
+
+  std::vector<float> frame(bool under, double angle) {
+    app->use_chain(under);
+    caster.draw(*app, angle, 0);
+    app->end_frame();
+    return app->read_pixels();
+  }
+
+  /// Substituted, and like the application's own; that picture.
+  std::vector<float> expect_alike(double angle, const std::string& what) {
+    const auto before = app->substituted();
+    const auto under = frame(true, angle);
+    EXPECT_EQ(app->substituted(), before + 1) << what << ": " << app->last_reason();
+    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR)) << what;
+    auto bare = frame(false, angle);
+    const double likeness = psnr(under, bare);
+    std::printf("%s, %g degrees: %.1f dB\n", what.c_str(), angle, likeness);
+    EXPECT_GE(likeness, alike) << what << ", " << angle << " degrees";
+    return bare;
+  }
+
+  std::unique_ptr<GlApplication> app;
+  BoxRayCaster caster;
+};
+
+constexpr std::array<float, 3> stretched{1.0F, 1.3F, 0.7F};
+constexpr std::array<float, 6> grid{0.25F, 0.7F, 0.4F, 1.0F, 0.2F, 0.45F};
+
+std::uint32_t regions(bool (*kept)(int, int, int)) {
+  std::uint32_t mask = 0;
+  for (int i = 0; i < 27; ++i) {
+    if (kept(i % 3, i / 3 % 3, i / 9)) mask |= 1U << unsigned(i);
+  }
+  return mask;
+}
+
+int outside(int x, int y, int z) {
+  return (x != 1 ? 1 : 0) + (y != 1 ? 1 : 0) + (z != 1 ? 1 : 0);
+}
+
+TEST(CutProxies, CroppedRegionsAreLeftOut) {
+  struct Shape {
+    const char* name;
+    std::uint32_t kept;
+  };
+  const std::array shapes{
+      Shape{"sub-volume", middle_region},
+      Shape{"half", regions([](int x, int, int) { return x < 2; })},
+      Shape{"cross", regions([](int x, int y, int z) { return outside(x, y, z) <= 1; })},
+      Shape{"fence", regions([](int x, int y, int z) { return outside(x, y, z) <= 2; })},
+      Shape{"inverted cross", regions([](int x, int y, int z) { return outside(x, y, z) > 1; })},
+      Shape{"all but the sub-volume", MarchStyle::all_regions & ~middle_region}};
+  CutScene scene(MarchStyle{.extent = stretched});
+  if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
+  const auto whole = scene.expect_alike(25, "whole");
+  scene.caster.style.cropping_planes = grid;
+  for (const Shape& shape : shapes) {
+    scene.caster.style.kept_regions = shape.kept;
+    const auto cropped = scene.expect_alike(25, shape.name);
+    EXPECT_LT(psnr(cropped, whole), another) << shape.name << " leaves out nothing: the test tests nothing";
+    scene.expect_alike(-140, shape.name);
+  }
+}
+
+TEST(CutProxies, CroppingIsThereFromTheFirstFrameOnUnderEveryComposition) {
+  for (const auto composition : {Composition::over, Composition::maximum}) {
+    MarchStyle style{.composition = composition};
+    style.cropping_planes = {0.2F, 0.8F, 0.3F, 0.9F, 0.1F, 0.7F};
+    style.kept_regions = middle_region;
+    if (composition == Composition::maximum) style.extent = {1.2F, 1.0F, 0.85F};
+    CutScene scene(style);
+    if (!scene.app) GTEST_SKIP() << "no EGL context here";
+    scene.expect_alike(25, composition == Composition::over ? "over" : "maximum");
+  }
+}
+
+TEST(CutProxies, RaysBeginAndEndAtClippingPlanes) {
+  const std::array<float, 6> facing{1.5F, 2.7F, 3.4F, -0.4F, -0.2F, -1};
+  const std::array<float, 6> averted{1.5F, 2.5F, 3.2F, 0.5F, 0.3F, 1};
+  for (const float past : {0.0F, 1.0F}) {
+    for (const bool parallel : {false, true}) {
+      MarchStyle style{.parallel = parallel, .extent = stretched, .step = 0.05F};
+      style.past_planes = past;
+      style.clipping_planes = {facing, averted};
+      CutScene scene(style);
+      if (!scene.app) GTEST_SKIP() << "no EGL context here";
+      const auto cut = scene.expect_alike(20, "two planes");
+      scene.expect_alike(-150, "two planes from behind");
+      scene.caster.style.clipping_planes[0][2] -= 0.15F;
+      scene.expect_alike(20, "a plane that has moved");
+      scene.caster.style.clipping_planes.clear();
+      const auto whole = scene.expect_alike(20, "no planes");
+      EXPECT_LT(psnr(cut, whole), another) << "the plane cuts nothing: the test tests nothing";
+    }
+  }
+}
+
+TEST(CutProxies, UniformsStayAsTheyWere) {
+  MarchStyle style{.extent = stretched};
+  style.cropping_planes = grid;
+  style.kept_regions = middle_region;
+  style.clipping_planes = {{1.5F, 2.7F, 3.4F, -0.4F, -0.2F, -1}};
+  CutScene scene(style);
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  scene.expect_alike(20, "cropped and clipped");
+  const DispatchTable& gl = scene.app->driver();
+  const GLuint program = scene.caster.program();
+  for (int region = 0; region < 27; ++region) {
+    GLint flag = -1;
+    const std::string name = "in_croppingFlags[" + std::to_string(region + 1) + "]";
+    gl.GetUniformiv(program, gl.GetUniformLocation(program, name.c_str()), &flag);
+    EXPECT_EQ(flag, region == 13 ? 1 : 0) << name;
+  }
+  GLfloat numbers = 0;
+  gl.GetUniformfv(program, gl.GetUniformLocation(program, "in_clippingPlanes[0]"), &numbers);
+  EXPECT_EQ(numbers, 6);
+}
+
+TEST(CutProxies, SumsAreThoseOfTheApplication) {
+  for (const bool parallel : {false, true}) {
+    CutScene scene(MarchStyle{.composition = Composition::grey_sum, .parallel = parallel, .extent = stretched});
+    if (!scene.app) GTEST_SKIP() << "no EGL context here";
+    const auto thin = scene.expect_alike(25, "sum");
+    scene.expect_alike(-60, "sum");
+    scene.app->use_chain(true);
+    scene.caster.set_table(*scene.app, 0.4F);
+    EXPECT_LT(psnr(scene.expect_alike(25, "sum that saturates"), thin), another) << "the table changes nothing";
+  }
+}
+
+TEST(CutProxies, TheEyeGoesInsideAndOutAgain) {
+  CutScene scene(MarchStyle{.extent = stretched});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  scene.expect_alike(25, "outside");
+  scene.caster.style.closed_before_eye = true;
+  scene.caster.style.near = 0.02;
+  for (const double distance : {0.6, 0.3, 0.0}) {
+    scene.caster.style.distance = distance;
+    for (const double angle : {25.0, 70.0, 200.0})
+      scene.expect_alike(angle, "eye " + std::to_string(distance) + " from the middle");
+  }
+  scene.caster.style.closed_before_eye = false;
+  scene.caster.style.distance = 3;
+}
+
+TEST(CutProxies, AFirstLookFromInsideIsTheApplicationsPicture) {
+  MarchStyle style{.extent = stretched};
+  style.closed_before_eye = true;
+  style.near = 0.02;
+  style.distance = 0.2;
+  CutScene scene(style);
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  const auto under = scene.frame(true, 30);
+  const auto bare = scene.frame(false, 30);
+  if (scene.app->substituted() > 0) {
+    EXPECT_GE(psnr(under, bare), alike);
+  } else {
+    EXPECT_EQ(scene.app->last_reason(), "no short ray is in view: the opacity of one sample cannot be told");
+    EXPECT_TRUE(under == bare);
+  }
+}
+
+/// The part that a point lies in.
+int part_at(const std::vector<std::vector<volume::HalfSpace>>& parts, const volume::Vec3& p) {
+  int found = -1;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    bool in = true;
+    for (const auto& plane : parts[i]) in = in && volume::dot(plane.normal, p) + plane.offset >= 0;
+    if (!in) continue;
+    EXPECT_EQ(found, -1) << "two parts overlap";
+    found = int(i);
+  }
+  return found;
+}
+
+TEST(CroppedParts, HoldWhatIsKeptNearestFirst) {
+  const std::array<double, 6> planes{0.3, 0.6, 0.2, 0.7, 0.4, 0.8};
+  for (const std::uint32_t mask : {0x2000U, 0x7ffdfffU, 0x5a5a5a5U, 0x1084210U, 0U, MarchStyle::all_regions}) {
+    for (const std::array<double, 4>& eye :
+         {std::array<double, 4>{3, 2, -1, 1}, {0.4, 0.5, 0.5, 1}, {1, -0.5, 0.2, 0}}) {
+      std::array<bool, 27> kept{};
+      for (unsigned i = 0; i < 27; ++i) kept[i] = (mask >> i & 1U) != 0;
+      const auto parts = kept_parts(kept, planes, eye);
+      for (int n = 0; n < 1000; ++n) {
+        const volume::Vec3 p{(n % 10 + 0.5) / 10, (n / 10 % 10 + 0.5) / 10, (n / 100 + 0.5) / 10};
+        std::size_t region = 0;
+        for (std::size_t k = 0, stride = 1; k < 3; ++k, stride *= 3)
+          region += stride * std::size_t((p[k] >= planes[2 * k]) + (p[k] >= planes[2 * k + 1]));
+        const int part = part_at(parts, p);
+        EXPECT_EQ(part >= 0, kept[region]);
+        if (part < 0) continue;
+        // On the way to the eye no later part is met.
+        for (double s = 0; s < 1; s += 0.05) {
+          volume::Vec3 q{};
+          for (std::size_t k = 0; k < 3; ++k)
+            q[k] = eye[3] == 0 ? p[k] + 2 * s * eye[k] : p[k] + s * (eye[k] - p[k]);
+          bool on_plane = false;
+          for (std::size_t k = 0; k < 6; ++k) on_plane = on_plane || std::abs(q[k / 2] - planes[k]) < 1e-9;
+          const bool in_box = !on_plane && q[0] > 0 && q[0] < 1 && q[1] > 0 && q[1] < 1 && q[2] > 0 && q[2] < 1;
+          if (in_box) {
+            EXPECT_LE(part_at(parts, q), part);
+          }
+        }
+      }
+    }
+  }
+}
+
+ObservedPolygons cut_cube(bool closed) {
+  // x + y + z >= 1/2 of the unit cube: three faces lose a corner, a triangle closes it.
+  const std::vector<std::vector<volume::Vec3>> faces{
+      {{0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.5, 0}},
+      {{0, 0.5, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {0, 0, 0.5}},
+      {{0, 0, 0.5}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0.5, 0, 0}},
+      {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}},
+      {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}};
+  ObservedPolygons polygons;
+  for (std::size_t f = 0; f < faces.size() - (closed ? 0 : 1); ++f) {
+    for (const volume::Vec3& p : faces[f]) {
+      ObservedVertex v;
+      v.texture = {2 * p[0] - 1, p[1], 3 * p[2]};
+      polygons.vertices.push_back(v);
+    }
+    polygons.first.push_back(polygons.vertices.size());
+  }
+  return polygons;
+}
+
+TEST(CutBox, IsAClosedSurface) {
+  const auto found = cut_box_of(cut_cube(true));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->box.low[0], -1, 1e-12);
+  EXPECT_NEAR(found->box.high[2], 3, 1e-12);
+  const auto above = [&](double x, double y, double z) {
+    return volume::dot(found->cut.normal, {2 * x - 1, y, 3 * z}) + found->cut.offset;
+  };
+  EXPECT_NEAR(above(0.5, 0, 0), 0, 1e-9);
+  EXPECT_NEAR(above(0.1, 0.1, 0.3), 0, 1e-9);
+  EXPECT_GT(above(1, 1, 1), 0);
+  EXPECT_FALSE(cut_box_of(cut_cube(false))) << "the corner is open";
+  auto dented = cut_cube(true);
+  dented.vertices[5].texture = {0, 0.5, 1.5};
+  EXPECT_FALSE(cut_box_of(dented));
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

@@ -42,7 +42,7 @@ ApplicationPicture fullest_part(const ApplicationPicture& whole) {
   return fullest;
 }
 
-void show(volume::RenderRequest& request, const March& march) {
+void ask_for(volume::RenderRequest& request, const March& march) {
   request.steps = march.steps;
   request.op = march.extreme.value_or(volume::Operator::over);
   request.classification = asked_of_nodes(march);
@@ -99,7 +99,7 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   known.march_inputs = std::move(inputs);
   use(box_in(measured, known.march->space));
   compose_request(s);
-  show(s.request, *known.march);
+  ask_for(s.request, *known.march);
 }
 
 March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& service,
@@ -116,7 +116,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.fit = box->camera;
     s.slices.region = box->region;
     compose_request(s);
-    show(s.request, march);
+    ask_for(s.request, march);
     if (!looked_at) {
       s.drawn =
           application_picture(context(), s.run, s.request, volume::footprint(s.request, s.request.region));

@@ -197,6 +197,25 @@ TEST_F(Bricks, OfOtherColoursAreNotMerged) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(substituted_in(drawing), cube->bricks());
 }
 
+TEST_F(Bricks, ThatWaitWhenTheNodesAreLostAreShownAllTheSame) {
+  frame(true);
+  expect_merged();
+  auto drawing = at(15);
+  bool lost = false;
+  drawing.before_brick = [&](std::size_t number) {
+    if (number != 5 || lost) return;
+    lost = true;
+    const auto lock = app->session().lock();
+    app->session().lost("the test has taken the nodes away");
+  };
+  EXPECT_GE(substituted_in(drawing), 5U) << "the bricks that waited";
+  EXPECT_GE(app->left(), 1U) << "bricks that came later";
+  // Another service is asked for after a while, and told the volume again.
+  std::uint64_t runs = 0;
+  for (int i = 0; i < 10000 && runs != 1; ++i) runs = substituted_in();
+  EXPECT_EQ(runs, 1U);
+}
+
 TEST_F(Bricks, ThatAreDeletedTakeTheVolumeWithThem) {
   frame(true);
   expect_merged();

@@ -122,7 +122,7 @@ VolumeCounters& count_volume(std::uint64_t texture) {
   const std::uint32_t number = process.volumes.fetch_add(1) + 1;
   VolumeCounters& last = process.volume[max_counted_volumes - 1];
   VolumeCounters* found = &last;
-  for (const VolumePlace wanted : {VolumePlace::free, VolumePlace::left_behind}) {
+  for (const VolumePlace wanted : {VolumePlace::free, VolumePlace::given_up, VolumePlace::left_behind}) {
     for (int i = 0; i < max_counted_volumes - 1 && found == &last; ++i) {
       VolumePlace place = wanted;
       if (process.volume[i].place.compare_exchange_strong(place, VolumePlace::held)) found = &process.volume[i];
@@ -131,9 +131,35 @@ VolumeCounters& count_volume(std::uint64_t texture) {
     if (wanted == VolumePlace::left_behind) hand_on(*found, last);
     break;
   }
+  if (found == &last) last.place = VolumePlace::held;
   found->texture = texture;
   found->number = number;
   return *found;
+}
+
+VolumeCounters& count_as_one(std::span<VolumeCounters* const> parts) {
+  ProcessCounters& process = process_counters();
+  VolumeCounters& last = process.volume[max_counted_volumes - 1];
+  const auto own =
+      std::find_if(parts.begin(), parts.end(), [&](VolumeCounters* part) { return part != &last; });
+  VolumeCounters& whole = own == parts.end() ? last : **own;
+  for (VolumeCounters* const part : parts) {
+    if (part == &whole || part->place == VolumePlace::given_up) continue;
+    process.volumes_merged.fetch_add(1);
+    if (part == &last) continue;  // others may be in it
+    hand_on(*part, whole);
+    part->place = VolumePlace::given_up;
+  }
+  const auto places =
+      std::count_if(std::begin(process.volume), std::end(process.volume) - 1, [](const VolumeCounters& volume) {
+        return volume.place == VolumePlace::held || volume.place == VolumePlace::left_behind;
+      });
+  const std::uint32_t distinct = process.volumes - process.volumes_merged;
+  if (&whole != &last && last.place == VolumePlace::held && distinct <= std::uint32_t(places)) {
+    hand_on(last, whole);
+    last.place = VolumePlace::given_up;
+  }
+  return whole;
 }
 
 void leave_behind(VolumeCounters& volume) {

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "volume/request.h"
@@ -25,7 +26,8 @@ struct ReasonCount {
   std::atomic<std::uint64_t> count;
 };
 
-enum class VolumePlace : std::uint32_t { free, held, left_behind };
+/// Given up: its volume is counted in the place of another one.
+enum class VolumePlace : std::uint32_t { free, held, left_behind, given_up };
 
 struct VolumeCounters {
   std::atomic<VolumePlace> place;
@@ -84,6 +86,7 @@ struct ProcessCounters {
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   std::atomic<std::uint32_t> volumes;
+  std::atomic<std::uint32_t> volumes_merged;   ///< of these, those that are counted in another's place
   VolumeCounters volume[max_counted_volumes];  ///< the last one: see count_volume()
   FrameRecord frame[max_frame_records];        ///< ring: frame f is at f % max_frame_records
 };
@@ -97,6 +100,10 @@ ProcessCounters& process_counters();
 /// whose figures are added to the last place; else the last place itself, which is shared by all volumes beyond
 /// max_counted_volumes - 1 that live at once. Any thread.
 VolumeCounters& count_volume(std::uint64_t texture);
+
+/// Volumes turned out to be parts of one: their figures become those of the first of them, the other places are
+/// free again. The same counters may be named more than once.
+VolumeCounters& count_as_one(std::span<VolumeCounters* const> parts);
 
 /// The volume is gone: its figures stay until their place is needed.
 void leave_behind(VolumeCounters& volume);

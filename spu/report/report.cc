@@ -15,6 +15,8 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ranges>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 
@@ -32,9 +34,10 @@ std::string text_in(const char (&field)[size]) {
   return {field, strnlen(field, size)};
 }
 
-std::span<const VolumeCounters> volumes_of(const ProcessCounters& process) {
+auto volumes_of(const ProcessCounters& process) {
   const auto count = std::min<std::uint32_t>(process.volumes.load(), max_counted_volumes);
-  return {process.volume, count};
+  return std::span(process.volume, count) |
+         std::views::filter([](const VolumeCounters& volume) { return volume.place != VolumePlace::given_up; });
 }
 
 /// Oldest first; the ring holds the last max_frame_records frames.

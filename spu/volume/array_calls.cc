@@ -8,7 +8,7 @@ namespace {
 /// The table below, with the run closed where it still needs the arrays as they are.
 const DispatchTable& before_change() {
   VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  if (unit.run().reads_arrays || unit.run().inside_begin) unit.close_run();
+  if (unit.run_open() && (unit.run().reads_arrays || unit.run().inside_begin)) unit.close_run();
   return unit.next();
 }
 
@@ -42,7 +42,7 @@ const DispatchTable& before_question(GLenum name) {
                      (name >= GL_SECONDARY_COLOR_ARRAY_SIZE && name <= GL_SECONDARY_COLOR_ARRAY) ||
                      (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
   }
-  if (!about_arrays || unit.run().inside_begin) unit.close_run();
+  if (unit.run_open() && (!about_arrays || unit.run().inside_begin)) unit.close_run();
   return unit.next();
 }
 

@@ -13,6 +13,7 @@
 #include "spu/volume/array_calls.h"
 #include "spu/volume/client_arrays.h"
 #include "spu/volume/conditional_render.h"
+#include "spu/volume/merging/passing_calls.h"
 #include "spu/volume/texture_changes.h"
 #include "spu/volume/volume_unit.h"
 
@@ -27,24 +28,41 @@ VolumeUnit& here() {
 }
 
 struct CloseRun {
-  static const DispatchTable& before(CallId) {
+  static const DispatchTable& before(CallId call) {
     VolumeUnit& unit = here();
     unit.close_run();
+    if (!passes_held_runs(call)) unit.settle_held();
     // The call may be one that is looked at in the phase that is entered now.
-    return unit.chain().face(unit, unit.chain().phase());
+    const Phase phase = unit.chain().phase();
+    return phase == Phase::deferring ? unit.next() : unit.chain().face(unit, phase);
   }
 };
 
+template <auto Slot>
+void APIENTRY switch_capability(GLenum capability) {
+  VolumeUnit& unit = here();
+  unit.close_run();
+  if (!passes_held_runs(capability)) unit.settle_held();
+  (unit.next().*Slot)(capability);
+}
+
 struct IntoRun {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
-    append_plain_call(here().run().calls(), call, words);
+    VolumeUnit& unit = here();
+    if (unit.run_open()) {
+      append_plain_call(unit.run().calls(), call, words);
+    } else {
+      Records one;
+      append_plain_call(one, call, words);
+      make_plain_calls(one.words(), unit.next());
+    }
     return 0;
   }
 };
 
 /// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
 bool joins_run(VolumeUnit& unit) {
-  return unit.chain().phase() == Phase::deferring || unit.opens_run();
+  return unit.run_open() || unit.opens_run();
 }
 
 void APIENTRY begin(GLenum mode) {
@@ -59,7 +77,9 @@ void APIENTRY begin(GLenum mode) {
 }
 
 void APIENTRY end_in_run() {
-  Run& run = here().run();
+  VolumeUnit& unit = here();
+  if (!unit.run_open()) return unit.next().End();
+  Run& run = unit.run();
   append_call(run.calls(), &DispatchTable::End);
   run.inside_begin = false;
 }
@@ -75,7 +95,7 @@ void APIENTRY call_list(GLuint list) {
   const auto record = unit.chain().group().list(list);
   const bool slices = record && record->draws && record->only_geometry;
   if (!slices || !joins_run(unit)) {
-    unit.close_run();
+    unit.settle();
     return unit.next().CallList(list);
   }
   append_call(unit.run().calls(), &DispatchTable::CallList, list);
@@ -115,7 +135,7 @@ bool defer_arrays(VolumeUnit& unit, GLenum mode, std::span<const GLint> first, s
 void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
   VolumeUnit& unit = here();
   if (joins_run(unit) && defer_arrays(unit, mode, {&first, 1}, {&count, 1})) return;
-  unit.close_run();
+  unit.settle();
   unit.next().DrawArrays(mode, first, count);
 }
 
@@ -123,7 +143,7 @@ void APIENTRY multi_draw_arrays(GLenum mode, const GLint* first, const GLsizei* 
   VolumeUnit& unit = here();
   const auto n = std::size_t(std::max(draws, 0));
   if (n > 0 && joins_run(unit) && defer_arrays(unit, mode, {first, n}, {count, n})) return;
-  unit.close_run();
+  unit.settle();
   unit.next().MultiDrawArrays(mode, first, count, draws);
 }
 
@@ -173,7 +193,7 @@ bool defer_elements(VolumeUnit& unit, GLenum mode, std::span<const ElementPart> 
 /// One range of elements: the run takes it, or the application draws.
 bool joins_run(VolumeUnit& unit, GLenum mode, const ElementPart& range, GLenum type) {
   if (joins_run(unit) && defer_elements(unit, mode, {&range, 1}, type)) return true;
-  unit.close_run();
+  unit.settle();
   return false;
 }
 
@@ -211,7 +231,7 @@ bool joins_run(VolumeUnit& unit, GLenum mode, GLsizei draws, const GLsizei* coun
   for (GLsizei i = 0; i < draws; ++i)
     ranges.push_back({count[i], indices[i], base_vertices != nullptr ? base_vertices[i] : 0});
   if (!ranges.empty() && joins_run(unit) && defer_elements(unit, mode, ranges, type)) return true;
-  unit.close_run();
+  unit.settle();
   return false;
 }
 
@@ -284,7 +304,7 @@ bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, const void* indirect, G
     }
     if (!count.empty() && defer_arrays(unit, mode, first, count)) return true;
   }
-  unit.close_run();
+  unit.settle();
   return false;
 }
 
@@ -300,7 +320,7 @@ bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, GLenum type, const void
     unit.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
     if (element_buffer != 0 && !parts.empty() && defer_elements(unit, mode, parts, type)) return true;
   }
-  unit.close_run();
+  unit.settle();
   return false;
 }
 
@@ -333,8 +353,8 @@ constexpr std::size_t most_slices = 4096;
 
 void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
   VolumeUnit& unit = here();
-  const bool slice = unit.run().pipeline().stack && target == GL_TEXTURE_2D && texture != 0 &&
-                     !unit.run().inside_begin && unit.run().draws < most_slices;
+  const bool slice = unit.run_open() && unit.run().pipeline().stack && target == GL_TEXTURE_2D &&
+                     texture != 0 && !unit.run().inside_begin && unit.run().draws < most_slices;
   if (slice) return unit.run().bind_slice(texture);
   unit.close_run();
   unit.next().BindTexture(target, texture);
@@ -343,8 +363,9 @@ void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
 /// Who names the unit again before every slice changes nothing.
 void APIENTRY active_texture_in_run(GLenum texture) {
   VolumeUnit& unit = here();
-  const Pipeline& pipeline = unit.run().pipeline();
-  if (pipeline.stack && texture == GLenum(GL_TEXTURE0 + pipeline.volume.unit) && !unit.run().inside_begin)
+  const Pipeline* const pipeline = unit.run_open() ? &unit.run().pipeline() : nullptr;
+  if (pipeline != nullptr && pipeline->stack && texture == GLenum(GL_TEXTURE0 + pipeline->volume.unit) &&
+      !unit.run().inside_begin)
     return;
   unit.close_run();
   unit.next().ActiveTexture(texture);
@@ -393,6 +414,8 @@ void fill_deferring_slots(DispatchTable& table) {
   table.BindTextureEXT = bind_texture_in_run;
   table.ActiveTexture = active_texture_in_run;
   table.ActiveTextureARB = active_texture_in_run;
+  table.Enable = switch_capability<&DispatchTable::Enable>;
+  table.Disable = switch_capability<&DispatchTable::Disable>;
   fill_draws(table);
   fill_array_calls(table);
 }

@@ -130,6 +130,7 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   box = box_in(measured, known.march->space);
   use(box);
   compose_request(s);
+  hide_behind_geometry(s);
   s.opaque = s.request.depth;
   s.ray_ends = ends_of(box, s.cuts);
   ask(s.request, *known.march, box, s.cuts);
@@ -167,6 +168,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.fit = box->camera;
     s.slices.region = box->region;
     compose_request(s);
+    hide_behind_geometry(s);
     if (!looked_at) {
       s.drawn =
           application_picture(context(), s.run, s.request, volume::footprint(s.request, s.request.region));

@@ -19,6 +19,9 @@ struct Doubt {
 /// Nothing of the run is visible: the application may draw it, it costs nothing and means nothing.
 struct NothingVisible {};
 
+/// The order in which slices must be drawn for the nodes' operator to do the same.
+SliceOrder order_of(const Pipeline& pipeline);
+
 /// After this many refusals in a row a ray caster is measured only in one frame of so many.
 constexpr int patient_refusals = 8;
 constexpr std::uint64_t refused_retry_frames = 64;

@@ -6,8 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "spu/volume/float_framebuffer.h"
-
 namespace understudy::spu {
 namespace {
 
@@ -48,32 +46,48 @@ double Difference::psnr() const {
   return mean_square > 0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity();
 }
 
-std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
-                                                      const volume::RenderRequest& request,
-                                                      const volume::Rect& rect) {
-  const DispatchTable& gl = *context.gl;
-  if (rect.empty() || request.viewport.x < 0 || request.viewport.y < 0) return std::nullopt;
-  const int width = request.viewport.x + request.viewport.width;
-  const int height = request.viewport.y + request.viewport.height;
-  const Pipeline& pipeline = run.pipeline();
+ApplicationDrawing::ApplicationDrawing(const GlContext& context, const Pipeline& pipeline,
+                                       const volume::RenderRequest& request)
+    : context_(context) {
+  if (request.viewport.x < 0 || request.viewport.y < 0) return;
   const bool minimum = pipeline.blending.op == volume::Operator::min;
-  const FloatFramebuffer framebuffer(context, width, height, pipeline.target.samples, request.depth,
-                                     minimum ? 1.0F : 0.0F);
-  if (!framebuffer.complete()) return std::nullopt;
+  framebuffer_.emplace(context, request.viewport.x + request.viewport.width,
+                       request.viewport.y + request.viewport.height, pipeline.target.samples, request.depth,
+                       minimum ? 1.0F : 0.0F);
+}
 
+void ApplicationDrawing::add(const Run& run) {
+  if (!complete()) return;
+  const DispatchTable& gl = *context_.gl;
+  GLint bound = 0;
+  gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_->name());
+  {
+    const ColourBlending blending(gl, run.pipeline().blending);
+    run.replay(gl);
+  }
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound));
+}
+
+ApplicationPicture ApplicationDrawing::picture(const volume::Rect& rect) const {
+  const DispatchTable& gl = *context_.gl;
   std::array<GLint, 2> bound{};
   gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound[0]);
   gl.GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound[1]);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
-  {
-    const ColourBlending blending(gl, pipeline.blending);
-    run.replay(gl);
-  }
-  ApplicationPicture drawn{rect, framebuffer.pixels(rect)};
+  ApplicationPicture drawn{rect, framebuffer_->pixels(rect)};
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
-
   return drawn;
+}
+
+std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
+                                                      const volume::RenderRequest& request,
+                                                      const volume::Rect& rect) {
+  if (rect.empty()) return std::nullopt;
+  ApplicationDrawing drawing(context, run.pipeline(), request);
+  drawing.add(run);
+  if (!drawing.complete()) return std::nullopt;
+  return drawing.picture(rect);
 }
 
 Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,

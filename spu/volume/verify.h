@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "spu/volume/context.h"
+#include "spu/volume/float_framebuffer.h"
 #include "spu/volume/run.h"
 #include "volume/request.h"
 
@@ -27,8 +28,24 @@ struct ApplicationPicture {
   std::vector<float> rgba;
 };
 
-/// What `run` draws over transparent black (white for a minimum), over `rect`: alpha going the way of the
-/// colour. Null when the driver cannot provide the framebuffer.
+/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other: alpha
+/// going the way of the colour.
+class ApplicationDrawing {
+ public:
+  ApplicationDrawing(const GlContext& context, const Pipeline& pipeline, const volume::RenderRequest& request);
+
+  /// False where the driver cannot provide the framebuffer.
+  bool complete() const { return framebuffer_ && framebuffer_->complete(); }
+  /// Draws the run's calls in the state that they were made for.
+  void add(const Run& run);
+  ApplicationPicture picture(const volume::Rect& rect) const;
+
+ private:
+  const GlContext& context_;
+  std::optional<FloatFramebuffer> framebuffer_;
+};
+
+/// That of one run. Null when the driver cannot provide the framebuffer.
 std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
                                                       const volume::RenderRequest& request,
                                                       const volume::Rect& rect);

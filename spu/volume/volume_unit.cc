@@ -12,7 +12,7 @@
 #include "spu/volume/depth_debt.h"
 #include "spu/volume/draw_slots.h"
 #include "spu/volume/geometry/feedback.h"
-#include "spu/volume/save_frames.h"
+#include "spu/volume/merging/merging.h"
 #include "spu/volume/saved_state.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/texel_transfer.h"
@@ -164,25 +164,6 @@ void append_untold_inputs(std::vector<StageInput>& inputs) {
   inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
 }
 
-/// Magenta wherever the volume is: a picture that proves where it came from.
-void tint(volume::Image& picture) {
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    const float alpha = picture.rgba[i + 3];
-    picture.rgba[i] = alpha;
-    picture.rgba[i + 1] = 0;
-    picture.rgba[i + 2] = alpha;
-  }
-}
-
-/// The order in which slices must be drawn for the nodes' operator to do the same.
-SliceOrder order_of(const Pipeline& pipeline) {
-  if (pipeline.blending.front_to_back != FrontToBack::no) return SliceOrder::front_to_back;
-  // Slices that write depth hide whatever comes later and lies behind them.
-  const bool matters =
-      pipeline.blending.op == volume::Operator::over || pipeline.blending.alpha.op == volume::Operator::over;
-  return matters || (pipeline.depth_test && pipeline.depth_write) ? SliceOrder::back_to_front : SliceOrder::any;
-}
-
 /// Texels of `size` that samples of `region` read, linear filter included.
 volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& size) {
   volume::TexelBox box;
@@ -217,57 +198,6 @@ int margin_of(const std::vector<ObservedSlab>& slabs, const std::array<int, 3>& 
   return block * int(std::ceil(cells / block));
 }
 
-std::string_view name_of(volume::TexelType type) {
-  switch (type) {
-    case volume::TexelType::u8:
-      return "8-bit";
-    case volume::TexelType::u16:
-      return "16-bit";
-    case volume::TexelType::f32:
-      return "float";
-    default:
-      return "RGBA";
-  }
-}
-
-const char* name_of(const Blending& blending) {
-  if (blending.front_to_back != FrontToBack::no) return "under";
-  switch (blending.op) {
-    case volume::Operator::over:
-      return "over";
-    case volume::Operator::max:
-      return "maximum";
-    case volume::Operator::min:
-      return "minimum";
-    case volume::Operator::add:
-      return "sum";
-  }
-  return "";
-}
-
-/// Where the samples lie, in words.
-std::string sampling_of(const volume::RenderRequest& request, const std::array<int, 3>& size, bool cut_rays) {
-  if (!request.steps) {
-    return fmt::format("{} slices {:.5f} of the texture apart", request.planes.count,
-                       std::abs(request.planes.spacing));
-  }
-  const volume::RaySteps& steps = *request.steps;
-  std::array<double, 3> a_texel{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    a_texel[k] = volume::length({steps.metric[k], steps.metric[3 + k], steps.metric[6 + k]}) / size[k];
-  }
-  const std::string_view jitter = !steps.offsets ? ""
-                                  : cut_rays     ? ", every ray from the planes that cut the box"
-                                                 : ", every ray later by a texture of the program";
-  return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
-                     a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
-                     jitter,
-                     request.op == volume::Operator::max   ? ", maximum"
-                     : request.op == volume::Operator::min ? ", minimum"
-                     : request.op == volume::Operator::add ? ", sum"
-                                                           : "");
-}
-
 template <std::size_t N>
 void put(char (&to)[N], std::string_view text) {
   const std::size_t length = std::min(text.size(), N - 1);
@@ -277,8 +207,19 @@ void put(char (&to)[N], std::string_view text) {
 
 }  // namespace
 
+SliceOrder order_of(const Pipeline& pipeline) {
+  if (pipeline.blending.front_to_back != FrontToBack::no) return SliceOrder::front_to_back;
+  // Slices that write depth hide whatever comes later and lies behind them.
+  const bool matters =
+      pipeline.blending.op == volume::Operator::over || pipeline.blending.alpha.op == volume::Operator::over;
+  return matters || (pipeline.depth_test && pipeline.depth_write) ? SliceOrder::back_to_front : SliceOrder::any;
+}
+
 VolumeUnit::VolumeUnit(Chain& chain, std::shared_ptr<RenderSession> session)
-    : chain_(chain), session_(std::move(session)), frame_started_(Clock::now()) {}
+    : chain_(chain),
+      session_(std::move(session)),
+      merging_(std::make_unique<Merging>()),
+      frame_started_(Clock::now()) {}
 
 VolumeUnit::~VolumeUnit() {
   for (auto& [texture, volume] : known_)
@@ -323,6 +264,13 @@ void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
 }
 
 bool VolumeUnit::opens_run() {
+  if (begins_run()) return true;
+  // Whatever else is drawn now goes on top of what waits.
+  settle_held();
+  return false;
+}
+
+bool VolumeUnit::begins_run() {
   if (inside_begin || !context().sufficient()) return false;
   const PipelineFinding finding = read_pipeline(context(), chain_.group(), samplers_, stacks_possible_);
   if (std::holds_alternative<NotAVolume>(finding)) return false;
@@ -354,14 +302,19 @@ bool VolumeUnit::opens_run() {
 
 void VolumeUnit::close_run() {
   if (!run_) return;
-  const std::unique_ptr<Run> run = std::move(run_);
+  std::unique_ptr<Run> run = std::move(run_);
   chain_.set_phase(resting_phase());
-  const bool shown = shows(*run);
+  const bool shown = shows(run);
   note([spent = clock_.take()](FrameRecord& frame) { frame.spent_ms += spent; });
-  if (!shown) run->replay(*context().gl);
+  if (!shown) {
+    settle_held();
+    run->replay(*context().gl);
+  }
+  chain_.set_phase(resting_phase());
 }
 
-bool VolumeUnit::shows(const Run& run) {
+bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
+  const Run& run = *closed;
   const TimedShare timed(clock_, &FrameShares::recognition);
   if (run.pipeline().stack && !is_a_stack(run)) {
     inside_begin = run.inside_begin;
@@ -375,7 +328,7 @@ bool VolumeUnit::shows(const Run& run) {
   }
   try {
     if (const std::string& reason = known(texture).given_back; !reason.empty()) throw Doubt{reason};
-    substitute(run);
+    substitute(closed);
     return true;
   } catch (const Doubt& doubt) {
     ++known(texture).refusals;
@@ -392,6 +345,11 @@ bool VolumeUnit::shows(const Run& run) {
     leave(texture, error.what());
   }
   return false;
+}
+
+Phase VolumeUnit::resting_phase() const {
+  if (!merging_->held.empty()) return Phase::deferring;
+  return depth_watched_ != 0 ? Phase::owing : Phase::watching;
 }
 
 void VolumeUnit::stack_defined() {
@@ -693,10 +651,12 @@ void VolumeUnit::compose_request(Substitution& s) {
   request.region = s.slices.region;
   request.op = s.pipeline.blending.op;
   request.filter = s.volume.texture.filter;
-  if (s.pipeline.depth_test) {
-    request.depth = read_depth(context(), s.pipeline.target, volume::footprint(request, request.region),
+}
+
+void VolumeUnit::hide_behind_geometry(Substitution& s) {
+  if (!s.pipeline.depth_test) return;
+  s.request.depth = read_depth(context(), s.pipeline.target, volume::footprint(s.request, s.request.region),
                                s.pipeline.depth_or_equal);
-  }
 }
 
 void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
@@ -707,45 +667,30 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   const TimedShare timed(clock_, &FrameShares::verification);
   const auto difference = s.drawn ? std::optional(difference_between(s.pipeline, *s.drawn, image))
                                   : compare_with_application(context(), s.run, s.request, image);
-  if (!difference) return;
-  VolumeCounters& counters = *s.volume.counters;
-  counters.verify_max = std::max(counters.verify_max, difference->max);
-  counters.verify_sum_sq += difference->mean_square;
+  if (difference) judge(s.volume, *difference);
+}
+
+void VolumeUnit::judge(KnownVolume& known, const Difference& difference) {
+  VolumeCounters& counters = *known.counters;
+  counters.verify_max = std::max(counters.verify_max, difference.max);
+  counters.verify_sum_sq += difference.mean_square;
   counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
-  note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference->mean_square); });
-  if (difference->psnr() < options.verify_psnr) {
-    s.volume.given_back =
+  note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
+  const double tolerance = session_->options().verify_psnr;
+  if (difference.psnr() < tolerance) {
+    known.given_back =
         fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
-                    difference->psnr(), options.verify_psnr);
-    throw Doubt{s.volume.given_back};
+                    difference.psnr(), tolerance);
+    throw Doubt{known.given_back};
   }
 }
 
-void VolumeUnit::explain(const Substitution& s) {
-  const volume::Matrix4& a = s.request.texture_to_clip;
-  const bool perspective = std::abs(a[12]) + std::abs(a[13]) + std::abs(a[14]) > 1e-9 * std::abs(a[15]);
-  put(s.volume.counters->explanation,
-      fmt::format("{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, "
-                  "fit to {:.1e}, "
-                  "{} of {} colours, {} clip planes, {}{}",
-                  s.volume.texture.size[0], s.volume.texture.size[1], s.volume.texture.size[2],
-                  name_of(s.volume.texture.type), s.volume.texture.format_name,
-                  sampling_of(s.request, s.volume.texture.size, !s.ray_ends.empty()),
-                  s.request.filter == volume::Filter::linear ? "linear" : "nearest",
-                  std::holds_alternative<volume::LinearMap>(s.request.classification) ? "colours in the texels"
-                  : s.request.slab ? "table of pairs probed from the program"
-                                   : (s.pipeline.program != 0 ? "table probed from the program"
-                                      : s.pipeline.assembly   ? "table probed from the assembly program"
-                                                              : "table probed from fixed function"),
-                  perspective ? "perspective" : "parallel", s.fit->residual, name_of(s.pipeline.blending),
-                  s.pipeline.blending.premultiplied ? "premultiplied" : "plain", s.request.clip_planes.size(),
-                  s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",
-                  !s.proxy && s.volume.probed->fog ? ", fading in fog" : ""));
-}
-
-void VolumeUnit::substitute(const Run& run) {
+void VolumeUnit::substitute(std::unique_ptr<Run>& closed) {
+  const Run& run = *closed;
   // Frames may end in other contexts than the one that draws.
   if (const std::uint64_t frame = session_->ledger().frames(); frame != tidied_in_frame_) {
+    settle_held();
+    find_merged_volumes();
     forget_deleted_volumes();
     tidied_in_frame_ = frame;
   }
@@ -760,7 +705,8 @@ void VolumeUnit::substitute(const Run& run) {
     s.texture_version = (s.texture_version * prime) ^ texture;
     s.texture_version = (s.texture_version * prime) ^ chain_.group().texture_version(texture);
   }
-  const Options& options = session_->options();
+  if (holds(closed, s)) return;
+  settle_held();
   const auto lock = session_->lock();
   compositor::RenderService& service = session_->service();
   process_counters().nodes = service.nodes();
@@ -770,65 +716,20 @@ void VolumeUnit::substitute(const Run& run) {
     upload(s, service);
     classify(s);
     compose_request(s);
+    hide_behind_geometry(s);
   }
-  const auto render = [&] {
-    const TimedShare timed(clock_, &FrameShares::render);
-    return service.render(s.request);
-  };
-  const compositor::Rendered rendered = render();
-
-  // The service's picture is gone with its next answer.
-  const Blending& blending = s.pipeline.blending;
-  volume::Image picture;
-  volume::ImageView shown = rendered.image;
-  volume::FrameCounts counts = rendered.counts;
-  const bool finished_here = s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
-  if (options.debug_tint || blending.alpha_stands_apart() || finished_here) {
-    picture.rect = shown.rect;
-    picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
-    shown = picture.view();
-  }
-  if (finished_here) {
-    complete_picture(s, service, *s.volume.march, picture, counts);
-    shown = picture.view();
-  }
-  if (s.proxy) s.request.depth = s.opaque;
-  verify(s, shown);
-  if (!options.save_frames.empty()) {
-    const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown,
-                                           volume::neutral_value(blending.op));
-    if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
-  }
-  if (options.debug_tint) tint(picture);
-  const TimedShare timed(clock_, &FrameShares::presentation);
-  if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
-  if (blending.alpha_stands_apart() && s.proxy) {
-    // The whole ray is one fragment.
-    volume::Image alpha(shown.rect);
-    for (std::size_t i = 0; i < alpha.rgba.size(); i += 4) {
-      const float a = shown.rgba[i + 3];
-      alpha.rgba[i] = blending.alpha.squared ? a * a : a;
-      alpha.rgba[i + 3] = a;
-    }
-    const volume::ImageView view = alpha.view();
-    presenter_->present(shown, blending, s.pipeline.target, &view);
-  } else if (blending.alpha_stands_apart()) {
-    s.request.classification = alpha_as_colour(s.request.classification, blending.alpha);
-    s.request.op = blending.alpha.op;
-    s.request.fog.reset();
-    // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
-    if (s.pipeline.target.alpha_bits <= 8) s.request.termination = 1e-3F;
-    const compositor::Rendered alpha = render();
-    counts += alpha.counts;
-    presenter_->present(shown, blending, s.pipeline.target, &alpha.image);
-  } else {
-    presenter_->present(shown, blending, s.pipeline.target, nullptr);
-  }
+  const volume::FrameCounts counts =
+      show(service, s, [&](const volume::ImageView& image) { verify(s, image); });
   settle_depth(s);
-  if (s.volume.frames == 0 || options.explain) explain(s);
+  if (s.volume.frames == 0 || session_->options().explain) explain(s);
   ++s.volume.frames;
-  s.volume.refusals = 0;
-  s.volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
+  note_brick(s);
+  count_substituted(s.volume, counts);
+}
+
+void VolumeUnit::count_substituted(KnownVolume& known, const volume::FrameCounts& counts) {
+  known.refusals = 0;
+  known.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
   note([&](FrameRecord& frame) {
     ++frame.substituted;
     frame.counts += counts;
@@ -866,6 +767,7 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
 }
 
 void VolumeUnit::forget_deleted_volumes() {
+  forget_deleted_bricks();
   std::erase_if(known_, [&](auto& entry) {
     auto& [texture, volume] = entry;
     if (chain_.group().remembers(texture)) return false;
@@ -889,6 +791,12 @@ void VolumeUnit::abandon() {
       session_->forget(volume.description.id);
   }
   known_.clear();
+  for (const auto& merged : merging_->volumes) {
+    const auto lock = session_->lock();
+    if (merged->volume.generation != 0 && merged->volume.generation == session_->generation())
+      session_->forget(merged->volume.description.id);
+  }
+  merging_ = std::make_unique<Merging>();
 }
 
 }  // namespace understudy::spu

@@ -2,14 +2,18 @@
 //
 //   watching ──(a draw that may be a volume)──► deferring ──(any other call, a frame end)──► close the run:
 //     observe geometry → fit camera → find slices → classification → texels (once) → render → present
+//   Runs through the textures of one volume wait between recognition and render for each other (merging/).
 //   Any doubt on that way ends in the application's own drawing: the run is replayed as it was.
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "spu/chain.h"
 #include "spu/report/counters.h"
@@ -26,6 +30,9 @@
 #include "spu/volume/tile_hashes.h"
 
 namespace understudy::spu {
+
+struct Difference;
+struct MergedVolume;
 
 /// What is remembered of one texture between frames.
 struct KnownVolume {
@@ -57,14 +64,21 @@ class VolumeUnit final : public Unit {
 
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;
-  void settle() override { close_run(); }
+  void settle() override {
+    close_run();
+    settle_held();
+  }
   void frame_ended(FrameEnd kind) override;
   void abandon() override;
 
   /// A draw is about to happen while watching. Opens a run and answers true when it may be a slice.
   bool opens_run();
+  bool run_open() const { return run_ != nullptr; }
   Run& run() { return *run_; }
   void close_run();
+  /// Runs that wait for the others of their volume (in the phase deferring, with no run open) are shown now,
+  /// whether or not all are there.
+  void settle_held();
 
   /// The application is between glBegin and glEnd of a draw that is not deferred: nothing may be asked of
   /// OpenGL.
@@ -85,10 +99,12 @@ class VolumeUnit final : public Unit {
 
  private:
   struct Substitution;
+  struct Merging;
 
   /// The picture of the run is in the framebuffer; else the application's calls are to be played.
-  bool shows(const Run& run);
-  void substitute(const Run& run);
+  bool shows(std::unique_ptr<Run>& closed);
+  void substitute(std::unique_ptr<Run>& closed);
+  bool begins_run();
   KnownVolume& known(GLuint texture);
   void observe(Substitution& s);
   bool is_a_stack(const Run& run);
@@ -108,10 +124,34 @@ class VolumeUnit final : public Unit {
   /// behind the nearest.
   void complete_picture(Substitution& s, compositor::RenderService& service, const March& march,
                         volume::Image& picture, volume::FrameCounts& counts);
+  void hide_behind_geometry(Substitution& s);
+  /// Renders the request and puts the picture where the slices would be; `check` sees it before, and may throw.
+  volume::FrameCounts show(compositor::RenderService& service, Substitution& s,
+                           const std::function<void(const volume::ImageView&)>& check);
   void verify(Substitution& s, const volume::ImageView& image);
-  void explain(const Substitution& s);
+  void judge(KnownVolume& known, const Difference& difference);
+  void explain(const Substitution& s, std::string_view beginning = {});
+  void count_substituted(KnownVolume& known, const volume::FrameCounts& counts);
+
+  // Volumes that lie in many textures: merging/merged_substitution.cc.
+  void note_brick(const Substitution& s);
+  void find_merged_volumes();
+  void forget_merged_volume(GLuint texture);
+  void forget_deleted_bricks();
+  /// The run waits for the others of its volume, and is this unit's from now on.
+  bool holds(std::unique_ptr<Run>& run, Substitution& s);
+  struct HeldRun;
+  bool shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held);
+  void compose_merged_request(MergedVolume& merged, const std::vector<HeldRun>& held, Substitution& whole);
+  void upload_merged(MergedVolume& merged, const std::vector<HeldRun>& held,
+                     compositor::RenderService& service);
+  /// Needs the session's lock.
+  void forget_single_bricks(const MergedVolume& merged);
+  /// One run that waited, by whatever service there is.
+  void show_alone(Substitution& s);
+
   /// The phase between runs.
-  Phase resting_phase() const { return depth_watched_ != 0 ? Phase::owing : Phase::watching; }
+  Phase resting_phase() const;
   void settle_depth(const Substitution& s);
   void leave(GLuint texture, const std::string& reason, bool say = true);
   void forget_deleted_volumes();
@@ -131,6 +171,7 @@ class VolumeUnit final : public Unit {
   Records calls_;  ///< of the open run; kept between runs for its memory
   std::unique_ptr<Run> run_;
   std::map<GLuint, KnownVolume> known_;
+  std::unique_ptr<Merging> merging_;
   bool stacks_watched_ = false;
   bool stacks_possible_ = false;  ///< while they are watched: rows of textures may still be one
   int frames_without_stack_ = 0;

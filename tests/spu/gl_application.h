@@ -32,6 +32,9 @@ class GlApplication {
   /// Past the chain: what the same calls do without Understudy.
   const DispatchTable& driver() const;
 
+  /// What all its contexts speak to the render service through.
+  RenderSession& session() const { return *session_; }
+
   /// With false the application talks to the driver: the bare run.
   void use_chain(bool on);
 

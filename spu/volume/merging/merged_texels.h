@@ -1,0 +1,18 @@
+// The texels of a volume that lies in several 3-D textures.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spu/volume/merging/tiling.h"
+#include "spu/volume/texels.h"
+
+namespace understudy::spu {
+
+/// Reads from all of `textures`, at their places; binds them to the active unit one after the other. Where two
+/// hold different texels for one place, read() throws; what no texture holds is 0.
+std::unique_ptr<TexelSource> merged_source(const GlContext& context, const Tiling& tiling,
+                                           std::vector<GLuint> textures,
+                                           std::vector<TextureDescription> descriptions);
+
+}  // namespace understudy::spu

@@ -91,6 +91,8 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   }
   ProxyBox box = box_in(context_of(), spaces.front());
   use(box);
+  s.eye_inside = !box.cuts.empty();
+  if (s.eye_inside && !known.left_inside.empty()) throw Doubt{known.left_inside};
   s.cuts = read_cuts(context(), s.pipeline.program, box.camera.texture_to_clip);
   if (known.march && known.march->clipped == s.cuts.clipping.empty()) known.march.reset();
   upload(s, service);  // says what values there are

@@ -62,7 +62,9 @@ void RenderSession::forget(volume::VolumeId id) {
 }
 
 void RenderSession::lost(const std::string& what) {
-  if (service_ && !launcher_tells()) {
+  // Every frame that finds no service says so; the next attempt must not move away before it.
+  if (!service_) return;
+  if (!launcher_tells()) {
     fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
   }
   service_.reset();

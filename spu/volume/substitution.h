@@ -40,6 +40,7 @@ struct VolumeUnit::Substitution {
   std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end
   SliceSet slices{};
   Cuts cuts{};                                ///< of a ray caster
+  bool eye_inside = false;                    ///< of a ray caster's box
   std::vector<volume::HalfSpace> ray_ends{};  ///< planes where its rays begin and end
   /// Of the application's opaque geometry, where the request's own depth tells ends of rays as well.
   std::optional<volume::DepthImage> opaque{};

@@ -48,6 +48,8 @@ struct KnownVolume {
   MarchInputs march_inputs;         ///< what the march was measured under
   bool depth_looked_at = false;     ///< somebody used the depth that its slices write
   std::string given_back;           ///< why the volume is left to the application for good; empty: it is not
+  std::string left_inside;          ///< why it is left while the eye is inside; empty: it is not
+  bool verified_inside = false;     ///< a picture with the eye inside was like the application's
   std::string last_reason;          ///< the last reason for leaving it that was said
   int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);

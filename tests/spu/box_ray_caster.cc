@@ -421,15 +421,16 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
   set_cuts(gl(), style, program_);
-  GLsizei corners = 36;
-  if (style.closed_before_eye) {
-    const std::vector<GLfloat> triangles = triangles_behind(camera, 1.1 * style.near);
+  if (style.closed_before_eye || closed_before_) {
+    const std::vector<GLfloat> triangles =
+        style.closed_before_eye ? triangles_behind(camera, 1.1 * style.near) : box_triangles();
     gl().BindBuffer(GL_ARRAY_BUFFER, corners_);
     gl().BufferData(GL_ARRAY_BUFFER, GLsizeiptr(triangles.size() * sizeof(GLfloat)), triangles.data(),
                     GL_STREAM_DRAW);
-    corners = GLsizei(triangles.size() / 3);
+    corner_count_ = GLsizei(triangles.size() / 3);
+    closed_before_ = style.closed_before_eye;
   }
-  gl().DrawArrays(GL_TRIANGLES, 0, corners);
+  gl().DrawArrays(GL_TRIANGLES, 0, corner_count_);
   gl().Disable(GL_BLEND);
   gl().Disable(GL_CULL_FACE);
 }

@@ -55,6 +55,8 @@ class BoxRayCaster {
   GLuint wall_program_ = 0;
   GLuint box_ = 0;
   GLuint corners_ = 0;
+  GLsizei corner_count_ = 36;
+  bool closed_before_ = false;
   GLuint depth_ = 0;
 };
 

@@ -43,7 +43,8 @@ struct Settings {
   std::vector<double> surfaces;
   bool light = false;
   std::string backend = "cpu";
-  int stride = 8;  ///< of the pixels whose error is measured
+  std::string judged;  ///< floats of another renderer's picture; empty: ours is judged
+  int stride = 8;      ///< of the pixels whose error is measured
 };
 
 std::vector<std::byte> texels_of(const Settings& settings) {
@@ -190,6 +191,12 @@ nlohmann::ordered_json measure(const Settings& settings) {
     wall.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
+  if (!settings.judged.empty()) {
+    std::ifstream in(settings.judged, std::ios::binary);
+    if (!in.read(reinterpret_cast<char*>(image.rgba.data()),
+                 std::streamsize(sizeof(float) * image.rgba.size())))
+      throw std::runtime_error(fmt::format("{} does not hold {} floats", settings.judged, image.rgba.size()));
+  }
   const Field field = texture_field(volume, Filter::linear, texels);
   const Medium medium = Medium::of_samples(std::get<TransferFunction>(asked.classification), 1);
   Errors arithmetic, total;
@@ -253,6 +260,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 10000));
   app.add_option("--backend", settings.backend, "who casts the rays: gl on EGL, gl-osmesa on OSMesa")
       ->check(CLI::IsMember({"cpu", "gl", "gl-osmesa"}));
+  app.add_option("--judge", settings.judged,
+                 "a file with another renderer's picture, premultiplied RGBA floats, rows bottom up: errors "
+                 "are its own")
+      ->check(CLI::ExistingFile);
   app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")
       ->check(CLI::Range(0.0, 1.0));
   CLI11_PARSE(app, argc, argv);

@@ -15,6 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import display
 import viewers
 from frame import SIDE, cube
 
@@ -67,6 +68,34 @@ def measured(volume, size, options):
     return json.loads(text)
 
 
+# VTK's mappers render the same pictures where Debian's python3-vtk9 and xvfb are installed; one round is slow enough.
+VTK_CASES = {f"vtk-{mapper}/{table}": (mapper, table) for mapper in ("gpu", "fixed-point") for table in ("dense", "sparse")}
+
+
+def vtk_rows(volume, rows_so_far):
+    if subprocess.run(["/usr/bin/python3", "-c", "import vtk, numpy"], stderr=subprocess.DEVNULL, check=False).returncode:
+        print("raycast: no rows for VTK, install python3-vtk9 and python3-numpy", file=sys.stderr)
+        return []
+    ours = {row["name"]: row for row in rows_so_far}
+    picture = viewers.OUT / "bench" / "pictures" / "vtk.f32"
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    result = []
+    with display.VirtualDisplay() as name_of_display:
+        environment = os.environ | {"DISPLAY": name_of_display, "LIBGL_ALWAYS_SOFTWARE": "1", "LP_NUM_THREADS": "1"}
+        for name, (mapper, table) in VTK_CASES.items():
+            print(f"  {name}", file=sys.stderr, flush=True)
+            text = subprocess.run(["/usr/bin/python3", str(Path(__file__).with_name("vtk_mappers.py")), str(volume), "--size",
+                                   FULL, "--table", table, "--mapper", mapper, "--frames", "3", "--picture", str(picture)],
+                                  stdout=subprocess.PIPE, text=True, check=True, env=environment).stdout
+            figures = measured(volume, FULL, ["--table", table, "--judge", str(picture), "--frames", "1"])
+            errors = {key: figures[key] for key in figures if key.startswith(("rms_", "max_"))}
+            ns = 1e9 * json.loads(text)["seconds"] / figures["samples"]
+            rival = f"cpu/post-classified/{table}"
+            result.append({"name": name, "value": ns, "unit": "ns", "ratio_to": rival, "ratio": ns / ours[rival]["value"],
+                           "threads": 1, **errors})
+    return result
+
+
 def rows():
     script = yardstick()
     if script:
@@ -92,4 +121,4 @@ def rows():
         if name in theirs:
             row |= {"ratio_to": "yardstick", "ratio": row["value"] / statistics.median(theirs[name])}
         result.append(row)
-    return result
+    return result + vtk_rows(volume, result)

@@ -292,6 +292,7 @@ void Node::request(Clients& clients, Clients::Request request) {
     return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
   if (is_load(order.type)) {
     std::vector<RankLoad> loads;
+    loads.reserve(outcomes.size());
     for (const Outcome& outcome : outcomes) loads.push_back(outcome.load);
     return clients.reply(request, MessageType::loading, encode(loads));
   }

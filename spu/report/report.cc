@@ -15,10 +15,10 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include "spu/report/keys.h"
 
@@ -34,10 +34,14 @@ std::string text_in(const char (&field)[size]) {
   return {field, strnlen(field, size)};
 }
 
-auto volumes_of(const ProcessCounters& process) {
+/// Those that are volumes still: bricks that have become one with others are not.
+std::vector<const VolumeCounters*> volumes_of(const ProcessCounters& process) {
   const auto count = std::min<std::uint32_t>(process.volumes.load(), max_counted_volumes);
-  return std::span(process.volume, count) |
-         std::views::filter([](const VolumeCounters& volume) { return volume.place != VolumePlace::given_up; });
+  std::vector<const VolumeCounters*> result;
+  for (const VolumeCounters& volume : std::span(process.volume, count)) {
+    if (volume.place != VolumePlace::given_up) result.push_back(&volume);
+  }
+  return result;
 }
 
 /// Oldest first; the ring holds the last max_frame_records frames.
@@ -180,7 +184,8 @@ Totals totals_of(Processes processes) {
     // Not a sum: all processes of a run share one node group.
     totals.nodes = std::max(totals.nodes, process->nodes);
     totals.counts += process->total;
-    for (const VolumeCounters& volume : volumes_of(*process)) {
+    for (const VolumeCounters* const entry : volumes_of(*process)) {
+      const VolumeCounters& volume = *entry;
       ++totals.volumes;
       for (const auto& [reason, count] : reasons_of(volume)) totals.reasons[reason] += count;
     }
@@ -246,7 +251,8 @@ std::string report_json(Processes processes) {
     report[report_key::processes].push_back({{report_key::pid, process->pid},
                                              {report_key::program, text_in(process->program)},
                                              {report_key::calls, calls_of(*process)}});
-    for (const VolumeCounters& volume : volumes_of(*process)) {
+    for (const VolumeCounters* const entry : volumes_of(*process)) {
+      const VolumeCounters& volume = *entry;
       report[report_key::volumes].push_back(report_of(volume, process->pid));
     }
     for_each_kept_frame(*process, [&](std::uint64_t number, const FrameRecord& frame) {
@@ -279,7 +285,8 @@ std::string explanation_text(Processes processes) {
     if (!did_something(*process)) continue;
     text += fmt::format("understudy: process {} ({}): {}, {}\n", process->pid, text_in(process->program),
                         counted(calls_of(*process), "OpenGL call"), counted(process->frames.load(), "frame"));
-    for (const VolumeCounters& volume : volumes_of(*process)) {
+    for (const VolumeCounters* const entry : volumes_of(*process)) {
+      const VolumeCounters& volume = *entry;
       text += fmt::format("understudy:   texture {}, {} x {} x {} {}: {} of slices substituted, {} left\n",
                           volume.texture, volume.size[0], volume.size[1], volume.size[2],
                           text_in(volume.texture_format), counted(volume.draws_substituted.load(), "run"),

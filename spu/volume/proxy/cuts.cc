@@ -126,7 +126,7 @@ class Parts {
     for (int z = cells.low[2]; z < cells.high[2]; ++z)
       for (int y = cells.low[1]; y < cells.high[1]; ++y)
         for (int x = cells.low[0]; x < cells.high[0]; ++x)
-          number += kept_[std::size_t(x + 3 * y + 9 * z)] ? 1 : 0;
+          number += kept_[std::size_t(x) + 3 * std::size_t(y) + 9 * std::size_t(z)] ? 1 : 0;
     return number;
   }
 

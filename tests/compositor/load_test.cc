@@ -44,7 +44,7 @@ class LoadTest : public ::testing::Test {
   }
 
   std::string write(const std::string& name, std::span<const std::byte> bytes) const {
-    const std::string path = folder_ / name.c_str();
+    std::string path = folder_ / name.c_str();
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     return path;

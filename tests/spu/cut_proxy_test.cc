@@ -219,7 +219,8 @@ TEST(CroppedParts, HoldWhatIsKeptNearestFirst) {
       for (unsigned i = 0; i < 27; ++i) kept[i] = (mask >> i & 1U) != 0;
       const auto parts = kept_parts(kept, planes, eye);
       for (int n = 0; n < 1000; ++n) {
-        const volume::Vec3 p{(n % 10 + 0.5) / 10, (n / 10 % 10 + 0.5) / 10, (n / 100 + 0.5) / 10};
+        const std::array<int, 3> place{n % 10, n / 10 % 10, n / 100};
+        const volume::Vec3 p{(place[0] + 0.5) / 10, (place[1] + 0.5) / 10, (place[2] + 0.5) / 10};
         std::size_t region = 0;
         for (std::size_t k = 0, stride = 1; k < 3; ++k, stride *= 3)
           region += stride * std::size_t((p[k] >= planes[2 * k]) + (p[k] >= planes[2 * k + 1]));
@@ -227,7 +228,8 @@ TEST(CroppedParts, HoldWhatIsKeptNearestFirst) {
         EXPECT_EQ(part >= 0, kept[region]);
         if (part < 0) continue;
         // On the way to the eye no later part is met.
-        for (double s = 0; s < 1; s += 0.05) {
+        for (int step = 0; step < 20; ++step) {
+          const double s = step / 20.0;
           volume::Vec3 q{};
           for (std::size_t k = 0; k < 3; ++k)
             q[k] = eye[3] == 0 ? p[k] + 2 * s * eye[k] : p[k] + s * (eye[k] - p[k]);

@@ -197,7 +197,7 @@ TEST(NiftiFile, ForeignByteOrderAndTheSecondVersion) {
   Bytes first(352);
   put(first, 0, std::int32_t(348));
   put(first, 40, std::int16_t(4));
-  for (int k = 0; k < 3; ++k) put(first, std::size_t(42 + 2 * k), std::int16_t(size[std::size_t(k)]));
+  for (int k = 0; k < 3; ++k) put(first, 42 + 2 * std::size_t(k), std::int16_t(size[std::size_t(k)]));
   put(first, 48, std::int16_t(5));  // a series: the first one is read
   put(first, 70, std::int16_t(16));
   put(first, 108, 352.0F);
@@ -208,7 +208,7 @@ TEST(NiftiFile, ForeignByteOrderAndTheSecondVersion) {
   std::memcpy(second.data() + 4, "n+2", 4);
   put(second, 12, std::int16_t(16));
   put(second, 16, std::int64_t(3));
-  for (int k = 0; k < 3; ++k) put(second, std::size_t(24 + 8 * k), std::int64_t(size[std::size_t(k)]));
+  for (int k = 0; k < 3; ++k) put(second, 24 + 8 * std::size_t(k), std::int64_t(size[std::size_t(k)]));
   put(second, 168, std::int64_t(544));
   expect_holds(folder.write("b.nii.gz", gzipped(joined(second, big))), scalars, ScalarType::f32);
 }

@@ -7,6 +7,14 @@
 #include "volume/glsl/device.h"
 #include "volume/raycast/ray_caster.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+/// What Mesa keeps until the process ends is not ours to free.
+extern "C" [[gnu::visibility("default")]] const char* __lsan_default_suppressions();
+const char* __lsan_default_suppressions() {
+  return "leak:_dri.so\nleak:libEGL_mesa\nleak:libOSMesa\nleak:libLLVM\n";
+}
+#endif
+
 namespace understudy::volume::glsl {
 namespace {
 

@@ -89,13 +89,6 @@ void add(volume::FrameCounts& total, const volume::FrameCounts& frame) {
   add(total.composite_ms, frame.composite_ms);
 }
 
-template <std::size_t N>
-void put(char (&to)[N], std::string_view text) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  std::copy_n(text.begin(), length, to);
-  std::fill(to + length, to + N, char(0));
-}
-
 /// Moves the figures of a volume that is gone into the last place, and leaves its own as new.
 void hand_on(VolumeCounters& volume, VolumeCounters& last) {
   last.draws_substituted.fetch_add(volume.draws_substituted.exchange(0));
@@ -104,18 +97,24 @@ void hand_on(VolumeCounters& volume, VolumeCounters& last) {
   for (ReasonCount& reason : volume.left_because) {
     if (const std::uint64_t times = reason.count.exchange(0); times > 0)
       count_reason(last, reason.reason, times);
-    put(reason.reason, "");
+    put_text(reason.reason, "");
   }
   last.verified_frames.fetch_add(volume.verified_frames.exchange(0));
   last.verify_max = std::max(last.verify_max, std::exchange(volume.verify_max, 0));
   add(last.verify_sum_sq, std::exchange(volume.verify_sum_sq, 0));
-  put(volume.explanation, "");
-  put(volume.texture_format, "");
+  put_text(volume.explanation, "");
+  put_text(volume.texture_format, "");
   std::fill(std::begin(volume.size), std::end(volume.size), 0);
-  put(last.explanation, "all volumes that found no place of their own any more, together");
+  put_text(last.explanation, "all volumes that found no place of their own any more, together");
 }
 
 }  // namespace
+
+void put_text(std::span<char> field, std::string_view text) {
+  const std::size_t length = std::min(text.size(), field.size() - 1);
+  std::copy_n(text.begin(), length, field.begin());
+  std::fill(field.begin() + std::ptrdiff_t(length), field.end(), char(0));
+}
 
 VolumeCounters& count_volume(std::uint64_t texture) {
   ProcessCounters& process = process_counters();
@@ -171,7 +170,7 @@ void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t
   const std::string_view known = reason.substr(0, sizeof ReasonCount::reason - 1);
   ReasonCount& last = volume.left_because[max_counted_reasons - 1];
   for (ReasonCount& slot : volume.left_because) {
-    if (slot.reason[0] == 0) put(slot.reason, &slot == &last ? "other reasons" : known);
+    if (slot.reason[0] == 0) put_text(slot.reason, &slot == &last ? "other reasons" : known);
     if (&slot == &last || std::string_view(slot.reason) == known) {
       slot.count.fetch_add(times, std::memory_order_relaxed);
       return;

@@ -108,6 +108,9 @@ VolumeCounters& count_as_one(std::span<VolumeCounters* const> parts);
 /// The volume is gone: its figures stay until their place is needed.
 void leave_behind(VolumeCounters& volume);
 
+/// A fixed field of the counters: as much of the text as it holds, and zeros.
+void put_text(std::span<char> field, std::string_view text);
+
 /// Counts one more run that was left to the application. A volume knows max_counted_reasons; the last of them
 /// is "other reasons" once there are more.
 void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times = 1);

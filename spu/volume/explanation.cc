@@ -61,19 +61,13 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
                                                            : "");
 }
 
-template <std::size_t N>
-void put(char (&to)[N], std::string_view text) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  std::copy_n(text.begin(), length, to);
-  to[length] = 0;
-}
-
 }  // namespace
 
 void VolumeUnit::explain(const Substitution& s, std::string_view beginning) {
   const volume::Matrix4& a = s.request.texture_to_clip;
   const bool perspective = std::abs(a[12]) + std::abs(a[13]) + std::abs(a[14]) > 1e-9 * std::abs(a[15]);
-  put(s.volume.counters->explanation,
+  put_text(
+      s.volume.counters->explanation,
       fmt::format("{}{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, "
                   "fit to {:.1e}, "
                   "{} of {} colours, {} clip planes, {}{}",

@@ -202,13 +202,6 @@ int margin_of(const std::vector<ObservedSlab>& slabs, const std::array<int, 3>& 
   return block * int(std::ceil(cells / block));
 }
 
-template <std::size_t N>
-void put(char (&to)[N], std::string_view text) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  std::copy_n(text.begin(), length, to);
-  to[length] = 0;
-}
-
 }  // namespace
 
 SliceOrder order_of(const Pipeline& pipeline) {
@@ -516,7 +509,7 @@ void VolumeUnit::describe_volume(Substitution& s) {
   }
   known.texture = texture;
   for (int k = 0; k < 3; ++k) known.counters->size[k] = texture.size[std::size_t(k)];
-  put(known.counters->texture_format, texture.format_name);
+  put_text(known.counters->texture_format, texture.format_name);
 }
 
 void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {

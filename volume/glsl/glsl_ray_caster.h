@@ -3,8 +3,8 @@
 // is OpenGL's filter, which is exact on llvmpipe and has weights of 8 bits on most graphics cards.
 //
 // It draws scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
-// every operator. Tables of pairs, fog, texels that are not numbers, and volumes or pictures over OpenGL's
-// limits are for the CPU.
+// every operator. Tables of pairs, fog, segments, surfaces, light, texels that are not numbers, and volumes or
+// pictures over OpenGL's limits are for the CPU.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@
 namespace understudy::spu {
 namespace {
 
-/// So many frames in a row the whole must have been shown before the nodes forget the bricks.
+/// In so many frames the whole must have been shown before the nodes forget the bricks.
 constexpr std::uint64_t frames_before_bricks_go = 16;
 constexpr std::uint64_t longest_pause = 1024;
 /// Looking at all pairs of bricks would take longer than drawing them one by one.

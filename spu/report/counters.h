@@ -49,7 +49,8 @@ struct VolumeCounters {
 
 /// Parts of a frame, in milliseconds. They do not overlap; what is left of the frame is the application's.
 struct FrameShares {
-  double recognition;   ///< what a run means: geometry, colours, depth before it
+  double recognition;   ///< what a run means: geometry, colours
+  double depth;         ///< reading what opaque geometry left, which waits until the driver has drawn it
   double upload;        ///< texels to the nodes
   double render;        ///< waiting for the render service
   double verification;  ///< the application's own drawing, and the comparison
@@ -57,6 +58,7 @@ struct FrameShares {
 
   FrameShares& operator+=(const FrameShares& other) {
     recognition += other.recognition;
+    depth += other.depth;
     upload += other.upload;
     render += other.render;
     verification += other.verification;

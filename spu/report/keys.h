@@ -27,7 +27,8 @@ constexpr const char* calls = "calls";
 constexpr const char* frame_median = "frame_median";
 constexpr const char* substituted_median = "substituted_median";
 constexpr const char* application_median = "application_median";
-constexpr const char* recognition_median = "recognition_median";  ///< of substituted frames
+constexpr const char* recognition_median = "recognition_median";  ///< of substituted frames, as the next
+constexpr const char* depth_median = "depth_median";
 
 // left_out
 constexpr const char* samples_skipped = "samples_skipped";
@@ -39,6 +40,7 @@ constexpr const char* nodes_idle = "nodes_idle";
 constexpr const char* frame = "frame";
 constexpr const char* time = "time_ms";
 constexpr const char* recognition_time = "recognition_ms";
+constexpr const char* depth_time = "depth_ms";
 constexpr const char* upload_time = "upload_ms";
 constexpr const char* render_time = "render_ms";
 constexpr const char* verification_time = "verification_ms";

@@ -85,12 +85,14 @@ Json median_times(Processes processes) {
   std::vector<double> substituted;
   std::vector<double> application;
   std::vector<double> recognition;
+  std::vector<double> depth;
   for (const ProcessCounters* process : processes) {
     for_each_kept_frame(*process, [&](std::uint64_t, const FrameRecord& frame) {
       all.push_back(frame.time_ms);
       if (frame.substituted > 0) {
         substituted.push_back(frame.time_ms);
         recognition.push_back(frame.spent_ms.recognition);
+        depth.push_back(frame.spent_ms.depth);
       }
       if (frame.substituted == 0 && frame.left > 0) application.push_back(frame.time_ms);
     });
@@ -98,7 +100,8 @@ Json median_times(Processes processes) {
   return {{report_key::frame_median, median(std::move(all))},
           {report_key::substituted_median, median(std::move(substituted))},
           {report_key::application_median, median(std::move(application))},
-          {report_key::recognition_median, median(std::move(recognition))}};
+          {report_key::recognition_median, median(std::move(recognition))},
+          {report_key::depth_median, median(std::move(depth))}};
 }
 
 Json left_out(const volume::FrameCounts& counts) {
@@ -113,6 +116,7 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
               {report_key::pid, pid},
               {report_key::time, frame.time_ms},
               {report_key::recognition_time, frame.spent_ms.recognition},
+              {report_key::depth_time, frame.spent_ms.depth},
               {report_key::upload_time, frame.spent_ms.upload},
               {report_key::render_time, frame.spent_ms.render},
               {report_key::verification_time, frame.spent_ms.verification},

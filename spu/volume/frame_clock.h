@@ -1,4 +1,5 @@
-// Where the volume unit's part of a frame goes: recognising, uploading, rendering, verifying, presenting.
+// Where the volume unit's part of a frame goes: recognising, reading depth, uploading, rendering,
+// verifying, presenting.
 #pragma once
 
 #include <chrono>

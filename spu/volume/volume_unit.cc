@@ -652,6 +652,7 @@ void VolumeUnit::compose_request(Substitution& s) {
 
 void VolumeUnit::hide_behind_geometry(Substitution& s) {
   if (!s.pipeline.depth_test) return;
+  const TimedShare timed(clock_, &FrameShares::depth);
   s.request.depth = read_depth(context(), s.pipeline.target, volume::footprint(s.request, s.request.region),
                                s.pipeline.depth_or_equal);
 }

@@ -186,6 +186,10 @@ class Run:
         """What finding out what was drawn takes of a substituted frame, once a volume is known."""
         return self.report["time_ms"]["recognition_median"] if self.report else None
 
+    def depth_ms(self):
+        """What reading the depth of the geometry drawn before the volume takes of a substituted frame."""
+        return self.report["time_ms"]["depth_median"] if self.report else None
+
     def calls_a_frame(self):
         if self.report is None or not self.report["frames"]:
             return None
@@ -209,7 +213,8 @@ def median(values):
 
 def row_of(script, name, arguments):
     """All that the table says of one viewer."""
-    row = {"viewer": name, "ways": {}, "frame_ratio": {}, "calls_a_frame": None, "recognition_ms": None, "reason": ""}
+    row = {"viewer": name, "ways": {}, "frame_ratio": {}, "calls_a_frame": None, "recognition_ms": None,
+           "depth_ms": None, "reason": ""}
     runs = {way: [] for way in WAYS}
     for number in range(arguments.rounds):
         for way in WAYS:
@@ -245,6 +250,7 @@ def row_of(script, name, arguments):
     if embedded:
         row["calls_a_frame"] = embedded.calls_a_frame()
         row["recognition_ms"] = median(run.recognition_ms() for run in runs["embedded"] if not run.trouble)
+        row["depth_ms"] = median(run.depth_ms() for run in runs["embedded"] if not run.trouble)
         row["reason"] = embedded.reason()
     return row
 
@@ -259,23 +265,23 @@ def cell_of_way(way):
     return "yes" if way["psnr"] is None else f"yes, {way['psnr']:.1f} dB, max {way['max']:.3f}"
 
 
-def recognition_cell(recognition, bare):
+def share_cell(share, bare):
     """In milliseconds, and as a part of the frame that the viewer would draw by itself."""
-    if recognition is None:
+    if share is None:
         return "–"
-    return f"{recognition:.1f} ms" + (f" ({100 * recognition / bare:.1f} %)" if bare else "")
+    return f"{share:.1f} ms" + (f" ({100 * share / bare:.1f} %)" if bare else "")
 
 
 def markdown(rows):
-    lines = ["| viewer | embedded | 2 ranks | preload | ms bare | embedded | 2 ranks | recognising | calls a frame "
-             "| left because |",
-             "|---|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| viewer | embedded | 2 ranks | preload | ms bare | embedded | 2 ranks | recognising | reading depth "
+             "| calls a frame | left because |",
+             "|---|---|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         times, ratios = row.get("frame_ms", {}), row["frame_ratio"]
         cells = [row["viewer"], *(cell_of_way(row["ways"].get(way)) for way in WAYS[1:]),
                  f"{times['bare']:.0f}" if times.get("bare") else "–",
                  *(f"{times[way]:.0f} ({ratios[way]:.1f}×)" if way in ratios else "–" for way in ("embedded", "2 ranks")),
-                 recognition_cell(row.get("recognition_ms"), times.get("bare")),
+                 *(share_cell(row.get(share), times.get("bare")) for share in ("recognition_ms", "depth_ms")),
                  f"{row['calls_a_frame']:.0f}" if row["calls_a_frame"] else "–", row["reason"] or "–"]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"

@@ -54,7 +54,7 @@ struct FrameShares {
   double upload;        ///< texels to the nodes
   double render;        ///< waiting for the render service
   double verification;  ///< the application's own drawing, and the comparison
-  double presentation;  ///< the picture into the application's framebuffer
+  double presentation;  ///< the picture completed, and into the application's framebuffer
 
   FrameShares& operator+=(const FrameShares& other) {
     recognition += other.recognition;

@@ -79,7 +79,8 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   };
   describe_volume(s);
   const auto context_of = [&] {
-    return MarchContext{context(), s.run, parts, known.texture, known.range, !s.cuts.clipping.empty()};
+    return MarchContext{context(),  s.run, parts, known.texture, known.range, !s.cuts.clipping.empty(),
+                        &*s.capture};
   };
   std::vector<CoordinateSpace> spaces;
   if (known.march) {
@@ -127,10 +128,10 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
       known.march = choose_march(s, service, std::get<std::vector<March>>(finding));
       known.frames = 0;  // looked at again, as a new volume is
     }
+    box = box_in(measured, known.march->space);
+    use(box);
   }
   known.march_inputs = std::move(inputs);
-  box = box_in(measured, known.march->space);
-  use(box);
   compose_request(s);
   hide_behind_geometry(s);
   s.opaque = s.request.depth;
@@ -147,6 +148,7 @@ void VolumeUnit::complete_picture(Substitution& s, compositor::RenderService& se
   picture = std::move(whole);
   for (std::size_t part = 1; part < s.cuts.parts.size(); ++part) {
     s.request.clip_planes = s.cuts.parts[part];
+    const TimedShare timed(clock_, &FrameShares::render);
     const compositor::Rendered rendered = service.render(s.request);
     compositor::blend(s.request.op, picture, rendered.image);
     counts += rendered.counts;
@@ -160,7 +162,8 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
                                const std::vector<March>& marches) {
   const auto record = chain_.group().programs().program(s.pipeline.program);
   const MarchContext measured{context(),        s.run,          stages(s.pipeline.program, *record),
-                              s.volume.texture, s.volume.range, !s.cuts.clipping.empty()};
+                              s.volume.texture, s.volume.range, !s.cuts.clipping.empty(),
+                              &*s.capture};
   std::optional<ApplicationPicture> looked_at;
   const March* best = nullptr;
   double least = 0;

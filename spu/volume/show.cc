@@ -39,11 +39,13 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
   volume::FrameCounts counts = rendered.counts;
   const bool finished_here = s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
   if (options.debug_tint || blending.alpha_stands_apart() || finished_here) {
+    const TimedShare timed(clock_, &FrameShares::presentation);
     picture.rect = shown.rect;
     picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
     shown = picture.view();
   }
   if (finished_here) {
+    const TimedShare timed(clock_, &FrameShares::presentation);
     complete_picture(s, service, *s.volume.march, picture, counts);
     shown = picture.view();
   }

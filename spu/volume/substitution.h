@@ -34,7 +34,8 @@ struct VolumeUnit::Substitution {
   bool proxy = false;  ///< one draw of a box, whose fragment shader marches
   ObservedPolygons polygons{};
   std::vector<float> fog_numbers{};  ///< of fixed-function fog, vertex by vertex
-  std::optional<Capture> capture{};  ///< where a vertex shader was observed; its polygons are in `polygons`
+  std::optional<Capture>
+      capture{};  ///< where a vertex shader was observed; polygons of slices are in `polygons`
   std::optional<CameraFit> fit{};
   FragmentInputs fragment{};
   std::vector<GLuint> stack{};  ///< the textures of a stack, from the volume's low end to its high end

@@ -415,10 +415,15 @@ void VolumeUnit::observe(Substitution& s) {
     if (!parts.trouble.empty() && !one_draw) throw Doubt{parts.trouble};
     if (record->vertex_shader) {
       if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
-      Capture capture = capture_vertices(context(), s.run, parts);
+      const std::string known_coordinate = s.volume.march ? s.volume.march->space.input : std::string();
+      Capture capture = capture_vertices(context(), s.run, parts, known_coordinate);
+      if (!capture.fit && !known_coordinate.empty()) capture = capture_vertices(context(), s.run, parts);
       if (capture.polygons.count() == 0) throw NothingVisible{};
       s.proxy = one_draw && capture.fit && draws_box(context(), s.run, parts, capture);
-      if (s.proxy) return;
+      if (s.proxy) {
+        s.capture = std::move(capture);
+        return;
+      }
       if (!parts.trouble.empty()) throw Doubt{parts.trouble};
       if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
       s.polygons = std::move(capture.polygons);

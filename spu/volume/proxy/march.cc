@@ -325,6 +325,13 @@ std::optional<CutBox> body_of(const Capture& capture) {
   return cut_box_of(capture.polygons);
 }
 
+/// With `input` for the coordinate; in `captured`, unless the run was captured so before.
+const Capture& capture_by(const MarchContext& measured, const std::string& input, Capture& captured) {
+  if (measured.seen != nullptr && measured.seen->coordinate == input) return *measured.seen;
+  captured = capture_vertices(measured.context, measured.run, measured.stages, input);
+  return captured;
+}
+
 bool is_cut(const CutBox& body) {
   return volume::length(body.cut.normal) > 0;
 }
@@ -375,10 +382,11 @@ bool draws_box(const GlContext& context, const Run& run, const ProgramStages& st
 
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
   std::vector<CoordinateSpace> of_texels;
+  Capture captured;
   const auto& size = measured.texture.size;
   for (const StageInput& input : measured.stages.inputs) {
     if (input.integer || input.components < 3) continue;
-    const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, input.name);
+    const Capture& capture = capture_by(measured, input.name, captured);
     if (!capture.fit) continue;
     const auto body = body_of(capture);
     if (!body) continue;
@@ -403,7 +411,8 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
 }
 
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space) {
-  const Capture capture = capture_vertices(measured.context, measured.run, measured.stages, space.input);
+  Capture captured;
+  const Capture& capture = capture_by(measured, space.input, captured);
   if (!capture.fit || capture.fit->residual > max_fit_residual) return std::nullopt;
   const auto body = body_of(capture);
   if (!body || !wholly_in_view(capture.polygons)) return std::nullopt;

@@ -73,8 +73,9 @@ struct MarchContext {
   const Run& run;
   const ProgramStages& stages;
   const TextureDescription& texture;
-  std::array<float, 2> range;  ///< of the texels' values
-  bool clipped = false;        ///< rays begin or end at clipping planes
+  std::array<float, 2> range;     ///< of the texels' values
+  bool clipped = false;           ///< rays begin or end at clipping planes
+  const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);

@@ -5,6 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "glsl_program.h"
+
 namespace understudy::spu::testing {
 namespace {
 
@@ -111,20 +113,6 @@ constexpr const char* wall_vertices =
 constexpr const char* wall_fragments =
     "#version 330\n"
     "out vec4 colour; void main() { colour = vec4(0.9, 0.8, 0.1, 1.0); }\n";
-
-GLuint program_of(const DispatchTable& gl, const char* vertices, const char* fragments) {
-  const GLuint program = gl.CreateProgram();
-  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertices}, {GL_FRAGMENT_SHADER, fragments}}) {
-    const GLuint shader = gl.CreateShader(GLenum(stage));
-    gl.ShaderSource(shader, 1, &source, nullptr);
-    gl.CompileShader(shader);
-    gl.AttachShader(program, shader);
-    gl.DeleteShader(shader);
-  }
-  gl.BindAttribLocation(program, 0, "corner");
-  gl.LinkProgram(program);
-  return program;
-}
 
 /// Two triangles a face, counterclockwise from outside.
 std::vector<GLfloat> box_triangles() {
@@ -364,8 +352,8 @@ void BoxRayCaster::set_up(GlApplication& app) {
   gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
 
-  program_ = program_of(gl, vertex_source, fragment_source);
-  wall_program_ = program_of(gl, wall_vertices, wall_fragments);
+  program_ = glsl_program(gl, vertex_source, fragment_source);
+  wall_program_ = glsl_program(gl, wall_vertices, wall_fragments);
   const std::vector<GLfloat> triangles = box_triangles();
   gl.GenVertexArrays(1, &box_);
   gl.BindVertexArray(box_);

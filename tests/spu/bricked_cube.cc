@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "drawing.h"
+#include "glsl_program.h"
 
 namespace understudy::spu::testing {
 namespace {
 
 constexpr int slices = 40;
 
+constexpr const char* vertices =
+    "#version 120\n"
+    "varying vec3 place;\n"
+    "void main() { place = gl_MultiTexCoord0.xyz; gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex; }\n";
 std::vector<std::uint8_t> colours_of_blob() {
   std::vector<std::uint8_t> colours;
   for (const std::uint8_t s : Blob().texels())
@@ -43,7 +49,13 @@ std::vector<BrickedCube::Interval> BrickedCube::cut(int size, int edge) {
   }
 }
 
-BrickedCube::BrickedCube(GlApplication& app, int edge) {
+BrickedCube::BrickedCube(GlApplication& app, int edge, BrickKind kind) : kind_(std::move(kind)) {
+  if (kind_.colour != nullptr) {
+    const std::string fragments =
+        std::string("#version 120\n") + "uniform sampler3D field; varying vec3 place; void main() { " +
+        "vec4 texel = texture3D(field, place); float s = texel.r; gl_FragColor = " + kind_.colour + "; }";
+    program_ = glsl_program(app.gl(), vertices, fragments.c_str());
+  }
   const Blob blob;
   size_ = {blob.x, blob.y, blob.z};
   const std::vector<std::uint8_t> colours = colours_of_blob();
@@ -63,8 +75,8 @@ BrickedCube::BrickedCube(GlApplication& app, int edge) {
         app.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
         for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
           app.gl().TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
-        app.gl().TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, x.texels, y.texels, z.texels, 0, GL_RGBA,
-                            GL_UNSIGNED_BYTE, part.data());
+        app.gl().TexImage3D(GL_TEXTURE_3D, 0, GLint(kind_.internal_format), x.texels, y.texels, z.texels, 0,
+                            GL_RGBA, GL_UNSIGNED_BYTE, part.data());
         bricks_.push_back({{x, y, z}, texture});
       }
 }
@@ -88,7 +100,7 @@ void BrickedCube::draw(GlApplication& app, const Brick& brick) const {
   const auto [x, y, z] = brick.along;
   app.gl().Begin(GL_QUADS);
   for (int i = 0; i < slices; ++i) {
-    const double place = (i + 0.5) / slices;
+    const double place = ((kind_.front_to_back ? slices - 1 - i : i) + 0.5) / slices;
     if (place < z.low || place >= z.high) continue;
     for (const auto& [u, v] : {std::pair{x.low, y.low}, {x.high, y.low}, {x.high, y.high}, {x.low, y.high}}) {
       app.gl().TexCoord3d(own(0, u), own(1, v), own(2, place));
@@ -109,11 +121,12 @@ void BrickedCube::draw(GlApplication& app, const Drawing& drawing) const {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k)
       sum += std::abs((bricks_[i].along[k].low + bricks_[i].along[k].high) / 2 - 0.5 - eye[k]);
-    return drawing.front_first ? -sum : sum;
+    return drawing.wrong_order != kind_.front_to_back ? -sum : sum;
   };
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
-  app.gl().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  kind_.blending(app.gl());
+  if (program_ != 0) app.gl().UseProgram(program_);
   std::size_t number = 0;
   for (const std::size_t i : order) {
     if (drawing.before_brick) drawing.before_brick(number++);
@@ -124,6 +137,7 @@ void BrickedCube::draw(GlApplication& app, const Drawing& drawing) const {
     app.gl().Disable(GL_TEXTURE_3D);
     app.gl().Disable(GL_BLEND);
   }
+  if (program_ != 0) app.gl().UseProgram(0);
   app.gl().Disable(GL_TEXTURE_3D);
   app.gl().Disable(GL_BLEND);
 }

@@ -2,18 +2,35 @@
 // drawing.h in pieces.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "gl_application.h"
 
 namespace understudy::spu::testing {
 
+/// How the application keeps its bricks, colours them and lays them over each other.
+struct BrickKind {
+  std::string name = "Colours";
+  GLenum internal_format = GL_RGBA8;
+  /// Of a sample, as GLSL over `texel` and its first component `s`; null: fixed function, colours are the
+  /// texels.
+  const char* colour = nullptr;
+  std::function<void(const DispatchTable&)> blending = [](const DispatchTable& gl) {
+    gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  };
+  bool front_to_back = false;
+  std::array<float, 4> background{0.1F, 0.2F, 0.3F, 0};
+  double least_psnr = 55;  ///< of a picture that is right, against the driver's own
+};
+
 class BrickedCube {
  public:
   /// Bricks of `edge` texels along each axis, one of which neighbours share; the last of each row is smaller.
-  BrickedCube(GlApplication& app, int edge);
+  BrickedCube(GlApplication& app, int edge, BrickKind kind = {});
 
   std::size_t bricks() const { return bricks_.size(); }
   /// The application's name of the texture of a brick.
@@ -25,10 +42,10 @@ class BrickedCube {
     double angle = 15;
     std::set<std::size_t> without{};                          ///< bricks that are not drawn
     std::function<void(std::size_t)> before_brick = nullptr;  ///< the how many-th to be drawn
-    bool front_first = false;                                 ///< in the wrong order
+    bool wrong_order = false;                                 ///< near and far exchanged
     bool blending_stays = false;                              ///< switched on once, not around every brick
   };
-  /// Back to front under SRC_ALPHA, 1 - SRC_ALPHA. Depth state is the caller's.
+  /// Depth state is the caller's.
   void draw(GlApplication& app, const Drawing& drawing) const;
   void draw(GlApplication& app, double angle) const;
 
@@ -44,6 +61,8 @@ class BrickedCube {
   static std::vector<Interval> cut(int size, int edge);
   void draw(GlApplication& app, const Brick& brick) const;
 
+  BrickKind kind_;
+  GLuint program_ = 0;
   std::array<int, 3> size_{};
   std::vector<Brick> bricks_;
 };

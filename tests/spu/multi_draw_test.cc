@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gl_application.h"
+#include "glsl_program.h"
 
 namespace understudy::spu::testing {
 namespace {
@@ -113,7 +114,6 @@ class Slices {
       : app(GlApplication::start(in_memory ? Profile::compatibility : Profile::core)), arrays_(slice_arrays()) {
     if (!app) return;
     const DispatchTable& gl = app->gl();
-    program_ = gl.CreateProgram();
     const char* vertices =
         "#version 330\n"
         "in vec3 corner; out vec3 place; uniform vec2 turn;\n"
@@ -125,16 +125,7 @@ class Slices {
         "#version 330\n"
         "uniform sampler3D field; in vec3 place; out vec4 colour;\n"
         "void main() { float s = texture(field, place).r; colour = vec4(s, 1.0 - s, 0.4, 0.2 * s * s); }\n";
-    for (const auto& [stage, source] :
-         {std::pair{GL_VERTEX_SHADER, vertices}, {GL_FRAGMENT_SHADER, fragments}}) {
-      const GLuint shader = gl.CreateShader(GLenum(stage));
-      gl.ShaderSource(shader, 1, &source, nullptr);
-      gl.CompileShader(shader);
-      gl.AttachShader(program_, shader);
-      gl.DeleteShader(shader);
-    }
-    gl.BindAttribLocation(program_, 0, "corner");
-    gl.LinkProgram(program_);
+    program_ = glsl_program(gl, vertices, fragments);
     const Blob blob;
     GLuint texture = 0;
     gl.GenTextures(1, &texture);

@@ -6,25 +6,13 @@
 
 #include "colour_target.h"
 #include "drawing.h"
+#include "glsl_program.h"
 
 namespace understudy::spu::testing {
 namespace {
 
 GLuint program(GlApplication& app, const char* fragment, const char* vertex = nullptr) {
-  const GLuint name = app.gl().CreateProgram();
-  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
-    if (source == nullptr) continue;
-    const GLuint shader = app.gl().CreateShader(GLenum(stage));
-    app.gl().ShaderSource(shader, 1, &source, nullptr);
-    app.gl().CompileShader(shader);
-    app.gl().AttachShader(name, shader);
-    app.gl().DeleteShader(shader);
-  }
-  app.gl().LinkProgram(name);
-  GLint linked = 0;
-  app.gl().GetProgramiv(name, GL_LINK_STATUS, &linked);
-  EXPECT_TRUE(linked);
-  return name;
+  return glsl_program(app.gl(), vertex, fragment);
 }
 
 void load_field(GlApplication& app) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "glsl_program.h"
+
 namespace understudy::spu::testing {
 namespace {
 
@@ -89,18 +91,7 @@ Matrix camera_matrix(double angle) {
 }
 
 GLuint program(const DispatchTable& gl, const char* vertex, const char* fragment) {
-  const GLuint name = gl.CreateProgram();
-  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
-    if (source == nullptr) continue;
-    const GLuint shader = gl.CreateShader(GLenum(stage));
-    gl.ShaderSource(shader, 1, &source, nullptr);
-    gl.CompileShader(shader);
-    gl.AttachShader(name, shader);
-    gl.DeleteShader(shader);
-  }
-  gl.BindAttribLocation(name, 3, "corner");
-  gl.LinkProgram(name);
-  return name;
+  return glsl_program(gl, vertex, fragment, 3);
 }
 
 void quad_corners(double z, std::array<GLfloat, 12>& corners) {

@@ -1,0 +1,31 @@
+// A GLSL program as the tests' applications make them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "dispatch/table.h"
+
+namespace understudy::spu::testing {
+
+/// Linked, with attribute "corner" at `corner`. Null instead of `vertex`: the vertex stage stays fixed
+/// function.
+inline GLuint glsl_program(const DispatchTable& gl, const char* vertex, const char* fragment,
+                           GLuint corner = 0) {
+  const GLuint name = gl.CreateProgram();
+  for (const auto& [stage, source] : {std::pair{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}) {
+    if (source == nullptr) continue;
+    const GLuint shader = gl.CreateShader(GLenum(stage));
+    gl.ShaderSource(shader, 1, &source, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(name, shader);
+    gl.DeleteShader(shader);
+  }
+  gl.BindAttribLocation(name, corner, "corner");
+  gl.LinkProgram(name);
+  GLint linked = 0;
+  gl.GetProgramiv(name, GL_LINK_STATUS, &linked);
+  EXPECT_TRUE(linked) << fragment;
+  return name;
+}
+
+}  // namespace understudy::spu::testing

@@ -102,6 +102,26 @@ TEST(RayIntegral, OfOpacityThatRisesToOne) {
   EXPECT_NEAR(ray_integral(ramp(1, 0, 1), Medium::of_samples(function, 1)).optical_depth, 1, 1e-12);
 }
 
+TEST(RayIntegral, OfLayersThatAreAlmostOpaque) {
+  // An opacity's last bit is many of its transparency: what cannot be told apart must not be bisected for ever.
+  TransferFunction function;
+  function.entries.assign(256, {0, 0, 0, 0});
+  for (std::size_t i = 158; i < 169; ++i) function.entries[i] = {0.5F, 0, 0, 0.9999F};
+  const auto wave = [](double x) { return std::sin(8 * std::numbers::pi * x); };
+  const Texture texture = sampled(describe({48, 48, 48}, TexelType::f32), [&](const Vec3& t) {
+    return 0.5 + (wave(t[0]) * wave(t[1] + 0.0625) + wave(t[1]) * wave(t[2] + 0.0625) +
+                  wave(t[2]) * wave(t[0] + 0.0625)) /
+                     3;
+  });
+  const Field field = texture_field(texture.description, Filter::linear, texture.texels);
+  for (const double y : {0.13, 0.37, 0.52, 0.88}) {
+    const auto ray = field_along_ray(field, texture.description.size, {0, y, 0.05}, {1, 1 - y, 0.9}, 60);
+    const RayIntegral sum = ray_integral(ray, Medium::of_samples(function, 1));
+    EXPECT_NEAR(sum.opacity(), 1, 1e-2);
+    EXPECT_NEAR(sum.colour[0], 0.5, 1e-2);
+  }
+}
+
 TEST(RayIntegral, KeepsThinFog) {
   TransferFunction function;
   function.entries = {{0, 0, 0, 3e-8F}, {0, 0, 0, 3e-8F}};

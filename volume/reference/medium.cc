@@ -85,7 +85,12 @@ double Medium::noise(std::size_t segment) const {
   const std::size_t below = segment == 0 ? 0 : segment - 1;
   const std::size_t above = std::min(segment, knots_.size() - 1);
   const double low = knots_[below], high = knots_[above];
-  const double greatest = std::max(rate(segment, low).extinction, rate(segment, high).extinction);
+  double greatest = std::max(rate(segment, low).extinction, rate(segment, high).extinction);
+  if (distance_ > 0) {
+    // The last bit of an opacity near 1 is many of its transparency, whose logarithm the extinction is.
+    const double opacity = std::max(entry_at(segment, low)[3], entry_at(segment, high)[3]);
+    greatest = std::max(greatest, opacity / (1 - opacity) / distance_);
+  }
   const double width = high - low;
   return 8 * std::numeric_limits<double>::epsilon() * greatest *
          (1 + (width > 0 ? std::max(std::abs(low), std::abs(high)) / width : 0));

@@ -1,0 +1,135 @@
+#include "apps/understudy/study/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::launcher::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array all_schemes{Scheme::post_classified, Scheme::pre_integrated, Scheme::eight_bit_slices};
+
+Json json_of(const Point& point) {
+  Json json{{"scheme", name_of(point.setting.scheme)},
+            {"step", point.setting.step},
+            {"termination", point.setting.termination},
+            {"rms", point.error.rms},
+            {"max", point.error.max},
+            {"time_ms", nullptr},
+            {"ns_per_ray", nullptr},
+            {"samples_taken", point.samples_taken},
+            {"samples", point.samples},
+            {"front", point.front}};
+  if (point.time_ms > 0) {
+    json["time_ms"] = point.time_ms;
+    json["ns_per_ray"] = point.ns_per_ray;
+  }
+  return json;
+}
+
+Point point_of(const Json& json) {
+  Point point;
+  const auto scheme = std::ranges::find(all_schemes, json.at("scheme").get<std::string>(), name_of);
+  if (scheme == all_schemes.end()) throw std::invalid_argument("a scheme that is not known");
+  point.setting = {*scheme, json.at("step"), json.at("termination")};
+  point.error = {json.at("max"), json.at("rms")};
+  if (!json.at("time_ms").is_null()) {
+    point.time_ms = json.at("time_ms");
+    point.ns_per_ray = json.at("ns_per_ray");
+  }
+  point.samples_taken = json.at("samples_taken");
+  point.samples = json.at("samples");
+  return point;
+}
+
+Json json_of(const SceneResults& scene) {
+  Json json{{"name", scene.name},       {"shows", scene.shows},
+            {"volume", scene.volume},   {"size", scene.size},
+            {"rays", scene.rays},       {"reference_seconds", scene.reference_seconds},
+            {"orders", Json::object()}, {"error_maps", scene.error_maps},
+            {"points", Json::array()}};
+  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated})
+    if (const auto order = observed_order(scene.points, scheme)) json["orders"][name_of(scheme)] = *order;
+  for (const Point& point : scene.points) json["points"].push_back(json_of(point));
+  return json;
+}
+
+SceneResults scene_of(const Json& json) {
+  SceneResults scene;
+  scene.name = json.at("name");
+  scene.shows = json.at("shows");
+  scene.volume = json.at("volume");
+  scene.size = json.at("size");
+  scene.rays = json.at("rays");
+  scene.reference_seconds = json.at("reference_seconds");
+  scene.error_maps = json.at("error_maps");
+  for (const Json& point : json.at("points")) scene.points.push_back(point_of(point));
+  return scene;
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  // Whoever stops a study in between finds the last whole file.
+  const std::filesystem::path part = path.string() + ".part";
+  std::ofstream file(part, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(part.string() + ": cannot be written; is the disk full?");
+  std::filesystem::rename(part, path);
+}
+
+}  // namespace
+
+const Point* SceneResults::find(const Setting& setting) const {
+  const auto found = std::ranges::find(points, setting, &Point::setting);
+  return found == points.end() ? nullptr : &*found;
+}
+
+std::string text_of(const Setting& setting) {
+  std::string text = fmt::format("{}, step {:g}", name_of(setting.scheme), setting.step);
+  if (setting.termination > 1e-4) text += fmt::format(", ends below {:g}", setting.termination);
+  return text;
+}
+
+Results read_results(const std::filesystem::path& folder, int edge, int stride) {
+  Results results{edge, stride, {}};
+  std::ifstream file(folder / "study.json");
+  if (!file) return results;
+  try {
+    const Json json = Json::parse(file);
+    if (json.at("edge") != edge || json.at("stride") != stride ||
+        json.at("instruction_set") != volume::instruction_set())
+      return results;
+    for (const Json& scene : json.at("scenes")) results.scenes.push_back(scene_of(scene));
+  } catch (const std::exception&) {
+    // Of another version, or not a study's: it is made anew.
+    results.scenes.clear();
+  }
+  return results;
+}
+
+void write_results(const std::filesystem::path& folder, const Results& results) {
+  Json json{{"edge", results.edge},
+            {"stride", results.stride},
+            {"instruction_set", volume::instruction_set()},
+            {"scenes", Json::array()}};
+  std::string csv = "scene,scheme,step,termination,rms,max,time_ms,ns_per_ray,samples_taken,samples,front\n";
+  for (const SceneResults& scene : results.scenes) {
+    json["scenes"].push_back(json_of(scene));
+    for (const Point& point : scene.points)
+      csv += fmt::format("{},{},{:g},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{:d}\n", scene.name,
+                         name_of(point.setting.scheme), point.setting.step, point.setting.termination,
+                         point.error.rms, point.error.max, point.time_ms, point.ns_per_ray, point.samples_taken,
+                         point.samples, point.front);
+  }
+  write(folder / "study.json", json.dump(1) + "\n");
+  write(folder / "study.csv", csv);
+}
+
+}  // namespace understudy::launcher::study

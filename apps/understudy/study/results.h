@@ -1,0 +1,43 @@
+// What a study has found so far, in files: study.json is read again by a study that goes on, study.csv has a
+// row a setting.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/study/measure.h"
+
+namespace understudy::launcher::study {
+
+struct SceneResults {
+  std::string name;
+  std::string shows;
+  std::string volume;
+  std::array<int, 3> size{};
+  int rays = 0;
+  double reference_seconds = 0;
+  std::vector<Point> points;
+  /// Pictures of where a setting is wrong, by the setting's name; files beside study.json.
+  std::map<std::string, std::string> error_maps;
+
+  const Point* find(const Setting& setting) const;
+};
+
+struct Results {
+  int edge = 0;    ///< of the pictures, in pixels
+  int stride = 0;  ///< every so manieth pixel is compared
+  std::vector<SceneResults> scenes;
+};
+
+/// Of an earlier study in this folder with pictures of the same size; nothing where there is none.
+Results read_results(const std::filesystem::path& folder, int edge, int stride);
+
+/// Throws std::runtime_error naming the file.
+void write_results(const std::filesystem::path& folder, const Results& results);
+
+/// "pre-integrated, step 0.5"
+std::string text_of(const Setting& setting);
+
+}  // namespace understudy::launcher::study

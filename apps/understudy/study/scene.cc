@@ -1,0 +1,197 @@
+#include "apps/understudy/study/scene.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "volume/file/synthetic.h"
+#include "volume/file/texel_stream.h"
+#include "volume/orbit_camera.h"
+#include "volume/raycast/segment_scene.h"
+#include "volume/reference/pixel_integral.h"
+
+namespace understudy::launcher::study {
+namespace {
+
+using volume::Rgba;
+using volume::TransferFunction;
+
+constexpr std::size_t slab_bytes = std::size_t(16) << 20;
+/// As many as most viewers' tables have.
+constexpr std::size_t table_entries = 256;
+
+/// `table` at 256 values; between them it is taken for linear, by the reference too.
+TransferFunction resampled(const TransferFunction& table) {
+  TransferFunction result{table.low, table.high, {}};
+  const auto last = double(table.entries.size() - 1);
+  for (std::size_t i = 0; i < table_entries; ++i) {
+    const double at = last * double(i) / double(table_entries - 1);
+    const auto below = std::min(std::size_t(at), table.entries.size() - 2);
+    const auto share = float(at - double(below));
+    Rgba& entry = result.entries.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k)
+      entry[k] = (1 - share) * table.entries[below][k] + share * table.entries[below + 1][k];
+  }
+  return result;
+}
+
+std::array<double, 4> sample_of(const TransferFunction& table, double value) {
+  const double at = std::clamp((value - double(table.low)) / double(table.high - table.low), 0.0, 1.0) *
+                    double(table.entries.size() - 1);
+  const auto below = std::min(std::size_t(at), table.entries.size() - 2);
+  const double share = at - double(below);
+  std::array<double, 4> sample{};
+  for (std::size_t k = 0; k < 4; ++k)
+    sample[k] = (1 - share) * double(table.entries[below][k]) + share * double(table.entries[below + 1][k]);
+  return sample;
+}
+
+double in_bytes(double value) {
+  return std::round(255 * std::clamp(value, 0.0, 1.0)) / 255;
+}
+
+}  // namespace
+
+std::vector<SceneDescription> built_in_scenes() {
+  const auto range = [](std::vector<volume::TransferKnots::Knot> knots) {
+    return volume::TransferKnots{false, std::move(knots)};
+  };
+  return {
+      {"smooth", "a smooth field under a smooth table: the order of accuracy shows",
+       "synthetic:96x96x96:f32:gyroid",
+       range({{0, {0.1, 0.2, 0.8}, 0}, {0.5, {0.3, 0.8, 0.4}, 0.02}, {1, {1, 0.6, 0.2}, 0.08}})},
+      {"opaque-layers", "stiff: thin layers of opacity 0.9999 in a table with steps",
+       "synthetic:96x96x96:f32:gyroid",
+       range({{0, {0.9, 0.4, 0.1}, 0},
+              {0.62, {0.9, 0.4, 0.1}, 0},
+              {0.62, {0.9, 0.4, 0.1}, 0.9999},
+              {0.66, {0.9, 0.8, 0.3}, 0.9999},
+              {0.66, {0.9, 0.8, 0.3}, 0},
+              {1, {0.9, 0.8, 0.3}, 0}})},
+      {"thin-fog", "opacities below half a byte a sample: eight bits lose them", "synthetic:96x96x96:u8:lobes",
+       range({{0, {0.7, 0.8, 0.9}, 0.0002}, {1, {1, 1, 1}, 0.0018}})},
+      {"spikes", "a table narrower than the field's change over a step", "synthetic:96x96x96:u16:lobes",
+       range({{0, {0.2, 0.3, 1}, 0},
+              {0.30, {0.2, 0.3, 1}, 0},
+              {0.305, {0.2, 0.5, 1}, 0.4},
+              {0.31, {0.2, 0.5, 1}, 0},
+              {0.60, {1, 0.4, 0.2}, 0},
+              {0.605, {1, 0.4, 0.2}, 0.6},
+              {0.61, {1, 0.4, 0.2}, 0},
+              {1, {1, 1, 1}, 0}})},
+      {"anisotropic",
+       "voxels sixteen times as deep as wide",
+       "synthetic:96x96x24:u8:shells",
+       range({{0, {0.2, 0.6, 0.9}, 0}, {0.3, {0.2, 0.6, 0.9}, 0.01}, {1, {1, 0.9, 0.6}, 0.05}}),
+       {1, 1, 16}},
+  };
+}
+
+Scene::Scene(const SceneDescription& description, int edge, int stride)
+    : edge_(edge - edge % stride), stride_(stride) {
+  const std::string path = volume::is_synthetic(description.volume)
+                               ? description.volume
+                               : std::filesystem::absolute(description.volume).string();
+  auto file = volume::open_volume(path);
+  const volume::FileDescription read = file->description();
+  const volume::TexelMapping mapping = mapping_of(read, {});
+  description_.id = 1;
+  description_.size = read.size;
+  description_.type = mapping.type;
+  description_.stored = {{0, 0, 0}, read.size};
+  spacing_ = description.spacing == volume::Vec3{} ? read.spacing : description.spacing;
+  for (double& distance : spacing_) distance = volume::believable_spacing(distance);
+
+  std::vector<std::byte> texels;
+  volume::TexelStream stream(std::move(file), {}, description_.stored);
+  while (!stream.done()) {
+    const volume::TexelStream::Slab slab = stream.next(slab_bytes);
+    texels.insert(texels.end(), slab.texels.begin(), slab.texels.end());
+  }
+  const volume::TexelFigures& values = stream.figures();
+  const double low = values.low <= values.high ? values.low : 0;
+  const double high = values.low < values.high ? values.high : low + 1;
+  table_ = resampled(sampled(description.knots, low, high, 1));
+  table_.low = float(mapping.normalised(low));
+  table_.high = float(mapping.normalised(high));
+
+  description_.margin = margin_needed(description_, request(8, volume::Method::pre_integrated, 0));
+  store_ = std::make_unique<volume::BrickStore>(description_, volume::cell_lattice(description_).box());
+  store_->add_slices(description_.stored, texels);
+  store_->finish();
+  field_ = texture_field(description_, volume::Filter::linear, texels);
+}
+
+TransferFunction Scene::table_for(double step) const {
+  TransferFunction table = table_;
+  for (Rgba& entry : table.entries) {
+    const double alpha = double(entry[3]);
+    const double seen = -std::expm1(step * std::log1p(-alpha));
+    const double share = alpha > 0 ? seen / alpha : step;
+    for (std::size_t k = 0; k < 3; ++k) entry[k] = float(share * double(entry[k]));
+    entry[3] = float(seen);
+  }
+  return table;
+}
+
+volume::RenderRequest Scene::request(double step, volume::Method method, double termination) const {
+  volume::RenderRequest request = orbit_request(description_, spacing_, {35, 25, 3}, edge_, edge_, step);
+  request.classification = table_for(step);
+  request.method = method;
+  request.termination = float(termination);
+  return request;
+}
+
+void Scene::integrate(const std::function<void(double done)>& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const volume::RenderRequest one_voxel = request(1, volume::Method::post_classified, 0);
+  const volume::Medium medium = volume::Medium::of_samples(table_, 1);
+  const int across = rays_across();
+  exact_.assign(std::size_t(across) * std::size_t(across), {});
+  std::atomic<int> rows = 0;
+  tbb::parallel_for(0, across, [&](int row) {
+    for (int column = 0; column < across; ++column)
+      exact_[std::size_t(row * across + column)] =
+          pixel_integral(field_, description_.size, one_voxel, medium, pixel(column), pixel(row));
+    progress(double(++rows) / across);
+  });
+  reference_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Scene::Rays Scene::compared(const volume::Image& picture) const {
+  Rays rays;
+  for (int row = 0; row < rays_across(); ++row)
+    for (int column = 0; column < rays_across(); ++column) {
+      const float* const at = picture.at(pixel(column), pixel(row));
+      rays.push_back({double(at[0]), double(at[1]), double(at[2]), double(at[3])});
+    }
+  return rays;
+}
+
+Scene::Rays Scene::in_eight_bits(double step) const {
+  const volume::RenderRequest asked = request(step, volume::Method::post_classified, 0);
+  const TransferFunction table = table_for(step);
+  const int across = rays_across();
+  Rays rays(std::size_t(across) * std::size_t(across));
+  tbb::parallel_for(0, across, [&](int row) {
+    for (int column = 0; column < across; ++column) {
+      const auto ray = volume::pixel_ray(asked, pixel(column), pixel(row));
+      if (!ray) continue;
+      std::array<double, 4>& shown = rays[std::size_t(row * across + column)];
+      for (int i = int(std::floor(ray->length - asked.steps->first)); i >= 0; --i) {
+        const double share = (asked.steps->first + i) / ray->length;
+        volume::Vec3 t{};
+        for (std::size_t k = 0; k < 3; ++k) t[k] = ray->from[k] + share * (ray->to[k] - ray->from[k]);
+        const std::array<double, 4> sample = sample_of(table, field_(t)[0]);
+        for (std::size_t k = 0; k < 4; ++k) shown[k] = in_bytes(sample[k] + (1 - sample[3]) * shown[k]);
+      }
+    }
+  });
+  return rays;
+}
+
+}  // namespace understudy::launcher::study

@@ -1,0 +1,234 @@
+#include "apps/understudy/study/study.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <system_error>
+
+#include "apps/understudy/child_process.h"
+#include "apps/understudy/installation.h"
+#include "apps/understudy/knots_file.h"
+#include "apps/understudy/picture.h"
+#include "apps/understudy/study/results.h"
+
+namespace understudy::launcher {
+namespace {
+
+using namespace study;
+namespace fs = std::filesystem;
+
+constexpr int quick_edge = 256, whole_edge = 512;
+constexpr int quick_stride = 6, whole_stride = 6;
+constexpr int quick_repetitions = 5, whole_repetitions = 9;
+/// Of all work on a scene, the part that its reference takes.
+constexpr double reference_share = 0.6;
+constexpr int page_patience_ms = 120000;
+
+struct StudyArguments {
+  std::vector<std::string> scenes;
+  std::vector<std::string> volumes;  ///< FILE or FILE,TABLE
+  std::string out = "out/study";
+  bool quick = false;
+  bool fresh = false;
+  int edge = 0;
+};
+
+/// A bar on a terminal, else a line for every scene.
+class Progress {
+ public:
+  explicit Progress(std::size_t scenes) : scenes_(scenes), bar_(::isatty(STDERR_FILENO) != 0) {}
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() {
+    if (bar_ && shown_) std::fputc('\n', stderr);
+  }
+
+  void begin(std::size_t scene, const std::string& name) {
+    scene_ = scene;
+    name_ = name;
+    if (!bar_) fmt::print(stderr, "study: {} ({} of {})\n", name, scene + 1, scenes_);
+  }
+  /// `done`: of the scene. Any thread may call it.
+  void show(double done, const std::string& what) {
+    if (!bar_) return;
+    const std::lock_guard lock(mutex_);
+    shown_ = true;
+    const double all = (double(scene_) + done) / double(scenes_);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    const int left = all > 0.02 ? int(spent.count() * (1 - all) / all) : -1;
+    fmt::print(stderr, "\r\033[Kstudy {:3.0f} %  {}: {}{}", 100 * all, name_, what,
+               left < 0 ? "" : fmt::format("  {}:{:02} left", left / 60, left % 60));
+  }
+
+ private:
+  std::size_t scenes_;
+  bool bar_;
+  bool shown_ = false;
+  std::size_t scene_ = 0;
+  std::string name_;
+  std::mutex mutex_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
+  std::vector<SceneDescription> all;
+  for (const SceneDescription& scene : built_in_scenes())
+    if (arguments.scenes.empty() || std::ranges::find(arguments.scenes, scene.name) != arguments.scenes.end())
+      all.push_back(scene);
+  for (const std::string& name : arguments.scenes)
+    if (std::ranges::find(all, name, &SceneDescription::name) == all.end()) {
+      std::string names;
+      for (const SceneDescription& scene : built_in_scenes()) names += " " + scene.name;
+      throw std::invalid_argument(fmt::format("there is no scene '{}'; there are{}", name, names));
+    }
+  for (const std::string& given : arguments.volumes) {
+    const std::size_t comma = given.rfind(',');
+    const std::string file = given.substr(0, comma);
+    const std::string table = comma == std::string::npos ? "grey" : given.substr(comma + 1);
+    const std::string name = fs::path(file).filename().string();
+    all.push_back({name.substr(0, name.find_first_of("._")), "table " + table, file, read_knots(table), {}});
+  }
+  return all;
+}
+
+/// From black (nothing) over red and yellow to white (a tenth and more), a decade a fifth of the way.
+void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays& rays) {
+  constexpr int pixels_a_ray = 6;
+  const int across = scene.rays_across();
+  Picture picture;
+  picture.width = picture.height = across * pixels_a_ray;
+  picture.rgba.assign(std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height), 1);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto ray = std::size_t((across - 1 - y / pixels_a_ray) * across + x / pixels_a_ray);
+      double error = 0;
+      for (std::size_t k = 0; k < 4; ++k)
+        error = std::max(error, std::abs(rays[ray][k] - scene.exact()[ray][k]));
+      const auto heat = float(std::clamp((std::log10(std::max(error, 1e-9)) + 6) / 5, 0.0, 1.0));
+      for (int k = 0; k < 3; ++k) picture.pixel(x, y)[k] = std::clamp(3 * heat - float(k), 0.0F, 1.0F);
+    }
+  write_png(path, picture);
+}
+
+bool has_error_map(const Setting& setting) {
+  return setting.step == 1 && (setting.termination < 1e-4);
+}
+
+void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
+                 const fs::path& folder, const StudyArguments& arguments, Progress& progress) {
+  std::vector<Setting> missing;
+  for (const Setting& setting : settings(arguments.quick))
+    if (results.find(setting) == nullptr) missing.push_back(setting);
+  if (missing.empty()) return;
+  progress.show(0, "reading");
+  Scene scene(description, all.edge, all.stride);
+  scene.integrate([&](double done) { progress.show(reference_share * done, "reference"); });
+  results.size = scene.size();
+  results.rays = int(scene.exact().size());
+  results.reference_seconds = scene.reference_seconds();
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    const Setting& setting = missing[i];
+    progress.show(reference_share + (1 - reference_share) * double(i) / double(missing.size()),
+                  text_of(setting));
+    Scene::Rays rays;
+    results.points.push_back(
+        measure(scene, setting, arguments.quick ? quick_repetitions : whole_repetitions, rays));
+    if (has_error_map(setting)) {
+      std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
+      std::ranges::replace_if(
+          file, [](char c) { return c == ' ' || c == ',' || c == '(' || c == ')'; }, '-');
+      write_error_map(folder / file, scene, rays);
+      results.error_maps[text_of(setting)] = file;
+    }
+    mark_front(results.points);
+    write_results(folder, all);
+  }
+}
+
+/// index.html, by the script beside the programs.
+int write_page(const fs::path& folder) {
+  const fs::path script = this_installation().programs.parent_path() / "share" / "understudy" / "study_page.py";
+  // The system's own comes first: matplotlib from Debian is for that one.
+  const fs::path python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+  int status = 1;
+  try {
+    ChildProcess page(
+        {{python.string(), "-B", script.string(), folder.string()}, current_environment(), {}, false});
+    status = page.wait_for_ending(page_patience_ms).value_or(Ending{1}).exit_status();
+  } catch (const std::system_error&) {
+    status = 127;
+  }
+  if (status != 0)
+    fmt::print(
+        stderr,
+        "study: {} and study.csv are written, but no index.html: it needs python3 and matplotlib; apt install "
+        "python3-matplotlib, then give the same command again, which measures nothing twice\n",
+        (folder / "study.json").string());
+  return status == 0 ? 0 : 1;
+}
+
+int run_study(const StudyArguments& arguments) {
+  const std::vector<SceneDescription> scenes = scenes_of(arguments);
+  const fs::path folder = arguments.out;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || ::access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(
+        fmt::format("{}: no folder that can be written to; give another one with --out", folder.string()));
+  const int edge = arguments.edge > 0 ? arguments.edge : arguments.quick ? quick_edge : whole_edge;
+  const int stride = std::min(arguments.quick ? quick_stride : whole_stride, edge);
+  Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
+  Progress progress(scenes.size());
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const SceneDescription& scene = scenes[i];
+    std::erase_if(results.scenes, [&](const SceneResults& earlier) {
+      return earlier.name == scene.name && (earlier.volume != scene.volume || earlier.shows != scene.shows);
+    });
+    auto found = std::ranges::find(results.scenes, scene.name, &SceneResults::name);
+    if (found == results.scenes.end())
+      found = results.scenes.insert(found, {scene.name, scene.shows, scene.volume});
+    progress.begin(i, scene.name);
+    study_scene(scene, *found, results, folder, arguments, progress);
+  }
+  for (const SceneResults& scene : results.scenes) {
+    fmt::print("{}: {} rays, reference {:.1f} s ({:.0f} rays/s)\n", scene.name, scene.rays,
+               scene.reference_seconds, scene.rays / std::max(scene.reference_seconds, 1e-9));
+    for (const Point& point : scene.points)
+      if (point.front)
+        fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e}   max {:.1e}\n", text_of(point.setting), point.time_ms,
+                   point.error.rms, point.error.max);
+  }
+  const int status = write_page(folder);
+  if (status == 0) fmt::print("{}\n", (folder / "index.html").string());
+  return status;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<StudyArguments>();
+  CLI::App* command = app.add_subcommand(
+      "study", "error against run time: many settings on several scenes, as tables, plots and a page");
+  command->add_option("--scene", arguments->scenes, "of the built-in ones only these")->type_name("NAME");
+  command
+      ->add_option("--volume", arguments->volumes,
+                   "a file as a scene of its own, with a built-in table or a file of knots")
+      ->type_name("FILE[,TABLE]");
+  command->add_flag("--quick", arguments->quick, "fewer settings, smaller pictures, fewer repetitions");
+  command->add_option("--size", arguments->edge, "edge of the pictures, in pixels")->check(CLI::Range(8, 4096));
+  command->add_flag("--fresh", arguments->fresh, "measure again what an earlier study in DIR has measured");
+  command->add_option("--out", arguments->out, "where study.json, study.csv, error maps and index.html go")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->callback([arguments, &chosen] { chosen = [arguments] { return run_study(*arguments); }; });
+}
+
+}  // namespace understudy::launcher

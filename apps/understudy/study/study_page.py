@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""study_page.py DIR: DIR/index.html from DIR/study.json, self-contained. `understudy study` calls it."""
+
+import base64
+import html
+import io
+import json
+import math
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt  # noqa: E402
+
+COLOURS = {"post-classified": "tab:blue", "pre-integrated": "tab:orange"}
+FINEST = 1e-5  # termination thresholds below this count as none
+EXPECTED = "2 on a smooth field under a smooth table; at most 2 on voxels, 1 where the table has a step"
+
+
+def image(data, kind, alt):
+    text = base64.b64encode(data).decode()
+    return f'<img alt="{html.escape(alt)}" src="data:image/{kind};base64,{text}">'
+
+
+def plot(draw, alt):
+    figure, axes = plt.subplots(figsize=(6.2, 4.2))
+    draw(axes)
+    axes.grid(True, which="both", alpha=0.25)
+    axes.legend(fontsize=8)
+    figure.tight_layout()
+    out = io.BytesIO()
+    figure.savefig(out, format="svg")
+    plt.close(figure)
+    return image(out.getvalue(), "svg+xml", alt)
+
+
+def timed(scene):
+    return [point for point in scene["points"] if point["time_ms"] is not None]
+
+
+def of_scheme(points, scheme):
+    return sorted((point for point in points if point["scheme"] == scheme), key=lambda point: point["step"])
+
+
+def work_precision(scene):
+    """RMS error over time, log-log; a line joins the steps of one scheme, small marks end rays early."""
+    def draw(axes):
+        for scheme, colour in COLOURS.items():
+            points = of_scheme(timed(scene), scheme)
+            whole = [point for point in points if point["termination"] < FINEST]
+            early = [point for point in points if point["termination"] >= FINEST]
+            axes.loglog([p["time_ms"] for p in whole], [p["rms"] for p in whole], "o-", color=colour, label=scheme)
+            for p in whole:
+                axes.annotate(f"{p['step']:g}", (p["time_ms"], p["rms"]), fontsize=7, textcoords="offset points",
+                              xytext=(4, 4), color=colour)
+            axes.loglog([p["time_ms"] for p in early], [p["rms"] for p in early], "x", color=colour, markersize=5,
+                        label=f"{scheme}, rays end early")
+        front = sorted((p for p in timed(scene) if p["front"]), key=lambda p: p["time_ms"])
+        axes.loglog([p["time_ms"] for p in front], [p["rms"] for p in front], "s", color="black", fillstyle="none",
+                    markersize=10, label="Pareto front")
+        for point in scene["points"]:
+            if point["time_ms"] is None:
+                axes.axhline(point["rms"], color="grey", linestyle="--" if point["step"] == 1 else ":", linewidth=1,
+                             label=f"{point['scheme']}, step {point['step']:g}")
+        axes.set_xlabel("ms a picture")
+        axes.set_ylabel("RMS error against the integral")
+    return plot(draw, f"{scene['name']}: error over time")
+
+
+def convergence(scene):
+    def draw(axes):
+        for scheme, colour in COLOURS.items():
+            points = [point for point in of_scheme(timed(scene), scheme) if point["termination"] < FINEST]
+            order = scene["orders"].get(scheme)
+            label = scheme + (f", slope {order:.2f}" if order is not None else "")
+            axes.loglog([p["step"] for p in points], [p["rms"] for p in points], "o-", color=colour, label=label)
+            axes.loglog([p["step"] for p in points], [p["max"] for p in points], ":", color=colour, label="its maximum")
+        axes.set_xlabel("step in voxels")
+        axes.set_ylabel("error against the integral")
+    return plot(draw, f"{scene['name']}: error over step")
+
+
+def table(scene):
+    rows = ["<tr><th>setting<th>RMS<th>max<th>PSNR<th>ms<th>ns a ray<th>samples taken<th>left out</tr>"]
+    for point in sorted(scene["points"], key=lambda p: (p["time_ms"] is None, p["time_ms"])):
+        psnr = f"{-20 * math.log10(point['rms']):.1f} dB" if point["rms"] > 0 else "∞"
+        left_out = f"{100 * (1 - point['samples_taken'] / point['samples']):.0f} %" if point["samples"] else "–"
+        ending = f", ends below {point['termination']:g}" if point["termination"] >= FINEST else ""
+        time = "–<td>–" if point["time_ms"] is None else f"{point['time_ms']:.2f}<td>{point['ns_per_ray']:.0f}"
+        rows.append(f"<tr{' class=front' if point['front'] else ''}><td>{point['scheme']}, step {point['step']:g}{ending}"
+                    f"<td>{point['rms']:.1e}<td>{point['max']:.1e}<td>{psnr}<td>{time}"
+                    f"<td>{point['samples_taken'] or '–'}<td>{left_out}</tr>")
+    return "<table>" + "\n".join(rows) + "</table>"
+
+
+def section(scene, folder):
+    maps = "".join(f"<figure>{image((folder / file).read_bytes(), 'png', name)}<figcaption>{html.escape(name)}"
+                   "</figcaption></figure>" for name, file in sorted(scene["error_maps"].items()))
+    size = "×".join(str(n) for n in scene["size"])
+    rate = scene["rays"] / max(scene["reference_seconds"], 1e-9)
+    return (f"<h2>{html.escape(scene['name'])}</h2><p>{html.escape(scene['shows'])}. "
+            f"{html.escape(Path(scene['volume']).name)}, {size} voxels; {scene['rays']} rays compared, their reference "
+            f"took {scene['reference_seconds']:.1f} s ({rate:.0f} rays a second).</p>"
+            f"{work_precision(scene)}{convergence(scene)}<div>{maps}</div>"
+            f"<details><summary>all settings</summary>{table(scene)}</details>")
+
+
+def main():
+    folder = Path(sys.argv[1])
+    study = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    orders = "".join(f"<tr><td>{html.escape(scene['name'])}"
+                     + "".join(f"<td>{scene['orders'][scheme]:.2f}" if scheme in scene["orders"] else "<td>–"
+                               for scheme in COLOURS) + "</tr>" for scene in study["scenes"])
+    text = f"""<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Error against run time</title>
+<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; margin: 2em auto; padding: 0 1em }}
+table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
+td:first-child, th:first-child {{ text-align: left }} .front {{ font-weight: bold }}
+figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
+figure img {{ image-rendering: pixelated }}</style>
+<h1>Error against run time</h1>
+<p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the
+integral of the table as viewers mean it, in double precision; times are medians on all cores, the table prepared. Numbers at
+points are steps in voxels. Dashed: what slices blended into eight bits would show, whatever their time. Maps: black 1e-6,
+red 1e-4, white 0.1 and more.</p>
+<h2>Observed order of accuracy</h2>
+<table><tr><th>scene{"".join(f"<th>{scheme}" for scheme in COLOURS)}</tr>{orders}</table><p>Theory: {EXPECTED}.</p>
+{"".join(section(scene, folder) for scene in study["scenes"])}</html>
+"""
+    part = folder / "index.html.part"
+    part.write_text(text, encoding="utf-8")
+    part.rename(folder / "index.html")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+// The parts of `understudy study`: what it measures, and what it keeps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "apps/understudy/study/results.h"
+
+namespace understudy::launcher::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+SceneDescription small_scene(const std::string& name) {
+  for (SceneDescription scene : built_in_scenes()) {
+    if (scene.name != name) continue;
+    const std::string kind = scene.volume.substr(scene.volume.find(':', 11));
+    scene.volume = "synthetic:24x24x24" + kind;
+    return scene;
+  }
+  throw std::invalid_argument(name);
+}
+
+TEST(Study, SmallerStepsComeNearerToTheIntegral) {
+  Scene scene(small_scene("thin-fog"), 32, 2);
+  int told = 0;
+  scene.integrate([&](double done) {
+    EXPECT_GT(done, 0);
+    EXPECT_LE(done, 1);
+    ++told;
+  });
+  EXPECT_EQ(told, 16);
+  ASSERT_EQ(scene.exact().size(), 256U);
+  std::vector<Point> points;
+  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated})
+    for (const double step : {4.0, 2.0, 1.0, 0.5, 0.25}) {
+      Scene::Rays rays;
+      points.push_back(measure(scene, {scheme, step, 5e-6}, 1, rays));
+      EXPECT_GT(points.back().time_ms, 0);
+      EXPECT_GT(points.back().samples_taken, 0U);
+      EXPECT_EQ(difference(rays, scene.exact()).rms, points.back().error.rms);
+    }
+  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated}) {
+    const auto order = observed_order(points, scheme);
+    ASSERT_TRUE(order);
+    std::printf("%s: order %.2f\n", name_of(scheme), *order);
+    EXPECT_GE(*order, 0.8);
+  }
+  EXPECT_LT(points.back().error.rms, 1e-4);
+}
+
+TEST(Study, EightBitsLoseThinFog) {
+  Scene scene(small_scene("thin-fog"), 32, 2);
+  scene.integrate([](double) {});
+  Scene::Rays rays;
+  const Point bytes = measure(scene, {Scheme::eight_bit_slices, 1, 0}, 1, rays);
+  const Point floats = measure(scene, {Scheme::post_classified, 1, 5e-6}, 1, rays);
+  EXPECT_GT(bytes.error.rms, 10 * floats.error.rms);
+  EXPECT_EQ(bytes.time_ms, 0) << "emulated: its time says nothing";
+}
+
+TEST(Study, TheFrontIsWhatNothingBeats) {
+  std::vector<Point> points(4);
+  points[0].time_ms = 1, points[0].error.rms = 0.1;
+  points[1].time_ms = 2, points[1].error.rms = 0.01;
+  points[2].time_ms = 3, points[2].error.rms = 0.02;
+  points[3].error.rms = 0;  // not timed
+  mark_front(points);
+  EXPECT_TRUE(points[0].front);
+  EXPECT_TRUE(points[1].front);
+  EXPECT_FALSE(points[2].front);
+  EXPECT_FALSE(points[3].front);
+}
+
+class StudyResults : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+
+  fs::path folder = fs::temp_directory_path() / ("understudy-study-" + std::to_string(getpid()));
+};
+
+TEST_F(StudyResults, AreReadAgainByAStudyThatGoesOn) {
+  Results results{64, 4, {{"fog", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {{"a", "a.png"}}}}};
+  Point point{{Scheme::pre_integrated, 0.5, 0.01}, {0.25, 0.125}, 3, 40, 10, 20, true};
+  results.scenes[0].points = {point};
+  write_results(folder, results);
+  const Results again = read_results(folder, 64, 4);
+  ASSERT_EQ(again.scenes.size(), 1U);
+  const SceneResults& scene = again.scenes[0];
+  EXPECT_EQ(scene.shows, "thin");
+  EXPECT_EQ(scene.error_maps, results.scenes[0].error_maps);
+  const Point* found = scene.find(point.setting);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->time_ms, 3);
+  EXPECT_EQ(found->error.rms, 0.125);
+  EXPECT_EQ(scene.find({Scheme::post_classified, 0.5, 0.01}), nullptr);
+  EXPECT_TRUE(read_results(folder, 128, 4).scenes.empty()) << "pictures of another size";
+  std::ifstream csv(folder / "study.csv");
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "scene,scheme,step,termination,rms,max,time_ms,ns_per_ray,samples_taken,samples,front");
+  std::getline(csv, line);
+  EXPECT_EQ(line, "fog,pre-integrated,0.5,0.01,0.125,0.25,3,40,10,20,1");
+}
+
+TEST_F(StudyResults, ThatAreNoneAreMadeAnew) {
+  EXPECT_TRUE(read_results(folder, 64, 4).scenes.empty());
+  std::ofstream(folder / "study.json") << "{\"edge\": 64";
+  EXPECT_TRUE(read_results(folder, 64, 4).scenes.empty());
+}
+
+}  // namespace
+}  // namespace understudy::launcher::study

@@ -163,7 +163,9 @@ void classify(Scene& scene, const volume::TexelFigures& values, double step) {
     scene.request.classification = volume::TransferFunction{0, 1, {{}, {}}};
     return;
   }
-  volume::TransferFunction table = sampled(scene.knots, low, high, step);
+  const bool segments = scene.request.method == volume::Method::pre_integrated;
+  volume::TransferFunction table =
+      sampled(segments ? spanning(scene.knots, low, high) : scene.knots, low, high, step);
   table.low = float(scene.mapping.normalised(table.low));
   table.high = float(scene.mapping.normalised(table.high));
   if (table.low > table.high) {  // texels fall where values rise

@@ -95,6 +95,19 @@ TEST_F(Render, SegmentsNeedFewerStepsThanSamples) {
   EXPECT_LT(by_segments, by_samples / 4);
 }
 
+TEST_F(Render, SegmentsLeaveATableThatDoesNotSpanTheVolume) {
+  const std::string knots = folder_.write("narrow.json", std::string(R"({"positions": "values",
+                                     "knots": [{"at": 30000, "colour": [1, 0.5, 0], "opacity": 0},
+                                               {"at": 31000, "colour": [1, 1, 0.5], "opacity": 0.5}]})"));
+  const std::string common = cone(folder_, 32) + " --table " + knots + view;
+  const Picture fine = picture(common + " --step 0.02");
+  const double by_samples = difference(picture(common + " --step 1"), fine).rms,
+               by_segments = difference(picture(common + " --step 1 --method pre-integrated"), fine).rms;
+  std::printf("rms error of samples %.2e, of segments %.2e\n", by_samples, by_segments);
+  EXPECT_GT(fine.pixel(40, 40)[3], 0.99F);
+  EXPECT_LT(by_segments, by_samples / 4);
+}
+
 TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
   const std::string file = cone(folder_, 8);
   const auto trouble = [&](const std::string& arguments) {

@@ -7,7 +7,8 @@
 
 namespace understudy::launcher {
 
-std::vector<double> numbers(const std::string& text, char separator, std::size_t count, const char* example) {
+std::vector<double> numbers(const std::string& text, char separator, std::size_t count, const char* example,
+                            std::size_t more) {
   std::vector<double> values;
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -19,7 +20,7 @@ std::vector<double> numbers(const std::string& text, char separator, std::size_t
     if (!good) values.clear();
     at = stop == end ? end : stop + 1;
   }
-  if (values.size() != count)
+  if (values.size() < count || values.size() > count + more)
     throw std::invalid_argument(fmt::format("'{}' is not {} numbers as in {}", text, count, example));
   return values;
 }

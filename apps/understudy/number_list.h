@@ -6,7 +6,9 @@
 
 namespace understudy::launcher {
 
-/// `count` numbers with `separator` between them. Throws std::invalid_argument, with the example.
-std::vector<double> numbers(const std::string& text, char separator, std::size_t count, const char* example);
+/// `count` numbers, and up to `more` behind them, with `separator` in between. Throws std::invalid_argument,
+/// with the example.
+std::vector<double> numbers(const std::string& text, char separator, std::size_t count, const char* example,
+                            std::size_t more = 0);
 
 }  // namespace understudy::launcher

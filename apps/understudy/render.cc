@@ -111,7 +111,8 @@ struct Scene {
 Scene scene_of(const RenderArguments& arguments) {
   Scene scene;
   scene.knots = read_knots(arguments.table);
-  const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4");
+  const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4", 1);
+  const double roll = camera.size() > 3 ? camera[3] : 0;
   const std::vector<double> size = numbers(arguments.size, 'x', 2, "512x512");
   for (const double side : size)
     if (!(side >= 1 && side <= max_picture_side))
@@ -132,7 +133,7 @@ Scene scene_of(const RenderArguments& arguments) {
   scene.load.volume.type = scene.mapping.type;
   scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
   scene.request =
-      volume::orbit_request(scene.load.volume, scene.file.spacing, {camera[0], camera[1], camera[2]},
+      volume::orbit_request(scene.load.volume, scene.file.spacing, {camera[0], camera[1], camera[2], roll},
                             int(size[0]), int(size[1]), arguments.step);
   scene.request.termination = float(arguments.termination);
 
@@ -308,8 +309,9 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   add_shading_options(*render_command, arguments->shading);
   render_command
       ->add_option("--camera", arguments->camera,
-                   "azimuth and elevation in degrees, distance in half diagonals")
-      ->type_name("A,E,D")
+                   "azimuth and elevation in degrees, distance in half diagonals, and degrees by which it "
+                   "rolls (180: z is down)")
+      ->type_name("A,E,D[,R]")
       ->capture_default_str();
   render_command->add_option("--size", arguments->size, "of the picture")
       ->type_name("WxH")

@@ -33,8 +33,8 @@ Matrix4 perspective(int width, int height, double near, double far) {
 
 RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing, const OrbitCamera& camera,
                             int width, int height, double step) {
-  if (!(std::isfinite(camera.azimuth) && std::abs(camera.elevation) <= 90 && camera.distance > 0 &&
-        camera.distance <= farthest_eye))
+  if (!(std::isfinite(camera.azimuth) && std::isfinite(camera.roll) && std::abs(camera.elevation) <= 90 &&
+        camera.distance > 0 && camera.distance <= farthest_eye))
     throw std::invalid_argument(fmt::format(
         "a camera at azimuth {}, elevation {} and distance {} makes no sense; give degrees, -90 to 90 for "
         "the second, and a positive distance in half diagonals of the volume",
@@ -55,10 +55,12 @@ RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing
 
   // The directions come from the angles and not from an up vector: nothing is special at the poles.
   const double azimuth = camera.azimuth * std::numbers::pi / 180,
-               elevation = camera.elevation * std::numbers::pi / 180;
-  const Vec3 side{std::cos(azimuth), std::sin(azimuth), 0};
+               elevation = camera.elevation * std::numbers::pi / 180,
+               roll = camera.roll * std::numbers::pi / 180;
+  const Vec3 level{std::cos(azimuth), std::sin(azimuth), 0};
   const Vec3 back{std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth),
                   std::sin(elevation)};
+  const Vec3 side = add(scale(level, std::cos(roll)), scale(cross(back, level), std::sin(roll)));
   const Vec3 up = cross(back, side);
   const Matrix4 to_eye{side[0], side[1], side[2],          0, up[0], up[1], up[2], 0, back[0],
                        back[1], back[2], -camera.distance, 0, 0,     0,     1};

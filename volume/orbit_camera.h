@@ -1,4 +1,4 @@
-// A camera on a sphere around the volume, z up, that looks at its middle.
+// A camera on a sphere around the volume that looks at its middle, z up unless it rolls.
 #pragma once
 
 #include "volume/request.h"
@@ -9,6 +9,7 @@ struct OrbitCamera {
   double azimuth = 30;    ///< degrees; 0 looks along +y, 90 along -x
   double elevation = 20;  ///< degrees above the plane of x and y
   double distance = 4;    ///< in half diagonals of the volume; below 1 the eye may be inside
+  double roll = 0;        ///< degrees that the camera turns about its line of sight; 180: z is down
 };
 
 /// A picture of `width` x `height` pixels of a volume of this size and spacing: one sample every `step` of the

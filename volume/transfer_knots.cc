@@ -114,6 +114,21 @@ TransferKnots knots_named(const std::string& name) {
   return {false, found->knots};
 }
 
+TransferKnots spanning(const TransferKnots& knots, double low, double high) {
+  check(knots);
+  TransferKnots spread = knots;
+  const double first = knots.of_values ? low : 0, last = knots.of_values ? high : 1;
+  if (Knot knot = knots.knots.front(); first < knot.at) {
+    knot.at = first;
+    spread.knots.insert(spread.knots.begin(), knot);
+  }
+  if (Knot knot = knots.knots.back(); last > knot.at) {
+    knot.at = last;
+    spread.knots.push_back(knot);
+  }
+  return spread;
+}
+
 TransferFunction sampled(const TransferKnots& knots, double low, double high, double step) {
   check(knots);
   if (!(step > 0 && std::isfinite(step)))

@@ -27,6 +27,10 @@ TransferKnots knots_named(const std::string& name);
 /// "grey, engine, ..."
 std::string built_in_knots();
 
+/// The same function with knots at the ends of the volume's values, `low` and `high`, where there were none
+/// beyond: pre-integration wants to know where on its way a segment leaves the table.
+TransferKnots spanning(const TransferKnots& knots, double low, double high);
+
 /// The table for samples `step` units of length apart, over the values from `low` to `high` of the volume; its
 /// range is in values. Opacity becomes 1 - (1 - opacity)^step. Throws as check() does, and for a step that is
 /// no positive number.

@@ -44,7 +44,8 @@ FileDescriptor either(std::initializer_list<int> descriptors) {
 
 }  // namespace
 
-void with_own_nodes(int nodes, const std::function<void(const std::string& socket)>& job) {
+std::vector<std::string> with_own_nodes(const OwnNodes& own,
+                                        const std::function<void(const std::string& socket)>& job) {
   const Installation installation = this_installation();
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty())
     throw std::runtime_error(obstacle);
@@ -52,7 +53,8 @@ void with_own_nodes(int nodes, const std::function<void(const std::string& socke
   const RunFolder folder;
   const std::string socket = folder.path() / "nodes.sock";
   std::optional<NodeGroup> group;
-  group.emplace(installation, NodeGroupPlan{nodes, socket, folder.path()});
+  group.emplace(installation,
+                NodeGroupPlan{own.nodes, socket, folder.path(), own.exchange, own.pixels, own.backend});
 
   const FileDescriptor job_over = checked(eventfd(0, EFD_CLOEXEC));
   const FileDescriptor events = either({inbox.descriptor(), job_over.get()});
@@ -82,6 +84,8 @@ void with_own_nodes(int nodes, const std::function<void(const std::string& socke
   thread.join();
   if (interrupted) throw std::runtime_error("interrupted");
   if (trouble) std::rethrow_exception(trouble);
+  group.reset();  // their log is complete now
+  return backend_choices(folder.path());
 }
 
 }  // namespace understudy::launcher

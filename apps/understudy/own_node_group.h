@@ -3,12 +3,22 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace understudy::launcher {
 
-/// Starts `nodes` ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks
-/// after them. A signal that asks for the end takes the nodes away, so that the job fails soon. What the job
-/// throws is thrown on. Throws std::runtime_error where no nodes can be started.
-void with_own_nodes(int nodes, const std::function<void(const std::string& socket)>& job);
+struct OwnNodes {
+  int nodes = 1;
+  std::string exchange = "auto";
+  std::string pixels = "float";
+  std::string backend = "cpu";
+};
+
+/// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks
+/// after them. Returns what the nodes said about who casts their rays. A signal that asks for the end takes the
+/// nodes away, so that the job fails soon. What the job throws is thrown on. Throws std::runtime_error where no
+/// nodes can be started.
+std::vector<std::string> with_own_nodes(const OwnNodes& own,
+                                        const std::function<void(const std::string& socket)>& job);
 
 }  // namespace understudy::launcher

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -15,17 +14,22 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/backend_option.h"
 #include "apps/understudy/knots_file.h"
 #include "apps/understudy/load_progress.h"
+#include "apps/understudy/node_options.h"
+#include "apps/understudy/number_list.h"
 #include "apps/understudy/own_node_group.h"
 #include "apps/understudy/picture.h"
 #include "apps/understudy/render_report.h"
 #include "apps/understudy/run.h"
+#include "apps/understudy/shading_options.h"
 #include "compositor/service/loading_service.h"
 #include "spu/options.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/volume_file.h"
 #include "volume/orbit_camera.h"
+#include "volume/raycast/segment_scene.h"
 #include "volume/transfer_knots.h"
 
 namespace understudy::launcher {
@@ -44,6 +48,10 @@ struct RenderArguments {
   std::string volume;
   int nodes = 0;        ///< 0: in this process
   std::string connect;  ///< a socket of nodes that run already
+  std::string exchange = "auto";
+  std::string pixels = "float";
+  std::string backend = "cpu";
+  ShadingArguments shading;
   std::string table = "grey";
   std::string camera = "30,20,4";
   std::string size = "512x512";
@@ -61,24 +69,6 @@ struct RenderArguments {
   std::string texels;
   std::string range;
 };
-
-/// `count` numbers with `separator` between them.
-std::vector<double> numbers(const std::string& text, char separator, std::size_t count, const char* example) {
-  std::vector<double> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (bool good = true; good && at < end;) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(at, end, value);
-    good = error == std::errc() && (stop == end || (*stop == separator && stop + 1 != end));
-    if (good) values.push_back(value);
-    if (!good) values.clear();
-    at = stop == end ? end : stop + 1;
-  }
-  if (values.size() != count)
-    throw std::invalid_argument(fmt::format("'{}' is not {} numbers as in {}", text, count, example));
-  return values;
-}
 
 volume::FileHints hints_of(const RenderArguments& arguments) {
   volume::FileHints hints;
@@ -114,13 +104,15 @@ struct Scene {
   volume::FileDescription file;
   volume::TexelMapping mapping;
   volume::TransferKnots knots;
-  volume::RenderRequest request;  ///< but for the classification
+  Shading shading;
+  volume::RenderRequest request;  ///< but for the classification, and the surfaces' values
 };
 
 Scene scene_of(const RenderArguments& arguments) {
   Scene scene;
   scene.knots = read_knots(arguments.table);
-  const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4");
+  const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4", 1);
+  const double roll = camera.size() > 3 ? camera[3] : 0;
   const std::vector<double> size = numbers(arguments.size, 'x', 2, "512x512");
   for (const double side : size)
     if (!(side >= 1 && side <= max_picture_side))
@@ -141,26 +133,47 @@ Scene scene_of(const RenderArguments& arguments) {
   scene.load.volume.type = scene.mapping.type;
   scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
   scene.request =
-      volume::orbit_request(scene.load.volume, scene.file.spacing, {camera[0], camera[1], camera[2]},
+      volume::orbit_request(scene.load.volume, scene.file.spacing, {camera[0], camera[1], camera[2], roll},
                             int(size[0]), int(size[1]), arguments.step);
   scene.request.termination = float(arguments.termination);
+
+  volume::Vec3 extent{};
+  for (std::size_t k = 0; k < 3; ++k) extent[k] = scene.file.size[k] * scene.file.spacing[k];
+  scene.shading = shading_of(arguments.shading, extent);
+  scene.request.method = scene.shading.method;
+  scene.request.light = scene.shading.light;
+  for (const SurfaceChoice& surface : scene.shading.surfaces)
+    scene.request.surfaces.push_back({0, surface.colour});
+  // Segments and gradients reach beyond a node's own cells, by no more than the volume has.
+  scene.load.volume.margin = volume::margin_needed(scene.load.volume, scene.request);
+  if (scene.load.volume.margin > *std::ranges::max_element(scene.file.size))
+    throw std::invalid_argument(
+        fmt::format("a step of {} voxels is longer than the volume; give a smaller one", arguments.step));
   return scene;
 }
 
-/// What the table says of normalised texels.
-volume::TransferFunction classification_of(const Scene& scene, const volume::TexelFigures& values,
-                                           double step) {
+/// The table and the surfaces, of normalised texels.
+void classify(Scene& scene, const volume::TexelFigures& values, double step) {
   // A volume of one value has no range: the tables' least value is that one.
   const double low = values.low <= values.high ? values.low : 0.0;
   const double high = values.low < values.high ? values.high : low + 1;
-  volume::TransferFunction table = sampled(scene.knots, low, high, step);
+  const std::vector<double> surfaces = surface_values(scene.shading, low, high);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    scene.request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
+  if (!scene.shading.shows_volume) {
+    scene.request.classification = volume::TransferFunction{0, 1, {{}, {}}};
+    return;
+  }
+  const bool segments = scene.request.method == volume::Method::pre_integrated;
+  volume::TransferFunction table =
+      sampled(segments ? spanning(scene.knots, low, high) : scene.knots, low, high, step);
   table.low = float(scene.mapping.normalised(table.low));
   table.high = float(scene.mapping.normalised(table.high));
   if (table.low > table.high) {  // texels fall where values rise
     std::swap(table.low, table.high);
     std::ranges::reverse(table.entries);
   }
-  return table;
+  scene.request.classification = std::move(table);
 }
 
 double milliseconds_since(Clock::time_point start) {
@@ -212,7 +225,8 @@ RenderFigures render_with(LoadingService& service, Scene& scene, const RenderArg
   }
   figures.load_ms = milliseconds_since(start);
 
-  scene.request.classification = classification_of(scene, texel_figures(figures.ranks), arguments.step);
+  classify(scene, texel_figures(figures.ranks), arguments.step);
+  figures.request = scene.request;
   for (int frame = 0; frame < arguments.frames; ++frame) {
     start = Clock::now();
     const compositor::Rendered rendered = service.render(scene.request);
@@ -228,8 +242,14 @@ RenderFigures render_with(LoadingService& service, Scene& scene, const RenderArg
 }
 
 int render(const RenderArguments& arguments) {
+  if (arguments.nodes == 0 && arguments.backend != "cpu")
+    throw std::invalid_argument(
+        fmt::format("--backend {} is for nodes of this rendering: give -n N as well, or give it to "
+                    "understudy serve",
+                    arguments.backend));
   Scene scene = scene_of(arguments);
   RenderFigures figures;
+  std::vector<std::string> backends;
   const auto with_linked = [&](const std::string& socket) {
     const std::unique_ptr<LoadingService> service =
         compositor::linked_loading_service(socket, {patience, patience, patience, patience, patience});
@@ -239,13 +259,16 @@ int render(const RenderArguments& arguments) {
     if (!arguments.connect.empty())
       with_linked(arguments.connect);
     else if (arguments.nodes > 0)
-      with_own_nodes(arguments.nodes, with_linked);
+      backends = with_own_nodes({arguments.nodes, arguments.exchange, arguments.pixels, arguments.backend},
+                                with_linked);
     else
       figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
   } catch (const compositor::ServiceLost& lost) {
     throw std::runtime_error(
         fmt::format("no picture was made: render again, or in this process, without nodes ({})", lost.what()));
   }
+  figures.backends = backends;
+  for (const std::string& choice : backends) fmt::print(stderr, "understudy: {}\n", choice);
   if (!arguments.report.empty()) write_render_report(arguments.report, figures);
   std::fputs(summary_text(figures).c_str(), stdout);
   return 0;
@@ -270,6 +293,8 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--connect", arguments->connect, "the socket of nodes that `understudy serve` keeps")
       ->type_name("SOCKET")
       ->excludes(nodes);
+  add_backend_option(*render_command, arguments->backend);
+  add_exchange_options(*render_command, arguments->exchange, arguments->pixels);
   render_command->add_option("--out", arguments->out, "the picture, over black")
       ->type_name("P.png")
       ->required();
@@ -281,10 +306,12 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--table", arguments->table,
                    "transfer function: a JSON file of knots, or one of " + volume::built_in_knots())
       ->capture_default_str();
+  add_shading_options(*render_command, arguments->shading);
   render_command
       ->add_option("--camera", arguments->camera,
-                   "azimuth and elevation in degrees, distance in half diagonals")
-      ->type_name("A,E,D")
+                   "azimuth and elevation in degrees, distance in half diagonals, and degrees by which it "
+                   "rolls (180: z is down)")
+      ->type_name("A,E,D[,R]")
       ->capture_default_str();
   render_command->add_option("--size", arguments->size, "of the picture")
       ->type_name("WxH")

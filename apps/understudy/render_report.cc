@@ -33,6 +33,23 @@ std::string over_ranks(const std::vector<compositor::RankLoad>& ranks, Figure fi
   return low == high ? high + " MiB" : fmt::format("{} to {} MiB", low, high);
 }
 
+/// Surfaces by their values.
+Json picture_json(const RenderFigures& figures) {
+  const volume::RenderRequest& request = figures.request;
+  Json surfaces = Json::array();
+  const double units = figures.mapping.normalised(figures.mapping.offset + figures.mapping.scale);
+  for (const volume::Surface& surface : request.surfaces)
+    surfaces.push_back({{"value", figures.mapping.offset + figures.mapping.scale * surface.value / units},
+                        {"colour", surface.colour}});
+  const bool pre_integrated = request.method == volume::Method::pre_integrated;
+  return {{"width", figures.width},
+          {"height", figures.height},
+          {"step", figures.step},
+          {"method", pre_integrated ? "pre-integrated" : "post-classified"},
+          {"surfaces", surfaces},
+          {"light", !request.light ? "none" : request.light->on_samples ? "all" : "surfaces"}};
+}
+
 }  // namespace
 
 volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks) {
@@ -88,8 +105,9 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                       {"values", texels.low <= texels.high ? Json{texels.low, texels.high} : Json()},
                       {"largest_conversion_error", texels.largest_error},
                       {"not_numbers", texels.not_numbers}};
-  report["picture"] = {{"width", figures.width}, {"height", figures.height}, {"step", figures.step}};
+  report["picture"] = picture_json(figures);
   report["nodes"] = figures.nodes;
+  report["backends"] = figures.backends;
   report["time_ms"] = {{"open", figures.open_ms},
                        {"load", figures.load_ms},
                        {"frame_median", median(figures.frame_ms)},

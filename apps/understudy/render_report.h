@@ -17,7 +17,9 @@ struct RenderFigures {
   int width = 0;
   int height = 0;
   double step = 0;
-  int nodes = 0;  ///< 0: in this process
+  volume::RenderRequest request;      ///< the last frame's
+  std::vector<std::string> backends;  ///< what nodes of this rendering said about who casts their rays
+  int nodes = 0;                      ///< 0: in this process
   double open_ms = 0;
   double load_ms = 0;
   std::vector<double> frame_ms;

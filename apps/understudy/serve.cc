@@ -13,6 +13,7 @@
 
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/node_group.h"
+#include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
 #include "spu/options.h"
@@ -32,25 +33,6 @@ struct ServeArguments {
 
 bool is_over(const ServeArguments& arguments) {
   return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
-}
-
-/// An option of the table that concerns the nodes alone; its variable counts too, for viewers that start nodes
-/// of their own.
-void add_node_option(CLI::App& subcommand, const std::string& flag, std::string& value) {
-  for (const spu::OptionText& option : spu::option_table()) {
-    if (option.flag != flag) continue;
-    const std::string variable = option.environment;
-    subcommand.add_option(flag, value, option.help)
-        ->envname(variable)
-        ->type_name(option.value)
-        ->capture_default_str()
-        ->check([variable](const std::string& text) {
-          spu::Options scratch;
-          return spu::set_option(scratch, variable, text)
-                     ? std::string()
-                     : fmt::format("'{}' is not a value this option takes", text);
-        });
-  }
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -98,8 +80,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
                    "take over DIR, with the socket in it, and remove it at the end")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
-  add_node_option(*subcommand, "--exchange", arguments->exchange);
-  add_node_option(*subcommand, "--pixels", arguments->pixels);
+  add_exchange_options(*subcommand, arguments->exchange, arguments->pixels);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

@@ -97,6 +97,13 @@ TEST(OrbitCamera, LooksAtTheMiddleFromEverySideAndFromThePoles) {
   EXPECT_GT(transform_point(front, {1, 0.5, 0.5})[0], 0.1);
   EXPECT_GT(transform_point(front, {0.5, 0.5, 1})[1], 0.1);
   EXPECT_LT(transform_point(front, {0.5, 0, 0.5})[3], transform_point(front, {0.5, 1, 0.5})[3]);
+  // A camera that leans to the left sees the world lean to the right.
+  const Matrix4 rolled = orbit_request(volume, {1, 1, 1}, {0, 0, 4, 90}, 50, 50, 1).texture_to_clip;
+  EXPECT_LT(transform_point(rolled, {1, 0.5, 0.5})[1], -0.1);
+  EXPECT_NEAR(transform_point(rolled, {1, 0.5, 0.5})[0], 0, 1e-12);
+  const Matrix4 upside_down = orbit_request(volume, {1, 1, 1}, {0, 0, 4, 180}, 50, 50, 1).texture_to_clip;
+  EXPECT_LT(transform_point(upside_down, {0.5, 0.5, 1})[1], -0.1);
+  EXPECT_LT(transform_point(upside_down, {1, 0.5, 0.5})[0], -0.1);
 }
 
 TEST(OrbitCamera, StepsAreInVoxels) {
@@ -118,6 +125,7 @@ TEST(OrbitCamera, WhatMakesNoSenseIsRefused) {
   const VolumeDescription volume = describe({8, 8, 8}, TexelType::u8);
   const Vec3 unit{1, 1, 1};
   EXPECT_THROW(orbit_request(volume, unit, {0, 91, 4}, 10, 10, 1), std::invalid_argument);
+  EXPECT_THROW(orbit_request(volume, unit, {0, 0, 4, std::nan("")}, 10, 10, 1), std::invalid_argument);
   EXPECT_THROW(orbit_request(volume, unit, {0, 0, 0}, 10, 10, 1), std::invalid_argument);
   EXPECT_THROW(orbit_request(volume, unit, {std::nan(""), 0, 4}, 10, 10, 1), std::invalid_argument);
   EXPECT_THROW(orbit_request(volume, unit, {0, 0, 4}, 0, 10, 1), std::invalid_argument);

@@ -1,9 +1,12 @@
 // The parts of `understudy study`: what it measures, and what it keeps.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include "apps/understudy/study/results.h"
@@ -104,6 +107,23 @@ TEST_F(StudyResults, AreReadAgainByAStudyThatGoesOn) {
   EXPECT_EQ(line, "scene,scheme,step,termination,rms,max,time_ms,ns_per_ray,samples_taken,samples,front");
   std::getline(csv, line);
   EXPECT_EQ(line, "fog,pre-integrated,0.5,0.01,0.125,0.25,3,40,10,20,1");
+}
+
+TEST_F(StudyResults, AreShownOnAPage) {
+  if (std::system("/usr/bin/python3 -c 'import matplotlib' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no matplotlib here; apt install python3-matplotlib";
+  SceneResults scene{"a<b", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {}};
+  for (const double step : {2.0, 1.0, 0.5, 0.25})
+    scene.points.push_back(
+        {{Scheme::pre_integrated, step, 5e-6}, {step, step * step / 100}, 4 / step, 40, 10, 20, true});
+  scene.points.push_back({{Scheme::eight_bit_slices, 1, 0}, {0.5, 0.25}});
+  write_results(folder, {64, 4, {scene}});
+  ASSERT_EQ(std::system(("/usr/bin/python3 -B " STUDY_PAGE " " + folder.string()).c_str()), 0);
+  std::ifstream file(folder / "index.html");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  EXPECT_THAT(page, ::testing::HasSubstr("<h2>a&lt;b</h2>"));
+  EXPECT_THAT(page, ::testing::HasSubstr("<td>2.00"));
+  EXPECT_THAT(page, ::testing::HasSubstr("data:image/svg+xml;base64,"));
 }
 
 TEST_F(StudyResults, ThatAreNoneAreMadeAnew) {

@@ -155,7 +155,7 @@ void Scene::integrate(const std::function<void(double done)>& progress) {
   std::atomic<int> rows = 0;
   tbb::parallel_for(0, across, [&](int row) {
     for (int column = 0; column < across; ++column)
-      exact_[std::size_t(row * across + column)] =
+      exact_[std::size_t(row) * std::size_t(across) + std::size_t(column)] =
           pixel_integral(field_, description_.size, one_voxel, medium, pixel(column), pixel(row));
     progress(double(++rows) / across);
   });
@@ -181,7 +181,7 @@ Scene::Rays Scene::in_eight_bits(double step) const {
     for (int column = 0; column < across; ++column) {
       const auto ray = volume::pixel_ray(asked, pixel(column), pixel(row));
       if (!ray) continue;
-      std::array<double, 4>& shown = rays[std::size_t(row * across + column)];
+      std::array<double, 4>& shown = rays[std::size_t(row) * std::size_t(across) + std::size_t(column)];
       for (int i = int(std::floor(ray->length - asked.steps->first)); i >= 0; --i) {
         const double share = (asked.steps->first + i) / ray->length;
         volume::Vec3 t{};

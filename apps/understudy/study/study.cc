@@ -108,7 +108,8 @@ void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays
   picture.rgba.assign(std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height), 1);
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
-      const auto ray = std::size_t((across - 1 - y / pixels_a_ray) * across + x / pixels_a_ray);
+      const auto ray =
+          std::size_t(across - 1 - y / pixels_a_ray) * std::size_t(across) + std::size_t(x / pixels_a_ray);
       double error = 0;
       for (std::size_t k = 0; k < 4; ++k)
         error = std::max(error, std::abs(rays[ray][k] - scene.exact()[ray][k]));

@@ -133,6 +133,7 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
                                           {"at": 1, "colour": [0,0,0], "opacity": -1}]})")),
               HasSubstr("opacity is -1"));
   EXPECT_THAT(trouble(file + " --camera 10,20"), HasSubstr("30,20,4"));
+  EXPECT_THAT(trouble(file + " --camera 10,20,4,0,0"), HasSubstr("30,20,4"));
   EXPECT_THAT(trouble(file + " --camera 10,200,4"), HasSubstr("-90 to 90"));
   EXPECT_THAT(trouble(file + " --size 100"), HasSubstr("512x512"));
   EXPECT_THAT(trouble(file + " --size 0x10"), HasSubstr("a side"));

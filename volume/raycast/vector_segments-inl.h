@@ -182,25 +182,22 @@ HWY_INLINE bool show(const Colours& colours) {
   return !hn::AllFalse(f, hn::Or(either(0, 1), either(2, 3)));
 }
 
-HWY_INLINE Floats shortened(Floats colour, Floats length) {
+/// What pieces of such lengths show of segments that are one step long.
+HWY_INLINE void shorten(Floats length, Colours& colours) {
   const FloatTag f;
   const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
-  const Floats alpha = hn::Broadcast<3>(colour);
+  const Floats alpha = alphas(colours);
   // The logarithm wants less than full opacity, which stays what it is.
   const Floats passing = hn::Min(alpha, hn::Set(f, 1 - std::numeric_limits<float>::epsilon()));
   const Floats depth = hn::Mul(length, hn::Log1p(f, hn::Neg(passing)));
   const Floats kept = hn::IfThenElse(hn::Lt(alpha, one), hn::Neg(hn::Expm1(f, depth)), one);
-  const Floats ratio = hn::IfThenElse(hn::Gt(alpha, zero), hn::Div(kept, alpha), length);
-  const Floats less = hn::IfThenElseZero(hn::Gt(length, zero), hn::Mul(colour, ratio));
-  return hn::IfThenElse(hn::Lt(length, one), less, colour);
-}
-
-/// What pieces of such lengths show of segments that are one step long.
-HWY_INLINE void shorten(Floats length, Colours& colours) {
-  colours[0] = shortened(colours[0], hn::Broadcast<0>(length));
-  colours[1] = shortened(colours[1], hn::Broadcast<1>(length));
-  colours[2] = shortened(colours[2], hn::Broadcast<2>(length));
-  colours[3] = shortened(colours[3], hn::Broadcast<3>(length));
+  const Floats part = hn::IfThenElse(hn::Gt(alpha, zero), hn::Div(kept, alpha), length);
+  const Floats less = hn::IfThenElseZero(hn::Gt(length, zero), part);
+  const Floats ratio = hn::IfThenElse(hn::Lt(length, one), less, one);
+  colours[0] = hn::Mul(colours[0], hn::Broadcast<0>(ratio));
+  colours[1] = hn::Mul(colours[1], hn::Broadcast<1>(ratio));
+  colours[2] = hn::Mul(colours[2], hn::Broadcast<2>(ratio));
+  colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(ratio));
 }
 
 HWY_INLINE void compose_over(const Colours& colours, Colours& pixels) {
@@ -481,7 +478,12 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
     std::array<Colours, samples_between_tests> colours;
     for (std::size_t i = 0; i < block.count; ++i) {
       colours_of(block.classified[i], constants, colours[i]);
-      if (pre_integrated && !block.inside) shorten(hn::Sub(block.u[i + 1], block.u[i]), colours[i]);
+      if constexpr (pre_integrated) {
+        if (block.inside) continue;
+        const Floats length = hn::Sub(block.u[i + 1], block.u[i]);
+        const Mask shorter = hn::And(block.present(rays, i), hn::Lt(length, hn::Set(f, 1.0F)));
+        if (!hn::AllFalse(f, shorter)) shorten(length, colours[i]);
+      }
     }
     if constexpr (lit) light_block(rays, constants, source, block, colours);
     for (std::size_t i = 0; i < block.count; ++i) {

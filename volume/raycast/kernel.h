@@ -61,5 +61,8 @@ void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, Kerne
 /// The same two for segments.
 void generic_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+/// Of the latter, the part for scenes that are pre-integrated.
+void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
+                                    KernelCounts& counts);
 
 }  // namespace understudy::volume

@@ -1,5 +1,5 @@
 // What the vector kernels share: packets of rays, the field where they are, and colours. A part of
-// vector_kernel.cc and vector_segments.cc, included there once per instruction set.
+// vector_kernel.cc and vector_segments-inl.h, included there once per instruction set.
 //
 // A packet is 4 rays wide and one row high per 128 bits of the vector; lane q + 4 g is the ray in column q,
 // row g.
@@ -372,9 +372,9 @@ HWY_INLINE Corners corners_of(const Located& at, const Constants& constants) {
 constexpr std::array<std::size_t, 4> edge_offsets{0, BrickStore::block_row, BrickStore::block_slice,
                                                   BrickStore::block_slice + BrickStore::block_row};
 
-/// The four edges of column q's cells, interpolated along x: one 128-bit block per ray.
+/// The texels at the ends of column q's four edges, as 16-bit integers: one 128-bit block per ray.
 template <std::size_t q>
-HWY_INLINE Floats edges_of_column(const Corners& corners, const Located& at, const Constants&, Bytes8) {
+HWY_INLINE Bytes edge_texels(const Corners& corners) {
   const ByteTag d;
   // Bytes 0, 1 (the corner's row) and 9, 10 (the next row), widened to 16 bits: lower slice first, upper
   // slice second.
@@ -385,10 +385,15 @@ HWY_INLINE Floats edges_of_column(const Corners& corners, const Located& at, con
   static_assert(BrickStore::block_row == 9);
   const Bytes near = load_column<q>(d, corners.data(), 0);
   const Bytes far = load_column<q>(d, corners.data(), BrickStore::block_slice);
-  const Bytes eight = hn::Or(hn::TableLookupBytesOr0(near, hn::LoadDup128(d, lower)),
-                             hn::TableLookupBytesOr0(far, hn::LoadDup128(d, upper)));
-  return hn::ConvertTo(FloatTag(),
-                       pairwise_products(hn::BitCast(IntTag(), eight), hn::Broadcast<q>(at.weights)));
+  return hn::Or(hn::TableLookupBytesOr0(near, hn::LoadDup128(d, lower)),
+                hn::TableLookupBytesOr0(far, hn::LoadDup128(d, upper)));
+}
+
+/// The four edges of column q's cells, interpolated along x: one 128-bit block per ray.
+template <std::size_t q>
+HWY_INLINE Floats edges_of_column(const Corners& corners, const Located& at, const Constants&, Bytes8) {
+  const Ints texels = hn::BitCast(IntTag(), edge_texels<q>(corners));
+  return hn::ConvertTo(FloatTag(), pairwise_products(texels, hn::Broadcast<q>(at.weights)));
 }
 
 template <std::size_t q>

@@ -1,5 +1,5 @@
-// Slabs and tables of pairs in the vector kernels: a part of vector_kernel.cc and vector_segments.cc, included
-// there once per instruction set, among the functions that they call.
+// Slabs and tables of pairs in the vector kernels: a part of vector_kernel.cc and vector_segments-inl.h,
+// included there once per instruction set, among the functions that they call.
 
 /// The backs of the slabs whose fronts are the rays' samples.
 HWY_INLINE Position behind(const Packet& rays, const Constants& constants) {
@@ -20,28 +20,43 @@ struct PairPlace {
   Floats across, up;                                   // fractions of the way to the corners beside and above
 };
 
+/// Where a value stands on either axis of the table of pairs: an entry, and the fraction of the way to the
+/// next.
+struct AxisPlace {
+  Ints entry;
+  Floats between;
+};
+
+HWY_INLINE AxisPlace place_on_axis(Floats value, const Constants& constants) {
+  const FloatTag f;
+  const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
+  const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);  // 0 where it is no number
+  const Ints entry = hn::Min(truncated(kept), constants.last_corner);
+  return {entry, hn::Sub(kept, hn::ConvertTo(f, entry))};
+}
+
+HWY_INLINE Ints corner_of_pair(const AxisPlace& front, const AxisPlace& back, const Constants& constants) {
+  return hn::Add(hn::Mul(back.entry, hn::Set(IntTag(), std::int32_t(constants.pair_row))), front.entry);
+}
+
+HWY_INLINE void set_pair(const AxisPlace& front, const AxisPlace& back, Ints corner, PairPlace& out) {
+  const hn::RebindToUnsigned<IntTag> u;
+  out.across = front.between;
+  out.up = back.between;
+  hn::Store(hn::BitCast(u, hn::ShiftLeft<2>(corner)), u, out.entry.data());
+}
+
 /// Where two values stand in the table of pairs; `absent` ones leave the composite as it is, and so do those
 /// that are no number.
 template <typename Source>
 HWY_INLINE void look_up_pair(Floats front, Floats back, hn::Mask<FloatTag> absent, const Constants& constants,
                              Source, PairPlace& out) {
-  const FloatTag f;
-  const IntTag d;
-  const auto corner_of = [&](Floats value, Floats& between) HWY_ATTR {
-    if constexpr (std::is_same_v<Source, Floats32>) absent = hn::Or(absent, hn::IsNaN(value));
-    const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
-    const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);
-    const Ints corner = hn::Min(truncated(kept), constants.last_corner);
-    between = hn::Sub(kept, hn::ConvertTo(f, corner));
-    return corner;
-  };
-  const Ints x = corner_of(front, out.across), y = corner_of(back, out.up);
-  const Ints corner = hn::Add(hn::Mul(y, hn::Set(d, std::int32_t(constants.pair_row))), x);
-  const hn::RebindToUnsigned<IntTag> u;
-  const Ints chosen = hn::IfThenElse(hn::RebindMask(d, absent), constants.neutral_entry, corner);
-  out.across = hn::IfThenElseZero(hn::Not(absent), out.across);  // no number must not get into a sum
-  out.up = hn::IfThenElseZero(hn::Not(absent), out.up);
-  hn::Store(hn::BitCast(u, hn::ShiftLeft<2>(chosen)), u, out.entry.data());
+  if constexpr (std::is_same_v<Source, Floats32>)
+    absent = hn::Or(absent, hn::Or(hn::IsNaN(front), hn::IsNaN(back)));
+  const AxisPlace x = place_on_axis(front, constants), y = place_on_axis(back, constants);
+  const Ints corner = corner_of_pair(x, y, constants);
+  const hn::Mask<IntTag> nothing = hn::RebindMask(IntTag(), absent);
+  set_pair(x, y, hn::IfThenElse(nothing, constants.neutral_entry, corner), out);
 }
 
 template <typename Source>
@@ -52,7 +67,7 @@ HWY_INLINE void classify_slab(const Located& front, const Located& back, const P
 }
 
 template <std::size_t q>
-HWY_INLINE Floats colour_at(const PairPlace& at, const Constants& constants) {
+HWY_INLINE Floats interpolated_pair(const PairPlace& at, const Constants& constants) {
   const FloatTag f;
   std::array<const float*, lanes> entries;
 #pragma GCC unroll 4
@@ -63,8 +78,13 @@ HWY_INLINE Floats colour_at(const PairPlace& at, const Constants& constants) {
     return mix(load_column<q>(f, entries.data(), offset), load_column<q>(f, entries.data(), offset + 4),
                across);
   };
-  const Floats colour = mix(along(0), along(above), hn::Broadcast<q>(at.up));
-  const Floats one = hn::Set(f, 1.0F);
+  return mix(along(0), along(above), hn::Broadcast<q>(at.up));
+}
+
+template <std::size_t q>
+HWY_INLINE Floats colour_at(const PairPlace& at, const Constants& constants) {
+  const Floats colour = interpolated_pair<q>(at, constants);
+  const Floats one = hn::Set(FloatTag(), 1.0F);
   const Floats less = hn::Sub(hn::Broadcast<3>(colour), one);
   return hn::Mul(colour, hn::MulAdd(less, constants.scaled_by_alpha, one));
 }

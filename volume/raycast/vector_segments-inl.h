@@ -1,0 +1,620 @@
+// All that the generic segments do, on the vector instructions of the machine it runs on, eight segments of
+// every ray at a time, as vector_kernel.cc takes samples. What happens seldom (surfaces, the ends of rays) is
+// done segment by segment. A part of vector_segments.cc and vector_pre_integrated_segments.cc, included there
+// once per instruction set.
+
+#include "volume/raycast/vector_field-inl.h"
+#include "volume/raycast/vector_slabs-inl.h"
+
+using Mask = hn::Mask<FloatTag>;
+
+/// What stays the same for all segments of a frame, in vectors.
+struct SegmentConstants : Constants {
+  template <typename Source>
+  SegmentConstants(const Scene& scene, Source source) : Constants(scene, source) {
+    const FloatTag f;
+    const SegmentScene& segments = *scene.segments;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      held_low[axis] = hn::Set(f, scene.held_low[axis]);
+      held_high[axis] = hn::Set(f, scene.held_high[axis]);
+    }
+    levels = segments.levels.size();
+    for (std::size_t i = 0; i < levels; ++i) {
+      level[i] = hn::Set(f, Source::factor * (segments.levels[i].value - Source::zero));
+      surface[i] = hn::LoadDup128(f, segments.levels[i].colour.data());
+    }
+    lamp = segments.lamp ? &*segments.lamp : nullptr;
+    if (lamp == nullptr) return;
+    set_neighbourhood(scene);
+    // Of the size of one, so that squares of slopes lie far from the ends of what a float holds.
+    const std::array<float, 9>& of_lamp = lamp->metric;
+    const float unit = 1 / std::sqrt(std::max({of_lamp[0], of_lamp[4], of_lamp[8]}));
+    for (std::size_t i = 0; i < 9; ++i) metric[i] = hn::Set(f, of_lamp[i] * unit * unit);
+    normal_of_slope = Source::factor < 0 ? unit : -unit;
+    two_sided = lamp->model.two_sided;
+    const auto colour = [&](const std::array<float, 3>& rgb, float alpha) HWY_ATTR {
+      alignas(16) const float components[4] = {rgb[0], rgb[1], rgb[2], alpha};
+      return hn::LoadDup128(f, components);
+    };
+    ambient = colour(lamp->model.ambient, 1);
+    diffuse = colour(lamp->model.diffuse, 0);
+    specular = colour(lamp->model.specular, 0);
+    const float exponent = lamp->model.shininess;
+    constexpr float largest_whole = 1024;
+    if (exponent <= largest_whole && exponent == std::floor(exponent)) whole_shininess = unsigned(exponent);
+    shininess = hn::Set(f, exponent);
+    least_cosine = hn::Set(f, std::max(std::exp(-40 / exponent), 1e-30F));
+    gleams = lamp->model.specular != std::array<float, 3>{};
+  }
+
+  /// Where blocks and their neighbours are held.
+  void set_neighbourhood(const Scene& scene) {
+    const FloatTag f;
+    const auto& counts = scene.store->block_counts();
+    std::int32_t blocks = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = scene.held_low[axis] + 1, high = scene.held_high[axis] - 1;
+      has_inner = has_inner && low <= high;
+      inner_low[axis] = hn::Set(f, low);
+      inner_high[axis] = hn::Set(f, high);
+      blocks_along[axis] = hn::Set(IntTag(), blocks);
+      blocks *= counts[axis];
+    }
+  }
+
+  std::array<Floats, 3> held_low, held_high;
+  std::size_t levels = 0;
+  std::array<Floats, max_surfaces> level;    // as field_at() gives values
+  std::array<Floats, max_surfaces> surface;  // components side by side
+
+  const Lamp* lamp = nullptr;
+  std::array<Floats, 9> metric;
+  float normal_of_slope = 1;  // what directions over gradients are scaled with to suit `metric` and slopes
+  Floats ambient, diffuse, specular;  // components side by side
+  Floats shininess, least_cosine;
+  std::optional<unsigned> whole_shininess;
+  bool gleams = false, two_sided = false;
+
+  std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of what is held
+  bool has_inner = true;
+  std::array<Ints, 3> blocks_along;  // blocks from one to the next on each axis
+};
+
+/// A packet that walks segments. Its first sample is `value`, where that is known.
+struct SegmentPacket : Packet {
+  Floats begin, end;
+  std::array<Floats, 3> light, half;
+  Floats value;
+  bool known = false;
+};
+using SegmentGroup = std::array<SegmentPacket, group>;
+
+/// Where segment k begins, in steps.
+HWY_INLINE Floats on_ray(const SegmentPacket& rays, Floats k) {
+  // Rays at their end stay behind their last segment, where it is safe to read.
+  const Floats counted = hn::Min(k, hn::Add(rays.last, hn::Set(FloatTag(), 1.0F)));
+  return hn::Min(hn::Max(counted, rays.begin), rays.end);
+}
+
+HWY_INLINE void clamp_to_held(Position& p, const SegmentConstants& constants) {
+#pragma GCC unroll 3
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    p.clamped[axis] = hn::Min(hn::Max(p.free[axis], constants.held_low[axis]), constants.held_high[axis]);
+}
+
+HWY_INLINE Position place_at(const SegmentPacket& rays, Floats u, const SegmentConstants& constants) {
+  Position p;
+#pragma GCC unroll 3
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    p.free[axis] = hn::Add(hn::Mul(u, rays.step[axis]), rays.start[axis]);
+  clamp_to_held(p, constants);
+  return p;
+}
+
+template <typename Source>
+HWY_INLINE Floats value_at(const Position& p, const SegmentConstants& constants, Source source) {
+  Located at;
+  locate(p, constants, at);
+  return value_of(at, constants, source);
+}
+
+/// Lets the rays leap over the segments that lie in empty blocks from end to end; false when there were none.
+HWY_INLINE bool leap_segments(SegmentPacket& rays, const SegmentConstants& constants) {
+  const FloatTag f;
+  const IntTag d;
+  const Floats half = hn::Set(f, 0.5F), one = hn::Set(f, 1.0F);
+  const Floats u = on_ray(rays, rays.k);
+  const Position p = place_at(rays, u, constants);
+  std::array<Ints, 3> block;
+  std::array<Floats, 3> steps_to_face;
+#pragma GCC unroll 3
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Floats blocks = hn::Mul(p.clamped[axis], hn::Set(f, 1.0F / BrickStore::block_cells));
+    block[axis] = truncated(blocks);
+    const Floats in_block = hn::Sub(hn::Sub(blocks, hn::ConvertTo(f, block[axis])), half);
+    const Floats room = hn::Sub(hn::NegMulSub(rays.direction[axis], in_block, half), constants.rounding[axis]);
+    steps_to_face[axis] = hn::Mul(room, rays.steps_per_block[axis]);
+  }
+  const Ints index = block_index(block[0], block[1], block[2], constants);
+  const Floats distance =
+      hn::ConvertTo(f, hn::And(hn::GatherOffset(d, constants.distances, index), hn::Set(d, 255)));
+  Floats steps = hn::Set(f, 1e9F);
+#pragma GCC unroll 3
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps = hn::Min(steps, hn::MulAdd(distance, rays.steps_per_block[axis], steps_to_face[axis]));
+  const Floats next = hn::Min(hn::Floor(hn::Add(u, hn::Max(steps, hn::Zero(f)))), hn::Add(rays.last, one));
+  const auto empty = hn::And(hn::Gt(distance, hn::Zero(f)), hn::Gt(next, rays.k));
+  rays.k = hn::IfThenElse(empty, next, rays.k);
+  return !hn::AllFalse(f, empty);
+}
+
+/// Of values as field_at() gives them, less that of a surface.
+template <typename Source>
+HWY_INLINE Mask is_above(Floats difference) {
+  const Floats zero = hn::Zero(FloatTag());
+  return Source::factor < 0 ? hn::Le(difference, zero) : hn::Ge(difference, zero);
+}
+
+template <typename Source>
+HWY_INLINE Mask passes(Floats front, Floats back, Floats level) {
+  const Mask other = hn::Xor(is_above<Source>(hn::Sub(front, level)), is_above<Source>(hn::Sub(back, level)));
+  if constexpr (std::is_same_v<Source, Floats32>)
+    return hn::And(other, hn::Not(hn::Or(hn::IsNaN(front), hn::IsNaN(back))));
+  return other;
+}
+
+/// Colours of the rays of a mask (1 or 0 in each lane); nothing for the others.
+HWY_INLINE void keep(Floats shown, Colours& colours) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f);
+  colours[0] = hn::IfThenElseZero(hn::Gt(hn::Broadcast<0>(shown), zero), colours[0]);
+  colours[1] = hn::IfThenElseZero(hn::Gt(hn::Broadcast<1>(shown), zero), colours[1]);
+  colours[2] = hn::IfThenElseZero(hn::Gt(hn::Broadcast<2>(shown), zero), colours[2]);
+  colours[3] = hn::IfThenElseZero(hn::Gt(hn::Broadcast<3>(shown), zero), colours[3]);
+}
+
+/// Whether any of the rays has a colour.
+HWY_INLINE bool show(const Colours& colours) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f);
+  const auto either = [&](std::size_t a, std::size_t b)
+                          HWY_ATTR { return hn::Or(hn::Ne(colours[a], zero), hn::Ne(colours[b], zero)); };
+  return !hn::AllFalse(f, hn::Or(either(0, 1), either(2, 3)));
+}
+
+/// What pieces of such lengths show of segments that are one step long.
+HWY_INLINE void shorten(Floats length, Colours& colours) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  const Floats alpha = alphas(colours);
+  // The logarithm wants less than full opacity, which stays what it is.
+  const Floats passing = hn::Min(alpha, hn::Set(f, 1 - std::numeric_limits<float>::epsilon()));
+  const Floats depth = hn::Mul(length, hn::Log1p(f, hn::Neg(passing)));
+  const Floats kept = hn::IfThenElse(hn::Lt(alpha, one), hn::Neg(hn::Expm1(f, depth)), one);
+  const Floats part = hn::IfThenElse(hn::Gt(alpha, zero), hn::Div(kept, alpha), length);
+  const Floats less = hn::IfThenElseZero(hn::Gt(length, zero), part);
+  const Floats ratio = hn::IfThenElse(hn::Lt(length, one), less, one);
+  colours[0] = hn::Mul(colours[0], hn::Broadcast<0>(ratio));
+  colours[1] = hn::Mul(colours[1], hn::Broadcast<1>(ratio));
+  colours[2] = hn::Mul(colours[2], hn::Broadcast<2>(ratio));
+  colours[3] = hn::Mul(colours[3], hn::Broadcast<3>(ratio));
+}
+
+HWY_INLINE void compose_over(const Colours& colours, Colours& pixels) {
+#pragma GCC unroll 4
+  for (std::size_t q = 0; q < 4; ++q) pixels[q] = composed<Operator::over>(pixels[q], colours[q]);
+}
+
+template <typename Classified>
+HWY_INLINE void colours_of(const Classified& at, const Constants& constants, Colours& out) {
+  out[0] = colour_at<0>(at, constants);
+  out[1] = colour_at<1>(at, constants);
+  out[2] = colour_at<2>(at, constants);
+  out[3] = colour_at<3>(at, constants);
+}
+
+#include "volume/raycast/vector_light-inl.h"
+
+/// One segment of every ray: its ends in steps, in space and in value.
+struct Segment {
+  Floats begin, end;
+  Position from, to;
+  Floats front, back;
+  Floats cells;  // its length
+
+  Position point(Floats share, const SegmentConstants& constants) const {
+    Position p;
+#pragma GCC unroll 3
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p.free[axis] = hn::Add(from.free[axis], hn::Mul(share, hn::Sub(to.free[axis], from.free[axis])));
+    clamp_to_held(p, constants);
+    return p;
+  }
+};
+
+/// SurfaceSearch for the rays of `sought`, behind `front`, where the field is `at_front`. Takes from `sought`
+/// those that meet what is no number.
+template <typename Source>
+HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_front, Floats level,
+                               const SegmentConstants& constants, Source source, Mask& sought) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f), half = hn::Set(f, 0.5F), tolerance = hn::Set(f, surface_tolerance);
+  Floats a = front, b = hn::Set(f, 1.0F);
+  Floats at_a = hn::Sub(at_front, level), at_b = hn::Sub(segment.back, level);
+  const Mask above = is_above<Source>(at_a);
+  Mask front_moved = hn::Lt(zero, zero), back_moved = front_moved;
+  const auto wide = [&] { return hn::Gt(hn::Mul(hn::Sub(b, a), segment.cells), tolerance); };
+  Mask searching = hn::And(sought, wide());
+  for (int round = 0; round < false_positions + bisections && !hn::AllFalse(f, searching); ++round) {
+    Floats share = hn::Mul(half, hn::Add(a, b));
+    if (round < false_positions) {
+      share = hn::Sub(b, hn::Mul(at_b, hn::Div(hn::Sub(b, a), hn::Sub(at_b, at_a))));
+      share = hn::IfThenElse(hn::Gt(share, a), hn::Min(share, b), a);
+    }
+    const Floats there = hn::Sub(value_at(segment.point(share, constants), constants, source), level);
+    if constexpr (std::is_same_v<Source, Floats32>) {
+      const Mask lost = hn::And(searching, hn::IsNaN(there));
+      sought = hn::And(sought, hn::Not(lost));
+      searching = hn::And(searching, hn::Not(lost));
+    }
+    const Mask there_exactly = hn::And(searching, hn::Eq(there, zero));
+    const Mask other_side = hn::Xor(is_above<Source>(there), above);
+    const Mask move_back = hn::And(searching, hn::And(other_side, hn::Not(there_exactly)));
+    const Mask move_front = hn::And(searching, hn::Not(hn::Or(other_side, there_exactly)));
+    at_b = hn::IfThenElse(hn::And(move_front, front_moved), hn::Mul(half, at_b), at_b);
+    at_a = hn::IfThenElse(hn::And(move_back, back_moved), hn::Mul(half, at_a), at_a);
+    at_a = hn::IfThenElse(move_front, there, at_a);
+    at_b = hn::IfThenElse(move_back, there, at_b);
+    a = hn::IfThenElse(hn::Or(move_front, there_exactly), share, a);
+    b = hn::IfThenElse(hn::Or(move_back, there_exactly), share, b);
+    front_moved = move_front;
+    back_moved = move_back;
+    searching = hn::And(searching, wide());
+  }
+  return hn::Mul(half, hn::Add(a, b));
+}
+
+/// A piece of a segment, pre-integrated, in the rays of `shown`.
+template <typename Source>
+HWY_INLINE void compose_piece(const SegmentPacket& rays, const Segment& segment, Floats begin, Floats end,
+                              Floats at_begin, Floats at_end, Mask shown, bool lit,
+                              const SegmentConstants& constants, Source source, Colours& pixels) {
+  PairPlace place;
+  look_up_pair(at_begin, at_end, hn::Not(shown), constants, source, place);
+  Colours colours;
+  colours_of(place, constants, colours);
+  shorten(hn::Mul(hn::Sub(end, begin), hn::Sub(segment.end, segment.begin)), colours);
+  if (lit) {
+    const Floats middle = hn::Mul(hn::Set(FloatTag(), 0.5F), hn::Add(begin, end));
+    lay_in_light(rays, segment.point(middle, constants), shown, constants, source, colours);
+  }
+  compose_over(colours, pixels);
+}
+
+/// The surfaces in a segment of the rays of `present`, and with `pre_integrated` what lies between them.
+template <bool pre_integrated, typename Source>
+HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& segment, const Mask& present,
+                                   bool lit, const SegmentConstants& constants, Source source,
+                                   Colours& pixels) {
+  const FloatTag f;
+  Floats front = hn::Zero(f), at_front = segment.front;
+  const Mask rising =
+      Source::factor < 0 ? hn::Gt(segment.front, segment.back) : hn::Lt(segment.front, segment.back);
+  for (const bool rise : {true, false}) {
+    const Mask these = hn::And(present, rise ? rising : hn::Not(rising));
+    for (std::size_t i = 0; i < constants.levels; ++i) {
+      const std::size_t which = rise ? i : constants.levels - 1 - i;
+      const Floats level = constants.level[which];
+      Mask sought = hn::And(these, passes<Source>(segment.front, segment.back, level));
+      if (hn::AllFalse(f, sought)) continue;
+      const Floats found = find_surface(segment, front, at_front, level, constants, source, sought);
+      if constexpr (pre_integrated)
+        compose_piece(rays, segment, front, found, at_front, level, sought, lit, constants, source, pixels);
+      Colours colours;
+      colours.fill(constants.surface[which]);
+      keep(hn::IfThenElseZero(sought, hn::Set(f, 1.0F)), colours);
+      if (constants.lamp != nullptr)
+        lay_in_light(rays, segment.point(found, constants), sought, constants, source, colours);
+      compose_over(colours, pixels);
+      front = hn::IfThenElse(sought, found, front);
+      at_front = hn::IfThenElse(sought, level, at_front);
+    }
+  }
+  if constexpr (pre_integrated)
+    compose_piece(rays, segment, front, hn::Set(f, 1.0F), at_front, segment.back, present, lit, constants,
+                  source, pixels);
+}
+
+/// A whole segment's place in the table of pairs, whose entries are premultiplied.
+struct SegmentPlace : PairPlace {};
+
+template <std::size_t q>
+HWY_INLINE Floats colour_at(const SegmentPlace& at, const Constants& constants) {
+  return interpolated_pair<q>(at, constants);
+}
+
+/// The ends of eight segments of every ray, and what they show.
+template <bool pre_integrated>
+struct SegmentBlock {
+  static constexpr std::size_t count = samples_between_tests;
+  using Classified = std::conditional_t<pre_integrated, SegmentPlace, TablePlace>;
+
+  bool inside = false;  // all are there, and a step long
+  std::array<Floats, count + 1> u, values;
+  std::array<Classified, count> classified;
+
+  Mask present(const SegmentPacket& rays, std::size_t i) const {
+    return hn::Le(hn::Add(rays.k, hn::Set(FloatTag(), float(i))), rays.last);
+  }
+};
+
+template <bool pre_integrated>
+HWY_INLINE void find_ends(const SegmentPacket& rays, SegmentBlock<pre_integrated>& block) {
+  const FloatTag f;
+  const Floats beyond = hn::Add(rays.k, hn::Set(f, float(block.count)));
+  const Floats none_after = hn::Add(rays.last, hn::Set(f, 1.0F));
+  const Mask inside =
+      hn::And(hn::Ge(rays.k, hn::Max(rays.begin, hn::Zero(f))), hn::Le(beyond, hn::Min(rays.end, none_after)));
+  block.inside = hn::AllTrue(f, inside);
+  for (std::size_t i = 0; i <= block.count; ++i) {
+    const Floats k = hn::Add(rays.k, hn::Set(f, float(i)));
+    block.u[i] = block.inside ? k : on_ray(rays, k);
+  }
+}
+
+template <bool pre_integrated, typename Source>
+HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& constants, Source source,
+                               SegmentBlock<pre_integrated>& block) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f);
+  std::array<Located, block.count> located;
+  for (std::size_t i = 0; i < block.count; ++i)
+    locate(place_at(rays, block.u[i + 1], constants), constants, located[i]);
+  if (!rays.known) rays.value = value_at(place_at(rays, block.u[0], constants), constants, source);
+  block.values[0] = rays.value;
+  if constexpr (pre_integrated) {
+    AxisPlace front = place_on_axis(rays.value, constants);
+    for (std::size_t i = 0; i < block.count; ++i) {
+      block.values[i + 1] = value_of(located[i], constants, source);
+      const AxisPlace back = place_on_axis(block.values[i + 1], constants);
+      Ints corner = corner_of_pair(front, back, constants);
+      if (std::is_same_v<Source, Floats32> || !block.inside) {
+        Mask absent = hn::Not(block.present(rays, i));
+        if constexpr (std::is_same_v<Source, Floats32>)
+          absent = hn::Or(absent, hn::Or(hn::IsNaN(block.values[i]), hn::IsNaN(block.values[i + 1])));
+        corner = hn::IfThenElse(hn::RebindMask(IntTag(), absent), constants.neutral_entry, corner);
+      }
+      set_pair(front, back, corner, block.classified[i]);
+      front = back;
+    }
+  } else {
+    for (std::size_t i = 0; i < block.count; ++i) {
+      block.values[i + 1] = value_of(located[i], constants, source);
+      const Mask before = hn::Lt(hn::Add(rays.k, hn::Set(f, float(i))), zero);
+      look_up(block.values[i], hn::Or(before, hn::Not(block.present(rays, i))), constants, source,
+              block.classified[i]);
+    }
+  }
+}
+
+/// Which segments surfaces part in some ray; false if there are none.
+template <bool pre_integrated, typename Source>
+HWY_INLINE bool find_parted(const SegmentPacket& rays, const SegmentConstants& constants, Source,
+                            const SegmentBlock<pre_integrated>& block,
+                            std::array<bool, samples_between_tests>& parted) {
+  const FloatTag f;
+  bool any_parted = false;
+  for (std::size_t l = 0; l < constants.levels; ++l) {
+    Mask parts = hn::Lt(hn::Zero(f), hn::Zero(f));
+    for (std::size_t i = 0; i < block.count; ++i)
+      parts = hn::Or(parts, passes<Source>(block.values[i], block.values[i + 1], constants.level[l]));
+    if (hn::AllFalse(f, parts)) continue;
+    for (std::size_t i = 0; i < block.count; ++i)
+      parted[i] =
+          parted[i] ||
+          !hn::AllFalse(f, hn::And(block.present(rays, i),
+                                   passes<Source>(block.values[i], block.values[i + 1], constants.level[l])));
+    any_parted = true;
+  }
+  return any_parted;
+}
+
+/// Light on what segments show, in passes within which none waits for another.
+template <bool pre_integrated, typename Source>
+HWY_INLINE void light_block(const SegmentPacket& rays, const SegmentConstants& constants, Source source,
+                            const SegmentBlock<pre_integrated>& block,
+                            std::array<Colours, samples_between_tests>& colours) {
+  const FloatTag f;
+  std::array<Surroundings, samples_between_tests> around;
+  std::array<Slope, samples_between_tests> slopes;
+  std::array<bool, samples_between_tests> shown, inner{};
+  bool any_shown = false;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    shown[i] = show(colours[i]);
+    any_shown = any_shown || shown[i];
+  }
+  if (!any_shown) return;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    if (!shown[i]) continue;
+    const Floats middle = hn::Mul(hn::Set(f, 0.5F), hn::Add(block.u[i], block.u[i + 1]));
+    const Position p = place_at(rays, pre_integrated ? middle : block.u[i], constants);
+    inner[i] = look_around(p, block.present(rays, i), constants, around[i]);
+    if (!inner[i]) find_clamped_slope(p, constants, source, slopes[i]);
+  }
+  for (std::size_t i = 0; i < block.count; ++i)
+    if (inner[i]) find_slope(around[i], constants, source, slopes[i]);
+  std::array<Brightness, samples_between_tests> bright;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    bright[i].gleam = hn::Zero(f);
+    if (shown[i]) find_cosines(rays, slopes[i], constants, source, bright[i]);
+  }
+  if (constants.gleams) raise(constants, bright);
+  for (std::size_t i = 0; i < block.count; ++i)
+    if (shown[i]) light_up(bright[i], constants, colours[i]);
+}
+
+/// Eight segments of every ray. Between samples that no surface parts, and on whole segments, colours are
+/// composed as those of samples are.
+template <bool pre_integrated, bool lit, typename Source>
+HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& constants, Source source,
+                              Colours& pixels) {
+  const FloatTag f;
+  SegmentBlock<pre_integrated> block;
+  find_ends(rays, block);
+  classify_block(rays, constants, source, block);
+  std::array<bool, samples_between_tests> parted{};
+  const bool any_parted = find_parted(rays, constants, source, block, parted);
+
+  if (!lit && !any_parted && (!pre_integrated || block.inside)) {
+    Colours mine = pixels;
+    for (const auto& at : block.classified) {
+      mine[0] = composed<Operator::over>(mine[0], colour_at<0>(at, constants));
+      mine[1] = composed<Operator::over>(mine[1], colour_at<1>(at, constants));
+      mine[2] = composed<Operator::over>(mine[2], colour_at<2>(at, constants));
+      mine[3] = composed<Operator::over>(mine[3], colour_at<3>(at, constants));
+    }
+    pixels = mine;
+  } else {
+    std::array<Colours, samples_between_tests> colours;
+    for (std::size_t i = 0; i < block.count; ++i) {
+      colours_of(block.classified[i], constants, colours[i]);
+      if constexpr (pre_integrated) {
+        if (block.inside) continue;
+        const Floats length = hn::Sub(block.u[i + 1], block.u[i]);
+        const Mask shorter = hn::And(block.present(rays, i), hn::Lt(length, hn::Set(f, 1.0F)));
+        if (!hn::AllFalse(f, shorter)) shorten(length, colours[i]);
+      }
+    }
+    if constexpr (lit) light_block(rays, constants, source, block, colours);
+    for (std::size_t i = 0; i < block.count; ++i) {
+      if (!pre_integrated || !parted[i]) compose_over(colours[i], pixels);
+      if (!parted[i]) continue;
+      Segment segment;
+      segment.begin = block.u[i];
+      segment.end = block.u[i + 1];
+      segment.from = place_at(rays, block.u[i], constants);
+      segment.to = place_at(rays, block.u[i + 1], constants);
+      segment.front = block.values[i];
+      segment.back = block.values[i + 1];
+      Floats square = hn::Zero(f);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Floats way = hn::Sub(segment.to.free[axis], segment.from.free[axis]);
+        square = hn::MulAdd(way, way, square);
+      }
+      segment.cells = hn::Sqrt(square);
+      compose_surfaces<pre_integrated>(rays, segment, block.present(rays, i), lit, constants, source, pixels);
+    }
+  }
+  rays.value = block.values[block.count];
+  rays.known = true;
+  rays.k = hn::Add(rays.k, hn::Set(f, float(block.count)));
+}
+
+/// The packet whose lowest left pixel is (x, y) of the strip.
+HWY_INLINE SegmentPacket segment_packet_of(const RayStrip& strip, std::size_t x, std::size_t y,
+                                           const SegmentConstants& constants) {
+  const FloatTag f;
+  const Lamp* const lamp = constants.lamp;
+  SegmentPacket rays;
+  static_cast<Packet&>(rays) = packet_of(strip, x, y);
+  alignas(64) std::array<std::array<float, lanes>, 8> packed{};
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const std::size_t ray = (y + lane / 4) * tile_width + x + lane % 4;
+    packed[0][lane] = strip.begin[ray];
+    packed[1][lane] = strip.end[ray];
+    if (lamp == nullptr) continue;
+    const std::array<float, 3> step{strip.step[0][ray], strip.step[1][ray], strip.step[2][ray]};
+    const std::array<float, 3> light = lamp->light(step), half = lamp->half(step);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      packed[2 + axis][lane] = light[axis] * constants.normal_of_slope;
+      packed[5 + axis][lane] = half[axis] * constants.normal_of_slope;
+    }
+  }
+  rays.begin = hn::Load(f, packed[0].data());
+  rays.end = hn::Load(f, packed[1].data());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    rays.light[axis] = hn::Load(f, packed[2 + axis].data());
+    rays.half[axis] = hn::Load(f, packed[5 + axis].data());
+  }
+  rays.value = hn::Zero(f);
+  return rays;
+}
+
+HWY_INLINE void skip_empty_segments(SegmentGroup& packets, const SegmentConstants& constants) {
+  for (bool again = true; again;) {
+    again = false;
+#pragma GCC unroll 2
+    for (SegmentPacket& rays : packets)
+      if (leap_segments(rays, constants)) {
+        rays.known = false;
+        again = true;
+      }
+  }
+}
+
+template <bool pre_integrated, bool lit, typename Source>
+void walk_segments_of_strip(const Scene& scene, const RayStrip& strip, Source source, float* rgba,
+                            KernelCounts& counts) {
+  const FloatTag f;
+  const IntTag d;
+  const SegmentConstants constants(scene, source);
+  const Floats one = hn::Set(f, 1.0F);
+  Ints taken = hn::Zero(d);
+  for (std::size_t y = 0; y < strip_height; y += rows)
+    for (std::size_t x = 0; x < tile_width; x += 4 * group) {
+      SegmentGroup packets;
+      std::array<Colours, group> pixels;
+      bool done = true;
+      for (std::size_t g = 0; g < group; ++g) {
+        packets[g] = segment_packet_of(strip, x + 4 * g, y, constants);
+        pixels[g].fill(hn::Zero(f));
+        done = done && packets[g].done();
+      }
+      while (!done) {
+        if (constants.skips) skip_empty_segments(packets, constants);
+        done = true;
+        for (std::size_t g = 0; g < group; ++g) {
+          SegmentPacket& rays = packets[g];
+          if (rays.done()) continue;
+          const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
+          const Floats block = hn::Set(f, float(samples_between_tests));
+          taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
+          take_segments<pre_integrated, lit>(rays, constants, source, pixels[g]);
+          const Floats room = hn::Sub(one, alphas(pixels[g]));
+          const auto opaque = hn::And(hn::Lt(room, constants.termination), hn::Le(rays.k, rays.last));
+          counts.rays_terminated += hn::CountTrue(f, opaque);
+          rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
+          done = done && rays.done();
+        }
+      }
+      for (std::size_t g = 0; g < group; ++g)
+        for (std::size_t q = 0; q < 4; ++q) {
+          alignas(64) float column[lanes];
+          hn::Store(pixels[g][q], f, column);
+          for (std::size_t row = 0; row < rows; ++row)
+            std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + 4 * g + q));
+        }
+    }
+  alignas(64) std::int32_t taken_by_lane[lanes];
+  hn::Store(taken, d, taken_by_lane);
+  for (const std::int32_t n : taken_by_lane) counts.samples_taken += std::uint64_t(n);
+}
+
+template <bool pre_integrated>
+void walk_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+  const auto walk = [&](auto source) {
+    return scene.segments->lit_samples
+               ? walk_segments_of_strip<pre_integrated, true>(scene, strip, source, rgba, counts)
+               : walk_segments_of_strip<pre_integrated, false>(scene, strip, source, rgba, counts);
+  };
+  switch (scene.store->description().type) {
+    case TexelType::u8:
+      return walk(Bytes8());
+    case TexelType::u16:
+      return walk(Shorts16());
+    case TexelType::f32:
+      return walk(Floats32());
+    case TexelType::rgba8:  // refused by validate()
+      return;
+  }
+}

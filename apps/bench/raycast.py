@@ -61,9 +61,9 @@ def yardstick_ns(script, table, threads):
     return min(float(ns) for _, ns in YARDSTICK_LINE.findall(text))
 
 
-def measured(volume, size, options):
+def measured(volume, size, options, frames=FRAMES):
     program = viewers.PROGRAMS / "understudy-bench-raycast"
-    text = subprocess.run([str(program), str(volume), "--size", size, "--frames", str(FRAMES), "--epsilon", str(EPSILON),
+    text = subprocess.run([str(program), str(volume), "--size", size, "--frames", str(frames), "--epsilon", str(EPSILON),
                            *options], stdout=subprocess.PIPE, text=True, check=True).stdout
     return json.loads(text)
 
@@ -87,7 +87,7 @@ def vtk_rows(volume, rows_so_far):
             text = subprocess.run(["/usr/bin/python3", str(Path(__file__).with_name("vtk_mappers.py")), str(volume), "--size",
                                    FULL, "--table", table, "--mapper", mapper, "--frames", "3", "--picture", str(picture)],
                                   stdout=subprocess.PIPE, text=True, check=True, env=environment).stdout
-            figures = measured(volume, FULL, ["--table", table, "--judge", str(picture), "--frames", "1"])
+            figures = measured(volume, FULL, ["--table", table, "--judge", str(picture)], frames=1)
             errors = {key: figures[key] for key in figures if key.startswith(("rms_", "max_"))}
             ns = 1e9 * json.loads(text)["seconds"] / figures["samples"]
             rival = f"cpu/post-classified/{table}"

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
@@ -115,9 +116,13 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
   const volume::TexelFigures& values = stream.figures();
   const double low = values.low <= values.high ? values.low : 0;
   const double high = values.low < values.high ? values.high : low + 1;
-  table_ = resampled(sampled(description.knots, low, high, 1));
-  table_.low = float(mapping.normalised(low));
-  table_.high = float(mapping.normalised(high));
+  table_ = resampled(sampled(spanning(description.knots, low, high), low, high, 1));
+  table_.low = float(mapping.normalised(double(table_.low)));
+  table_.high = float(mapping.normalised(double(table_.high)));
+  if (table_.low > table_.high) {  // texels fall where values rise
+    std::swap(table_.low, table_.high);
+    std::ranges::reverse(table_.entries);
+  }
 
   description_.margin = margin_needed(description_, request(8, volume::Method::pre_integrated, 0));
   store_ = std::make_unique<volume::BrickStore>(description_, volume::cell_lattice(description_).box());

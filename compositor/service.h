@@ -7,7 +7,10 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "volume/image.h"
+#include "volume/reference/pixel_integral.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {
@@ -27,7 +30,7 @@ class RequestRefused : public std::runtime_error {
 };
 
 struct Rendered {
-  volume::ImageView image;  ///< over its footprint only; valid until the next call on the service
+  volume::ImageView image;  ///< over its footprint only; valid until the next call but integrals()
   volume::FrameCounts counts;
 };
 
@@ -52,6 +55,14 @@ class RenderService {
   virtual void forget_volume(volume::VolumeId id) = 0;
 
   virtual Rendered render(const volume::RenderRequest& request) = 0;
+
+  /// What pixels of the request would show if its samples were taken ever more densely
+  /// (volume/reference/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in
+  /// `most_ms` on the slowest node. For requests on steps, under `over` with a transfer function and a linear
+  /// filter; method, termination, surfaces and light are not looked at.
+  virtual std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
+                                                       std::span<const volume::Pixel> pixels,
+                                                       double most_ms) = 0;
 
   /// How many ranks render; 0 for the embedded service.
   virtual int nodes() const = 0;

@@ -28,6 +28,28 @@ bool set_number(Options& options, const std::string& text) {
   return number.has_value();
 }
 
+/// "0.002" or "0.5/255", in (0, 1].
+bool set_error(Options& options, const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto above = number_in<double>(text.substr(0, slash), 0, 1e9);
+  const auto below =
+      slash == std::string::npos ? std::optional(1.0) : number_in<double>(text.substr(slash + 1), 0, 1e9);
+  if (!above || !below || !(*above > 0 && *above <= *below)) return false;
+  options.error = *above / *below;
+  return true;
+}
+
+/// "30ms", "30" or "0.03s", up to a minute.
+bool set_time(Options& options, const std::string& text) {
+  const std::size_t unit = text.find_first_not_of("0123456789.");
+  const std::string name = unit == std::string::npos ? "ms" : text.substr(unit);
+  const auto number = number_in<double>(text.substr(0, unit), 0, 60000);
+  const double ms = number.value_or(0) * (name == "s" ? 1000 : 1);
+  if ((name != "ms" && name != "s") || !(ms > 0 && ms <= 60000)) return false;
+  options.time_ms = ms;
+  return true;
+}
+
 template <auto member>
 bool set_text(Options& options, const std::string& text) {
   options.*member = text;
@@ -83,6 +105,14 @@ constexpr std::array rows{
     Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
          "say for every volume what was recognised, and why draws were left to the viewer"},
         set_switch<&Options::explain>},
+    Row{{"--error", "UNDERSTUDY_ERROR", "E", "",
+         "samples lie anywhere, as few as keep every channel of every pixel within E of the integral: a number "
+         "like 0.002, or a fraction like 0.5/255, above 0 and at most 1"},
+        set_error},
+    Row{{"--time", "UNDERSTUDY_TIME", "T", "",
+         "samples lie anywhere, as many as can be cast in T a picture: 30ms, or 0.03s, above 0 and at most a "
+         "minute; with --error, that goes first"},
+        set_time},
     Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
          "save the composited float pictures: frame_0001.pfm and frame_0001_alpha.pfm, …"},
         set_text<&Options::save_frames>},

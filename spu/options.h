@@ -18,12 +18,16 @@ struct Options {
   bool explain = false;
   bool disable = false;
   bool debug_tint = false;
+  double error = 0;               ///< that pictures may have; 0: samples are the viewer's own
+  double time_ms = 0;             ///< that pictures may take; 0: samples are the viewer's own
   std::string save_frames;        ///< folder for PFM files; empty: none
   std::string exchange = "auto";  ///< name of compositor::set_algorithm
   std::string pixels = "float";   ///< name of compositor::set_layout
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application
+
+  bool has_budget() const { return error > 0 || time_ms > 0; }
 };
 
 struct OptionText {

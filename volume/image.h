@@ -9,6 +9,12 @@
 namespace understudy::volume {
 
 /// Half-open rectangle of pixels in window coordinates: x to the right, y up, as in glViewport.
+struct Pixel {
+  int x = 0;
+  int y = 0;
+  bool operator==(const Pixel&) const = default;
+};
+
 struct Rect {
   int x = 0;
   int y = 0;
@@ -48,6 +54,7 @@ struct Image {
 
   Image() = default;
   explicit Image(const Rect& where) : rect(where), rgba(4 * where.pixels(), 0.0F) {}
+  explicit Image(const ImageView& seen) : rect(seen.rect), rgba(seen.rgba.begin(), seen.rgba.end()) {}
 
   /// The four floats of pixel (x, y), given in window coordinates inside `rect`.
   float* at(int x, int y) { return rgba.data() + 4 * (std::size_t(y - rect.y) * rect.width + (x - rect.x)); }

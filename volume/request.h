@@ -5,6 +5,7 @@
 // half texel belongs to the volume.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -94,7 +95,13 @@ struct RayOffsets {
 /// unit of length is the step: a ray that is in the region from t0 to t1 is L = |metric (t1 - t0)| steps long.
 /// Sample i lies first + i steps from t0, i >= 0, up to L; where there are `offsets`, that of the pixel later.
 struct RaySteps {
-  std::array<double, 9> metric{};  ///< row-major; texture space to a space whose unit of length is the step
+  /// Row-major; texture space to a space whose unit of length is the step. Or its first row alone, others zero:
+  /// then steps reach from plane to plane, however slantingly a ray crosses them.
+  std::array<double, 9> metric{};
+  /// Whether steps reach from plane to plane.
+  bool between_planes() const {
+    return std::all_of(metric.begin() + 3, metric.end(), [](double v) { return v == 0; });
+  }
   double first = 0;
   /// The ray is divided into n = floor(L + rounding) equal parts, n >= 1 (otherwise it has no samples); sample
   /// i lies first + i parts from t0, 0 <= i < n.

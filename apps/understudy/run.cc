@@ -210,10 +210,10 @@ void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArg
     const std::string variable = option.environment;
     const std::string value = option.value;
     if (flag.empty() || std::find(without.begin(), without.end(), flag) != without.end()) continue;
-    const auto take = [arguments, variable, flag](const std::string& text) {
+    const auto take = [arguments, variable, flag, help = option.help](const std::string& text) {
       spu::Options scratch;
       if (!spu::set_option(scratch, variable, text)) {
-        throw CLI::ValidationError(flag, fmt::format("'{}' is not a value this option takes", text));
+        throw CLI::ValidationError(flag, fmt::format("'{}' is not a value this option takes: {}", text, help));
       }
       arguments->settings[variable] = text;
     };

@@ -17,6 +17,7 @@
 #include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
 #include "compositor/service.h"
+#include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loads.h"
@@ -77,6 +78,7 @@ class Node {
   std::vector<Outcome> perform(const Order& order, Bytes payload);
   std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
   Exchanged composite(const std::vector<Outcome>& outcomes);
+  std::vector<volume::PixelIntegral> compose_integrals();
 
   Link& link_;
   ExchangeSettings exchange_;
@@ -92,6 +94,9 @@ class Node {
   volume::Operator op_{};
   std::vector<Rank> visible_order_;
   volume::Image image_;
+  // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
+  std::vector<IntegralPart> integrals_;
+  std::size_t integrated_ = 0;  // the first of them are known
 };
 
 bool is_load(MessageType type) {
@@ -159,7 +164,9 @@ void Node::follow() {
     }
     if (!receive_payload(order, {})) continue;
     const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
-    if (order.type == MessageType::render && !first_refusal(outcomes)) composite(outcomes);
+    if (first_refusal(outcomes)) continue;
+    if (order.type == MessageType::render) composite(outcomes);
+    if (order.type == MessageType::integrals) compose_integrals();
   }
 }
 
@@ -296,6 +303,8 @@ void Node::request(Clients& clients, Clients::Request request) {
     for (const Outcome& outcome : outcomes) loads.push_back(outcome.load);
     return clients.reply(request, MessageType::loading, encode(loads));
   }
+  if (order.type == MessageType::integrals)
+    return clients.reply(request, MessageType::integrated, encode(compose_integrals()));
   if (order.type != MessageType::render) return clients.reply(request, MessageType::done, {});
 
   RenderedReply rendered;
@@ -374,6 +383,14 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         mine.footprint = image_.rect;
         break;
       }
+      case MessageType::integrals: {
+        const IntegralQuestion question = decode_integral_question(payload);
+        visible_order_ = renderer_.visibility_order(order.client, question.request);
+        integrals_ = renderer_.integrals(order.client, question.request, question.pixels, question.most_ms);
+        integrated_ = integrals_.size();
+        integrals_.resize(question.pixels.size());
+        break;
+      }
       default:
         throw MalformedMessage("an application does not send this type of message");
     }
@@ -407,6 +424,23 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
                               ? schedule(*exchange_.algorithm, visible_order_, footprints)
                               : cheapest(visible_order_, footprints, exchange_.layout, *link_cost_);
   return exchange(std::move(image_), chosen, op_, exchange_.layout, link_);
+}
+
+// The whole integrals, from the parts of all ranks.
+std::vector<volume::PixelIntegral> Node::compose_integrals() {
+  const auto ranks = std::size_t(link_.size());
+  std::vector<std::uint64_t> known(ranks);
+  std::uint64_t mine = integrated_;
+  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(known)));
+  const std::size_t pixels = std::ranges::min(known);
+  if (pixels == 0) return {};
+  std::vector<IntegralPart> all(ranks * pixels);
+  link_.gather_to_all(std::as_bytes(std::span(integrals_).first(pixels)),
+                      std::as_writable_bytes(std::span(all)));
+  std::vector<std::vector<IntegralPart>> parts;
+  for (auto part = all.begin(); part != all.end(); part += std::ptrdiff_t(pixels))
+    parts.emplace_back(part, part + std::ptrdiff_t(pixels));
+  return composed_integrals(parts, visible_order_);
 }
 
 }  // namespace

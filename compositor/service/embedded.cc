@@ -1,5 +1,8 @@
 // The render service inside the application: one rank, all cores, no socket.
+#include <array>
+
 #include "compositor/service.h"
+#include "compositor/service/integral_parts.h"
 #include "compositor/service/rank_renderer.h"
 
 namespace understudy::compositor {
@@ -24,6 +27,12 @@ class EmbeddedService : public RenderService {
     volume::FrameCounts counts;
     image_ = renderer_.render(application, request, counts);
     return {image_.view(), counts};
+  }
+
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
+                                               std::span<const volume::Pixel> pixels, double most_ms) override {
+    const std::vector<IntegralPart> whole = renderer_.integrals(application, request, pixels, most_ms);
+    return composed_integrals({&whole, 1}, std::array{0});
   }
 
   int nodes() const override { return 0; }

@@ -1,6 +1,7 @@
 // One rank in this process that reads its files itself.
 #include <array>
 
+#include "compositor/service/integral_parts.h"
 #include "compositor/service/loading_service.h"
 #include "compositor/service/loads.h"
 #include "compositor/service/rank_renderer.h"
@@ -41,6 +42,12 @@ class EmbeddedLoadingService : public LoadingService {
     image_ = renderer_.render(application, request, counts);
     return {image_.view(), counts};
   }
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
+                                               std::span<const volume::Pixel> pixels, double most_ms) override {
+    const std::vector<IntegralPart> whole = renderer_.integrals(application, request, pixels, most_ms);
+    return composed_integrals({&whole, 1}, std::array{0});
+  }
+
   int nodes() const override { return 0; }
 
  private:

@@ -21,6 +21,8 @@ constexpr int max_viewport_offset = 1 << 20;                         ///< of a v
 constexpr std::uint64_t max_window_pixels = std::uint64_t(1) << 26;  ///< 8192 x 8192
 constexpr std::size_t max_clip_planes = 64;
 constexpr int max_ray_offsets = 1 << 20;
+constexpr std::size_t max_integrals = 4096;  ///< pixels of one question
+constexpr double max_integral_ms = 2000;
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
 constexpr int max_kept_pair_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 

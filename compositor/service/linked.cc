@@ -11,6 +11,7 @@
 
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
+#include "compositor/service/integral_parts.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loading_service.h"
 #include "compositor/service/protocol.h"
@@ -130,6 +131,16 @@ class LinkedService : public LoadingService {
         (floats > 0 && intersection(rendered.rect, wanted.window) != rendered.rect))
       lose("answered with a picture that does not fit the window");
     return {{rendered.rect, image_.floats().first(floats)}, rendered.counts};
+  }
+
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& wanted,
+                                               std::span<const volume::Pixel> pixels, double most_ms) override {
+    give_up_posted();
+    const Message reply = request(MessageType::integrals, encode(wanted, pixels, most_ms), patience_.render,
+                                  MessageType::integrated);
+    auto integrals = conversation([&] { return decode_integrals(reply.payload); });
+    if (integrals.size() > pixels.size()) lose("answered with more pixels than were asked for");
+    return integrals;
   }
 
   int nodes() const override { return ranks_; }

@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 5;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 6;         ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -42,7 +42,10 @@ enum class MessageType : std::uint16_t {
   load_volume,    ///< from an application to rank 0
   continue_load,  ///< the same
   loading,        ///< the reply to both
-  last = loading
+  // what pixels would show without a step (integral_parts.h)
+  integrals,   ///< from an application to rank 0
+  integrated,  ///< the reply
+  last = integrated
 };
 
 struct MessageHeader {

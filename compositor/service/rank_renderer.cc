@@ -1,6 +1,8 @@
 #include "compositor/service/rank_renderer.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 #include "volume/kd_tree.h"
 #include "volume/raycast/brick_renderer.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/reference/pixel_integral.h"
 
 namespace understudy::compositor {
 
@@ -43,6 +46,9 @@ struct RankRenderer::Volume {
 };
 
 namespace {
+
+// Far below what anybody asks for, far above what costs time without end.
+constexpr double integral_tolerance = 1e-7;
 
 // What the volume room finds wrong with its arguments is a refusal here, and so is a machine that is too small.
 template <class Call>
@@ -211,6 +217,38 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
   counts.render_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return image;
+}
+
+std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const RenderRequest& request,
+                                                  std::span<const Pixel> pixels, double most_ms) const {
+  const auto start = std::chrono::steady_clock::now();
+  const Volume& volume = find_complete(client, request);
+  return refusing([&] {
+    validate(volume.bricks.description(), request);
+    const auto* const function = std::get_if<TransferFunction>(&request.classification);
+    if (!request.steps || function == nullptr || request.op != Operator::over ||
+        request.filter != Filter::linear || request.fog)
+      throw RequestRefused(
+          "integrals are of requests on steps, under over with a transfer function, a linear filter and no "
+          "fog");
+    const Medium medium = Medium::of_samples(*function, 1);
+    std::vector<IntegralPart> parts(pixels.size());
+    std::size_t done = 0;
+    const std::size_t at_once = std::size_t(std::max(1, tbb::this_task_arena::max_concurrency()));
+    while (done < pixels.size()) {
+      const std::size_t end = std::min(done + at_once, pixels.size());
+      tbb::parallel_for(done, end, [&](std::size_t i) {
+        const RayIntegral seen =
+            stored_pixel_integral(volume.bricks, request, medium, pixels[i].x, pixels[i].y, integral_tolerance);
+        parts[i] = {seen.colour, seen.optical_depth};
+      });
+      done = end;
+      const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+      if (spent.count() >= most_ms) break;
+    }
+    parts.resize(done);
+    return parts;
+  });
 }
 
 std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const RenderRequest& request) const {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "compositor/service/integral_parts.h"
 #include "volume/image.h"
 #include "volume/raycast/brick_renderer.h"
 #include "volume/request.h"
@@ -49,6 +50,9 @@ class RankRenderer {
 
   /// This rank's image, cropped to what shows; adds to `counts`, time included.
   volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts);
+  /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals()).
+  std::vector<IntegralPart> integrals(std::uint64_t client, const volume::RenderRequest& request,
+                                      std::span<const volume::Pixel> pixels, double most_ms) const;
   /// All ranks, front first.
   std::vector<int> visibility_order(std::uint64_t client, const volume::RenderRequest& request) const;
 

@@ -29,6 +29,19 @@ struct ReasonCount {
 /// Given up: its volume is counted in the place of another one.
 enum class VolumePlace : std::uint32_t { free, held, left_behind, given_up };
 
+/// What became of the error or the time that was asked for.
+struct BudgetCounters {
+  double asked_error;           ///< 0: none
+  double asked_ms;              ///< 0: none
+  double measured;              ///< greatest error of the rays that were integrated, under the setting below
+  double ms;                    ///< that a picture takes
+  std::uint64_t rays;           ///< integrated while running
+  std::uint64_t pictures_over;  ///< in which a ray was wrong by more than was asked; the next was finer
+  std::uint32_t calibrations;
+  char setting[120];
+  char note[200];  ///< why the budget is not kept; empty: it is
+};
+
 struct VolumeCounters {
   std::atomic<VolumePlace> place;
   std::atomic<std::uint32_t> number;  ///< the how many-th volume of the process, from 1
@@ -45,6 +58,7 @@ struct VolumeCounters {
   double verify_max;      ///< worst over the verified frames
   double verify_sum_sq;   ///< sum over verified frames of the mean squared error: RMS = sqrt(sum / frames)
   char explanation[512];  ///< what was recognised, in plain words
+  BudgetCounters budget;
 };
 
 /// Parts of a frame, in milliseconds. They do not overlap; what is left of the frame is the application's.
@@ -55,6 +69,7 @@ struct FrameShares {
   double render;        ///< waiting for the render service
   double verification;  ///< the application's own drawing, and the comparison
   double presentation;  ///< the picture completed, and into the application's framebuffer
+  double budget;        ///< choosing samples, and integrating rays to see how wrong they are
 
   FrameShares& operator+=(const FrameShares& other) {
     recognition += other.recognition;
@@ -63,6 +78,7 @@ struct FrameShares {
     render += other.render;
     verification += other.verification;
     presentation += other.presentation;
+    budget += other.budget;
     return *this;
   }
 };
@@ -72,7 +88,8 @@ struct FrameRecord {
   FrameShares spent_ms;
   std::uint32_t substituted;
   std::uint32_t left;
-  double error_rms;  ///< against the application's own drawing; negative: not measured
+  std::uint32_t within_budget;  ///< of the substituted: with samples that are not the application's own
+  double error_rms;             ///< against the application's own drawing; negative: not measured
   volume::FrameCounts counts;
 };
 

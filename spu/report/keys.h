@@ -29,6 +29,7 @@ constexpr const char* substituted_median = "substituted_median";
 constexpr const char* application_median = "application_median";
 constexpr const char* recognition_median = "recognition_median";  ///< of substituted frames, as the next
 constexpr const char* depth_median = "depth_median";
+constexpr const char* budget_median = "budget_median";
 
 // left_out
 constexpr const char* samples_skipped = "samples_skipped";
@@ -45,6 +46,7 @@ constexpr const char* upload_time = "upload_ms";
 constexpr const char* render_time = "render_ms";
 constexpr const char* verification_time = "verification_ms";
 constexpr const char* presentation_time = "presentation_ms";
+constexpr const char* budget_time = "budget_ms";
 constexpr const char* setting = "setting";
 constexpr const char* error_rms = "error_rms";  ///< null where not measured
 
@@ -62,6 +64,14 @@ constexpr const char* texels = "texels";
 constexpr const char* bytes_sent = "bytes_sent";
 constexpr const char* bytes_left_out = "bytes_left_out";  ///< of changed textures: what the nodes had already
 constexpr const char* verify = "verify";
+constexpr const char* budget = "budget";  ///< null where none was asked for
+constexpr const char* asked = "asked";    ///< error; null where only a time was
+constexpr const char* asked_ms = "asked_ms";
+constexpr const char* measured = "measured";  ///< greatest error of rays that were integrated
+constexpr const char* rays_integrated = "rays_integrated";
+constexpr const char* pictures_over = "pictures_over";
+constexpr const char* calibrations = "calibrations";
+constexpr const char* note = "note";  ///< why it is not kept
 constexpr const char* max = "max";
 constexpr const char* rms = "rms";
 constexpr const char* psnr = "psnr";  ///< dB; null when nothing was verified or the pictures are equal

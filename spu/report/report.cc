@@ -86,6 +86,7 @@ Json median_times(Processes processes) {
   std::vector<double> application;
   std::vector<double> recognition;
   std::vector<double> depth;
+  std::vector<double> budget;
   for (const ProcessCounters* process : processes) {
     for_each_kept_frame(*process, [&](std::uint64_t, const FrameRecord& frame) {
       all.push_back(frame.time_ms);
@@ -93,6 +94,7 @@ Json median_times(Processes processes) {
         substituted.push_back(frame.time_ms);
         recognition.push_back(frame.spent_ms.recognition);
         depth.push_back(frame.spent_ms.depth);
+        budget.push_back(frame.spent_ms.budget);
       }
       if (frame.substituted == 0 && frame.left > 0) application.push_back(frame.time_ms);
     });
@@ -101,7 +103,8 @@ Json median_times(Processes processes) {
           {report_key::substituted_median, median(std::move(substituted))},
           {report_key::application_median, median(std::move(application))},
           {report_key::recognition_median, median(std::move(recognition))},
-          {report_key::depth_median, median(std::move(depth))}};
+          {report_key::depth_median, median(std::move(depth))},
+          {report_key::budget_median, median(std::move(budget))}};
 }
 
 Json left_out(const volume::FrameCounts& counts) {
@@ -109,6 +112,11 @@ Json left_out(const volume::FrameCounts& counts) {
           {report_key::rays_ended_early, counts.rays_terminated},
           {report_key::blocks_empty, counts.blocks_empty},
           {report_key::nodes_idle, counts.nodes_idle}};
+}
+
+const char* setting_of(const FrameRecord& frame) {
+  if (frame.substituted == 0) return "the application";
+  return frame.within_budget > 0 ? "samples within the budget" : "the application's planes";
 }
 
 Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame) {
@@ -121,7 +129,8 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
               {report_key::render_time, frame.spent_ms.render},
               {report_key::verification_time, frame.spent_ms.verification},
               {report_key::presentation_time, frame.spent_ms.presentation},
-              {report_key::setting, frame.substituted > 0 ? "the application's planes" : "the application"},
+              {report_key::budget_time, frame.spent_ms.budget},
+              {report_key::setting, setting_of(frame)},
               {report_key::substituted, frame.substituted},
               {report_key::left, frame.left},
               {report_key::error_rms, nullptr},
@@ -150,6 +159,40 @@ Json verified(const VolumeCounters& volume) {
           {report_key::psnr, rms > 0 ? Json(-20 * std::log10(rms)) : Json(nullptr)}};
 }
 
+bool has_budget(const BudgetCounters& budget) {
+  return budget.asked_error > 0 || budget.asked_ms > 0;
+}
+
+Json report_of(const BudgetCounters& budget) {
+  if (!has_budget(budget)) return nullptr;
+  const auto or_null = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
+  return {{report_key::asked, or_null(budget.asked_error)},
+          {report_key::asked_ms, or_null(budget.asked_ms)},
+          {report_key::measured, budget.calibrations > 0 ? Json(budget.measured) : Json(nullptr)},
+          {report_key::time, or_null(budget.ms)},
+          {report_key::setting, text_in(budget.setting)},
+          {report_key::rays_integrated, budget.rays},
+          {report_key::pictures_over, budget.pictures_over},
+          {report_key::calibrations, budget.calibrations},
+          {report_key::note, text_in(budget.note)}};
+}
+
+/// "error asked 0.0020, measured 0.0013", and how, or why not.
+std::string sentence_of(const BudgetCounters& budget) {
+  std::string asked;
+  if (budget.asked_error > 0) {
+    asked = fmt::format("error asked {:.4f}", budget.asked_error);
+  } else {
+    asked = fmt::format("time asked {:.4g} ms, taken {:.4g} ms", budget.asked_ms, budget.ms);
+  }
+  if (budget.calibrations > 0)
+    asked += fmt::format(", {} {:.4f} ({:.3g} ms a picture, {})",
+                         budget.asked_error > 0 ? "measured" : "error measured", budget.measured, budget.ms,
+                         text_in(budget.setting));
+  if (budget.note[0] != '\0') asked += "; " + text_in(budget.note);
+  return asked;
+}
+
 Json report_of(const VolumeCounters& volume, std::int32_t pid) {
   Json because = Json::object();
   for (const auto& [reason, count] : reasons_of(volume)) because[reason] = count;
@@ -166,6 +209,7 @@ Json report_of(const VolumeCounters& volume, std::int32_t pid) {
             {report_key::bytes_left_out, volume.texel_bytes_left_out.load()}}},
           {report_key::left_because, because},
           {report_key::verify, verified(volume)},
+          {report_key::budget, report_of(volume.budget)},
           {report_key::explanation, text_in(volume.explanation)}};
 }
 
@@ -177,6 +221,7 @@ struct Totals {
   std::size_t volumes = 0;
   volume::FrameCounts counts;
   ReasonCounts reasons;
+  std::vector<std::string> budgets;  ///< of each volume that has one
 };
 
 Totals totals_of(Processes processes) {
@@ -192,6 +237,9 @@ Totals totals_of(Processes processes) {
       const VolumeCounters& volume = *entry;
       ++totals.volumes;
       for (const auto& [reason, count] : reasons_of(volume)) totals.reasons[reason] += count;
+      if (has_budget(volume.budget))
+        totals.budgets.push_back(
+            fmt::format("volume of texture {}: {}", volume.texture, sentence_of(volume.budget)));
     }
   }
   return totals;
@@ -280,6 +328,7 @@ std::string summary_line(Processes processes) {
                                  counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
                                  totals.frames_substituted, where, totals.frames_left);
   if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);
+  for (const std::string& budget : totals.budgets) line += "\nunderstudy: " + budget;
   return line;
 }
 

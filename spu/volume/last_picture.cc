@@ -46,6 +46,11 @@ class LastPicture final : public compositor::RenderService {
     return rendered;
   }
 
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,
+                                               std::span<const volume::Pixel> pixels, double most_ms) override {
+    return service_->integrals(request, pixels, most_ms);
+  }
+
   int nodes() const override { return service_->nodes(); }
 
  private:

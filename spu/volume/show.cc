@@ -1,7 +1,10 @@
 // From a request to the picture in the application's framebuffer.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
+#include <memory>
+#include <string>
 
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/save_frames.h"
@@ -23,40 +26,87 @@ void tint(volume::Image& picture) {
 
 }  // namespace
 
+/// A picture on its way to the framebuffer.
+struct VolumeUnit::Picture {
+  volume::ImageView shown;  ///< the service's, gone with its next one; or the one that is kept here
+  volume::Image kept;
+  volume::FrameCounts counts;
+
+  void keep() {
+    kept = volume::Image(shown);
+    shown = kept.view();
+  }
+};
+
+bool VolumeUnit::is_finished_here(const Substitution& s) {
+  return s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
+}
+
+void VolumeUnit::cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture) {
+  {
+    const TimedShare timed(clock_, &FrameShares::render);
+    const compositor::Rendered rendered = service.render(s.request);
+    picture.shown = rendered.image;
+    picture.counts += rendered.counts;
+  }
+  if (is_finished_here(s)) {
+    const TimedShare timed(clock_, &FrameShares::presentation);
+    picture.keep();
+    complete_picture(s, service, *s.volume.march, picture.kept, picture.counts);
+    picture.shown = picture.kept.view();
+  }
+  if (s.proxy) s.request.depth = s.opaque;
+}
+
+bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitution& s, Picture& picture) {
+  const Options& options = session_->options();
+  BudgetCounters& counters = s.volume.counters->budget;
+  std::optional<volume::RenderRequest> request;
+  {
+    const TimedShare timed(clock_, &FrameShares::budget);
+    if (!s.volume.budget)
+      s.volume.budget = std::make_unique<Budget>(BudgetAsked{options.error, options.time_ms});
+    const std::string obstacle = is_finished_here(s)   ? "what rays find is shown by the ray caster's own rules"
+                                 : !s.ray_ends.empty() ? "planes cut the ray caster's box"
+                                                       : "";
+    request = s.volume.budget->request(service, s.request, obstacle, s.volume.description,
+                                       session_->generation(), counters);
+  }
+  if (!request) return false;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    const TimedShare timed(clock_, &FrameShares::render);
+    const compositor::Rendered rendered = service.render(*request);
+    picture.shown = rendered.image;
+    picture.counts += rendered.counts;
+  }
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  const TimedShare timed(clock_, &FrameShares::budget);
+  s.volume.budget->look_at(service, picture.shown, took.count(), counters);
+  note([](FrameRecord& frame) { ++frame.within_budget; });
+  return true;
+}
+
 volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substitution& s,
                                      const std::function<void(const volume::ImageView&)>& check) {
   const Options& options = session_->options();
-  const auto render = [&](const volume::RenderRequest& request) {
-    const TimedShare timed(clock_, &FrameShares::render);
-    return service.render(request);
-  };
-  const compositor::Rendered rendered = render(s.request);
-
-  // The service's picture is gone with its next answer.
   const Blending& blending = s.pipeline.blending;
-  volume::Image picture;
-  volume::ImageView shown = rendered.image;
-  volume::FrameCounts counts = rendered.counts;
-  const bool finished_here = s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
-  if (options.debug_tint || blending.alpha_stands_apart() || finished_here) {
-    const TimedShare timed(clock_, &FrameShares::presentation);
-    picture.rect = shown.rect;
-    picture.rgba.assign(shown.rgba.begin(), shown.rgba.end());
-    shown = picture.view();
+  Picture picture;
+  const bool own = !options.has_budget() || to_be_verified(s);
+  if (own) {
+    cast_own_samples(service, s, picture);
+    check(picture.shown);
   }
-  if (finished_here) {
-    const TimedShare timed(clock_, &FrameShares::presentation);
-    complete_picture(s, service, *s.volume.march, picture, counts);
-    shown = picture.view();
-  }
-  if (s.proxy) s.request.depth = s.opaque;
-  check(shown);
+  if (options.has_budget() && !cast_within_budget(service, s, picture) && !own)
+    cast_own_samples(service, s, picture);
+  if (options.debug_tint || blending.alpha_stands_apart()) picture.keep();
+  const volume::ImageView shown = picture.shown;
   if (!options.save_frames.empty()) {
     const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown,
                                            volume::neutral_value(blending.op));
     if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
   }
-  if (options.debug_tint) tint(picture);
+  if (options.debug_tint) tint(picture.kept);
   const TimedShare timed(clock_, &FrameShares::presentation);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
   if (blending.alpha_stands_apart() && s.proxy) {
@@ -76,13 +126,14 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
     request.fog.reset();
     // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
     if (s.pipeline.target.alpha_bits <= 8) request.termination = 1e-3F;
-    const compositor::Rendered alpha = render(request);
-    counts += alpha.counts;
+    const TimedShare also_rendered(clock_, &FrameShares::render);
+    const compositor::Rendered alpha = service.render(request);
+    picture.counts += alpha.counts;
     presenter_->present(shown, blending, s.pipeline.target, &alpha.image);
   } else {
     presenter_->present(shown, blending, s.pipeline.target, nullptr);
   }
-  return counts;
+  return picture.counts;
 }
 
 }  // namespace understudy::spu

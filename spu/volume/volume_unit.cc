@@ -530,6 +530,7 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   const bool kept = known.generation == session_->generation();
   wanted.stored = texels_of(with_slabs(s.slices.region, s.slabs), texture.size);
   wanted.margin = margin_of(s.slabs, texture.size);
+  if (session_->options().has_budget()) wanted.margin = std::max(wanted.margin, budget_margin);
   if (kept) wanted.margin = std::max(wanted.margin, known.description.margin);
   if (kept && volume::contains(known.description.stored, wanted.stored)) {
     wanted.stored = known.description.stored;
@@ -662,12 +663,17 @@ void VolumeUnit::hide_behind_geometry(Substitution& s) {
                                s.pipeline.depth_or_equal);
 }
 
-void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
+bool VolumeUnit::to_be_verified(const Substitution& s) const {
   const Options& options = session_->options();
   const bool first = s.volume.frames == 0 && options.verify >= 0;
   const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
   const bool first_inside = s.eye_inside && !s.volume.verified_inside && options.verify >= 0;
-  if (!first && !due && !first_inside) return;
+  return first || due || first_inside;
+}
+
+void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
+  const Options& options = session_->options();
+  if (!to_be_verified(s)) return;
   const TimedShare timed(clock_, &FrameShares::verification);
   const auto difference = s.drawn ? std::optional(difference_between(s.pipeline, *s.drawn, image))
                                   : compare_with_application(context(), s.run, s.request, image);

@@ -17,6 +17,7 @@
 
 #include "spu/chain.h"
 #include "spu/report/counters.h"
+#include "spu/volume/budget/budget.h"
 #include "spu/volume/classification/probe.h"
 #include "spu/volume/context.h"
 #include "spu/volume/frame_clock.h"
@@ -54,6 +55,7 @@ struct KnownVolume {
   int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
+  std::unique_ptr<Budget> budget;  ///< where an error or a time is asked for
   VolumeCounters* counters = nullptr;
 };
 
@@ -101,6 +103,7 @@ class VolumeUnit final : public Unit {
 
  private:
   struct Substitution;
+  struct Picture;
   struct Merging;
 
   /// The picture of the run is in the framebuffer; else the application's calls are to be played.
@@ -130,6 +133,13 @@ class VolumeUnit final : public Unit {
   /// Renders the request and puts the picture where the slices would be; `check` sees it before, and may throw.
   volume::FrameCounts show(compositor::RenderService& service, Substitution& s,
                            const std::function<void(const volume::ImageView&)>& check);
+  /// Not every picture of the nodes is what the application shows of it.
+  static bool is_finished_here(const Substitution& s);
+  void cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture);
+  /// With samples as the error or the time that was asked for wants them; false where they must be the
+  /// application's own.
+  bool cast_within_budget(compositor::RenderService& service, Substitution& s, Picture& picture);
+  bool to_be_verified(const Substitution& s) const;
   void verify(Substitution& s, const volume::ImageView& image);
   void judge(KnownVolume& known, const Difference& difference);
   void explain(const Substitution& s, std::string_view beginning = {});

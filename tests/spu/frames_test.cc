@@ -92,6 +92,10 @@ class CountingService final : public compositor::RenderService {
     ++pictures_;
     return {};
   }
+  std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest&, std::span<const volume::Pixel>,
+                                               double) override {
+    return {};
+  }
   int nodes() const override { return 0; }
 
  private:

@@ -82,8 +82,10 @@ void validate_steps(const RaySteps& steps, const Box& region) {
     return Vec3{steps.metric[3 * r], steps.metric[3 * r + 1], steps.metric[3 * r + 2]};
   };
   const double volume = std::abs(dot(row(0), cross(row(1), row(2))));
-  if (!(volume > 1e-9 * length(row(0)) * length(row(1)) * length(row(2))))
-    refuse("the metric of the steps along rays is singular");
+  const bool regular = steps.between_planes()
+                           ? length(row(0)) > 0
+                           : volume > 1e-9 * length(row(0)) * length(row(1)) * length(row(2));
+  if (!regular) refuse("the metric of the steps along rays is singular");
   if (!(steps.first >= 0 && steps.rounding >= 0 && steps.rounding <= 1 && steps.past_depth >= 0 &&
         steps.first <= max_planes && steps.past_depth <= max_planes))
     refuse("rays begin {} steps from their entry, end {} behind opaque geometry, and are rounded by {}",

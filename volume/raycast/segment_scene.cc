@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <variant>
 
+#include "volume/footprint.h"
 #include "volume/matrix.h"
 
 namespace understudy::volume {
@@ -56,6 +58,33 @@ bool has_segments(const RenderRequest& request) {
   return request.method == Method::pre_integrated || !request.surfaces.empty();
 }
 
+/// How far, in cells along an axis, a ray of the picture goes from plane to plane at most; infinite where rays
+/// run along the planes. Directions of rays are linear in the pixel's position, so that the ratio of their
+/// parts along an axis and across the planes is largest in a corner.
+double reach_between_planes(const VolumeDescription& volume, const RenderRequest& request) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto clip_to_texture = inverse(request.texture_to_clip);
+  if (!clip_to_texture) return infinity;
+  const Matrix4& m = *clip_to_texture;
+  const Vec3 into{m[2], m[6], m[10]};
+  const Vec3 normal = row_of(request.steps->metric, 0);
+  const Rect seen = footprint(request, request.region);
+  double reach = 0;
+  bool forwards = false, backwards = false;
+  for (const int x : {seen.x, seen.x + seen.width})
+    for (const int y : {seen.y, seen.y + seen.height}) {
+      const Vec4 p = transform(m, {2.0 * (x - request.viewport.x) / request.viewport.width - 1,
+                                   2.0 * (y - request.viewport.y) / request.viewport.height - 1, 0, 1});
+      const Vec3 way = subtract(scale(into, p[3]), scale({p[0], p[1], p[2]}, m[14]));
+      const double across = dot(normal, way);
+      forwards = forwards || !(across < 0);
+      backwards = backwards || !(across > 0);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        reach = std::max(reach, std::abs(way[axis] / across) * volume.size[axis]);
+    }
+  return forwards && backwards ? infinity : reach;
+}
+
 double units(TexelType type) {
   return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
 }
@@ -69,7 +98,9 @@ bool walks_segments(const RenderRequest& request) {
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request) {
   if (!walks_segments(request)) return 0;
   double reach = 0;
-  if (has_segments(request) && request.steps) {
+  if (has_segments(request) && request.steps && request.steps->between_planes()) {
+    reach = reach_between_planes(volume, request);
+  } else if (has_segments(request) && request.steps) {
     const std::array<double, 9> inverse = inverse_of(request.steps->metric);
     // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding
     // steps.

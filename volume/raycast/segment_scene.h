@@ -12,7 +12,8 @@ namespace understudy::volume {
 bool walks_segments(const RenderRequest& request);
 
 /// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
-/// margin must be no smaller. The steps' metric must not be singular.
+/// margin must be no smaller. Of steps between planes it depends on the camera; elsewhere
+/// their metric must not be singular.
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request);
 
 /// Throws std::invalid_argument when surfaces, light or method make no sense on `volume`.

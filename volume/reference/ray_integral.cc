@@ -93,10 +93,11 @@ double greatest_difference(const Panel& a, const Panel& b) {
 
 class Integrator {
  public:
-  explicit Integrator(double tolerance) : tolerance_(tolerance) {}
+  explicit Integrator(double tolerance)
+      : tolerance_(tolerance), darkest_(tolerance > 1e-12 ? 7 - std::log(tolerance) : 745) {}
 
-  /// Nothing behind can be seen.
-  bool dark() const { return sum_.optical_depth > 745; }
+  /// Nothing behind can be seen: less than a thousandth of the tolerance, or of what a number can hold.
+  bool dark() const { return sum_.optical_depth > darkest_; }
   RayIntegral sum() const { return sum_; }
 
   void add_opaque(const std::array<double, 3>& colour) {
@@ -153,6 +154,7 @@ class Integrator {
   }
 
   double tolerance_;
+  double darkest_;
   double noise_ = 0;  ///< of optical depth over the whole stretch
   RayIntegral sum_;
 };

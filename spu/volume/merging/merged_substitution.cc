@@ -418,6 +418,7 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
   wanted.wrap = whole.texture.wrap;
   wanted.border = whole.texture.border;
   wanted.stored = {{0, 0, 0}, wanted.size};
+  if (session_->options().has_budget()) wanted.margin = budget_margin;
   if (wanted.id == 0) wanted.id = session_->new_volume_id();
   Transferred transferred;
   try {

@@ -1,0 +1,192 @@
+#include "spu/volume/budget/budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/raycast/segment_scene.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::Pixel;
+
+/// Of the error that is asked for, what early termination may use up.
+constexpr double share_of_termination = 0.125;
+constexpr float finest_termination = 5e-6F;
+constexpr float coarsest_termination = 0.02F;
+/// Rays that are looked at are a few of many: what calibration says must leave room for the others.
+constexpr double room_for_others = 0.7;
+/// Of the time that passes, what looking may take.
+constexpr double share_of_looking = 0.02;
+constexpr double most_credit_ms = 10;
+constexpr std::size_t proving_pixels = 32;  ///< of each kind
+constexpr double proving_ms = 120;
+constexpr int patient_frames = 4;  ///< before time moves the setting again
+
+float termination_for(const BudgetAsked& asked) {
+  if (asked.error > 0)
+    return std::clamp(float(asked.error * share_of_termination), finest_termination, coarsest_termination);
+  return 1e-3F;
+}
+
+}  // namespace
+
+std::optional<volume::RenderRequest> Budget::request(
+    compositor::RenderService& service, const volume::RenderRequest& own, const std::string& obstacle,
+    const volume::VolumeDescription& volume, std::uint64_t service_generation, BudgetCounters& counters) {
+  counters.asked_error = asked_.error;
+  counters.asked_ms = asked_.ms;
+  std::variant<Meaning, std::string> meaning = obstacle;
+  if (obstacle.empty()) meaning = meaning_of(own, volume.size);
+  if (const auto* reason = std::get_if<std::string>(&meaning)) {
+    put_text(counters.setting, "the application's own samples");
+    put_text(counters.note, "a budget cannot be kept: " + *reason);
+    return std::nullopt;
+  }
+  meaning_ = std::get<Meaning>(std::move(meaning));
+  const MeasuredFor now{volume.id, volume.version, service_generation, own.classification};
+  if (measured_for_ != now) {
+    calibration_ = calibrate(service, meaning_, volume, termination_for(asked_), asked_.error / 3);
+    measured_for_ = now;
+    ++counters.calibrations;
+    choose();
+    if (asked_.error > 0) prove(service);
+    looked_at_ = Clock::now();
+  }
+  if (!keep_margin(volume)) {
+    put_text(counters.note, "a budget cannot be kept: rays run along the slices");
+    return std::nullopt;
+  }
+  tell(counters);
+  return sampled_as(meaning_, calibration_.front[chosen_].setting);
+}
+
+/// Segments between slices grow longer as the camera turns, and nodes know only so much beside their own.
+bool Budget::keep_margin(const volume::VolumeDescription& volume) {
+  const auto& front = calibration_.front;
+  const auto fits = [&](std::size_t i) {
+    return volume::margin_needed(volume, sampled_as(meaning_, front[i].setting)) <= volume.margin;
+  };
+  const std::size_t before = chosen_;
+  while (!fits(chosen_) && go_finer()) {
+  }
+  for (std::size_t i = before; !fits(chosen_) && i-- > 0;)
+    if (fits(i)) chosen_ = i;
+  return fits(chosen_);
+}
+
+void Budget::choose() {
+  const auto& front = calibration_.front;
+  // Errors fall along the front, and times rise.
+  const auto good =
+      asked_.error > 0
+          ? std::ranges::find_if(
+                front,
+                [&](const Measured& measured) { return measured.error <= room_for_others * asked_.error; })
+          : std::ranges::find_if(front, [&](const Measured& measured) { return measured.ms > asked_.ms; });
+  chosen_ = std::size_t(good - front.begin());
+  if (asked_.error > 0 && good == front.end()) chosen_ = front.size() - 1;
+  if (!(asked_.error > 0)) chosen_ = std::max<std::size_t>(chosen_, 1) - 1;
+  worst_ = front[chosen_].error;
+  rays_ = calibration_.rays;
+  ms_ = front[chosen_].ms;
+  frames_as_chosen_ = 0;
+}
+
+/// Looks where the picture changes most with a finer setting: there it is wrong, if anywhere.
+void Budget::prove(compositor::RenderService& service) {
+  const auto& front = calibration_.front;
+  do {
+    const std::size_t other = chosen_ + 1 < front.size() ? chosen_ + 1 : std::max<std::size_t>(chosen_, 1) - 1;
+    const compositor::Rendered beside = service.render(sampled_as(meaning_, front[other].setting));
+    const volume::Image kept(beside.image);
+    const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
+    suspects_ = most_different(shown.image, kept.view(), proving_pixels);
+    std::vector<Pixel> pixels = suspects_;
+    const std::vector<Pixel> spread = spread_over(shown.image.rect, spread_, proving_pixels);
+    pixels.insert(pixels.end(), spread.begin(), spread.end());
+    const auto integrals = service.integrals(meaning_.request, pixels, proving_ms);
+    spread_ += proving_pixels;
+    worst_ = greatest_error(shown.image, pixels, integrals);
+    rays_ = integrals.size();
+  } while (worst_ > asked_.error && go_finer());
+}
+
+bool Budget::go_finer() {
+  if (chosen_ + 1 >= calibration_.front.size()) return false;
+  ++chosen_;
+  worst_ = 0;
+  rays_ = 0;
+  ms_ = 0;
+  frames_as_chosen_ = 0;
+  return true;
+}
+
+void Budget::look_at(compositor::RenderService& service, const volume::ImageView& picture, double ms,
+                     BudgetCounters& counters) {
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<double, std::milli> passed = now - looked_at_.value_or(now);
+  looked_at_ = now;
+  credit_ms_ = std::min(credit_ms_ + share_of_looking * passed.count(), most_credit_ms);
+  ms_ = frames_as_chosen_++ == 0 ? ms : 0.8 * ms_ + 0.2 * ms;
+  const auto count = std::size_t(std::max(0.0, credit_ms_) / ms_a_ray_);
+  if (count > 0 && !picture.rect.empty()) {
+    // Half where it was wrong before, half anywhere.
+    std::vector<Pixel> pixels = spread_over(picture.rect, spread_, (count + 1) / 2);
+    spread_ += pixels.size();
+    for (std::size_t i = 0; i < count / 2 && i < suspects_.size(); ++i) pixels.push_back(suspects_[i]);
+    if (!suspects_.empty())
+      std::ranges::rotate(suspects_,
+                          suspects_.begin() + std::ptrdiff_t(std::min(count / 2, suspects_.size() - 1)));
+    const auto integrals = service.integrals(meaning_.request, pixels, credit_ms_);
+    const std::chrono::duration<double, std::milli> took = Clock::now() - now;
+    credit_ms_ -= took.count();
+    if (!integrals.empty()) ms_a_ray_ = 0.5 * (ms_a_ray_ + took.count() / double(integrals.size()));
+    worst_ = std::max(worst_, greatest_error(picture, pixels, integrals));
+    rays_ += integrals.size();
+    counters.rays += integrals.size();
+  }
+  if (asked_.error > 0 && worst_ > asked_.error) {
+    ++counters.pictures_over;
+    go_finer();
+  } else if (!(asked_.error > 0)) {
+    keep_time();
+  }
+  tell(counters);
+}
+
+/// Moves along the front by one where the time that is asked for is not the time that pictures take.
+void Budget::keep_time() {
+  const auto& front = calibration_.front;
+  if (frames_as_chosen_ < patient_frames) return;
+  const auto move_to = [&](std::size_t other) {
+    chosen_ = other;
+    worst_ = front[other].error;
+    frames_as_chosen_ = 0;
+  };
+  if (ms_ > asked_.ms && chosen_ > 0) {
+    move_to(chosen_ - 1);
+  } else if (chosen_ + 1 < front.size() && front[chosen_ + 1].ms / front[chosen_].ms * ms_ < 0.9 * asked_.ms) {
+    move_to(chosen_ + 1);
+  }
+}
+
+void Budget::tell(BudgetCounters& counters) const {
+  const auto& front = calibration_.front;
+  const Measured& chosen = front[chosen_];
+  counters.measured = worst_;
+  counters.ms = ms_;
+  put_text(counters.setting, name_of(chosen.setting));
+  std::string note;
+  if (asked_.error > 0 && worst_ > asked_.error && chosen_ + 1 == front.size())
+    note = fmt::format(
+        "the error that is asked for cannot be kept: {:.2g} is the best there is here, at {:.3g} ms a picture",
+        worst_, ms_);
+  if (!(asked_.error > 0) && ms_ > asked_.ms && chosen_ == 0)
+    note = fmt::format("the time that is asked for cannot be kept: {:.3g} ms is the least there is here", ms_);
+  put_text(counters.note, note);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,82 @@
+// One volume's error or time: asked for, chosen for, watched, and reported.
+//
+//   a new volume, table or service ──► calibrate ──► the cheapest setting that keeps the error, proven on the
+//   picture itself ──► every frame a few rays are integrated; one that is wrong by more makes the next finer
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compositor/service.h"
+#include "spu/report/counters.h"
+#include "spu/volume/budget/calibration.h"
+#include "spu/volume/budget/free_sampling.h"
+
+namespace understudy::spu {
+
+struct BudgetAsked {
+  double error = 0;  ///< greatest difference of a channel from the integral, in (0, 1]; 0: none named
+  double ms = 0;     ///< to render and composite a picture; 0: none named. An error that is named goes first.
+
+  bool any() const { return error > 0 || ms > 0; }
+};
+
+/// Texels around its own that each node holds for the sake of segments of any setting.
+constexpr int budget_margin = 5;
+
+class Budget {
+ public:
+  explicit Budget(const BudgetAsked& asked) : asked_(asked) {}
+
+  /// The request to render in place of the application's own; empty, with the reason in `counters`, where its
+  /// samples must be its own: `obstacle` says so, or the request. May render and integrate on its own account.
+  /// Throws as the service does.
+  std::optional<volume::RenderRequest> request(compositor::RenderService& service,
+                                               const volume::RenderRequest& own, const std::string& obstacle,
+                                               const volume::VolumeDescription& volume,
+                                               std::uint64_t service_generation, BudgetCounters& counters);
+
+  /// Looks at the picture of what request() gave last, which took `ms`. Takes a fiftieth of the time that
+  /// passes.
+  void look_at(compositor::RenderService& service, const volume::ImageView& picture, double ms,
+               BudgetCounters& counters);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// What the front was measured for.
+  struct MeasuredFor {
+    volume::VolumeId volume = 0;
+    std::uint64_t version = 0;
+    std::uint64_t generation = 0;
+    volume::Classification classification;
+    bool operator==(const MeasuredFor&) const = default;
+  };
+
+  void choose();
+  void prove(compositor::RenderService& service);
+  bool go_finer();
+  bool keep_margin(const volume::VolumeDescription& volume);
+  void keep_time();
+  void tell(BudgetCounters& counters) const;
+
+  const BudgetAsked asked_;
+  std::optional<MeasuredFor> measured_for_;
+  Calibration calibration_;
+  std::size_t chosen_ = 0;               ///< of the front
+  Meaning meaning_;                      ///< of the last request
+  double worst_ = 0;                     ///< error of the rays that were looked at, under the chosen setting
+  std::uint64_t rays_ = 0;               ///< so many
+  std::vector<volume::Pixel> suspects_;  ///< where errors were greatest
+  std::size_t spread_ = 0;               ///< pixels of the sequence that were looked at
+  std::optional<Clock::time_point> looked_at_;
+  double credit_ms_ = 0;  ///< that looking may take
+  double ms_a_ray_ = 1;   ///< that it did take
+  double ms_ = 0;         ///< of a picture, smoothed
+  int frames_as_chosen_ = 0;
+};
+
+}  // namespace understudy::spu

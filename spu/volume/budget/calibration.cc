@@ -1,0 +1,176 @@
+#include "spu/volume/budget/calibration.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <utility>
+
+#include "volume/footprint.h"
+#include "volume/raycast/segment_scene.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::Image;
+using volume::ImageView;
+using volume::Pixel;
+using volume::PixelIntegral;
+using Clock = std::chrono::steady_clock;
+
+/// In texels along the ray through the middle, in the order of trying. Finer than one, samples are tried until
+/// two pictures in a row are alike enough; tables of segments take time to make.
+constexpr std::array coarse_samples{4.0, 2.0, 1.0};
+constexpr std::array fine_samples{0.5, 0.25, 0.125, 0.0625, 0.03125};
+constexpr std::array segments_apart{1.0, 0.5, 2.0, 0.25, 0.125};
+/// The small picture has about so many pixels where there is something to see.
+constexpr double small_picture = 80.0 * 80.0;
+/// Finer settings are not tried after this.
+constexpr double patience_ms = 400;
+constexpr double integrals_ms = 250;
+constexpr std::size_t spread_pixels = 64;
+constexpr std::size_t worst_pixels = 8;  ///< of each setting
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::array<float, 4> pixel_of(const ImageView& picture, const Pixel& pixel) {
+  const volume::Rect& rect = picture.rect;
+  const int x = pixel.x - rect.x, y = pixel.y - rect.y;
+  if (x < 0 || y < 0 || x >= rect.width || y >= rect.height) return {};
+  const std::size_t at = 4 * (std::size_t(y) * std::size_t(rect.width) + std::size_t(x));
+  return {picture.rgba[at], picture.rgba[at + 1], picture.rgba[at + 2], picture.rgba[at + 3]};
+}
+
+/// The same camera on fewer pixels. Opaque geometry is not in it: rays that see more cost more, and err more.
+volume::RenderRequest on_fewer_pixels(volume::RenderRequest request, int times) {
+  request.depth.reset();
+  if (times == 1) return request;
+  request.viewport.width = std::max(1, request.viewport.width / times);
+  request.viewport.height = std::max(1, request.viewport.height / times);
+  const volume::Rect window = request.window;
+  request.window = {request.viewport.x + (window.x - request.viewport.x) / times,
+                    request.viewport.y + (window.y - request.viewport.y) / times,
+                    std::max(1, window.width / times), std::max(1, window.height / times)};
+  return request;
+}
+
+struct Tried {
+  Setting setting;
+  double ms = 0;
+  Image picture;
+};
+
+double greatest_difference(const ImageView& a, const ImageView& b) {
+  const std::vector<Pixel> worst = most_different(a, b, 1);
+  if (worst.empty()) return 0;
+  const auto p = pixel_of(a, worst[0]), q = pixel_of(b, worst[0]);
+  float most = 0;
+  for (std::size_t k = 0; k < 4; ++k) most = std::max(most, std::abs(p[k] - q[k]));
+  return double(most);
+}
+
+/// Nobody who is cheaper is as exact.
+std::vector<Measured> front_of(std::vector<Measured> all) {
+  std::ranges::sort(all, {}, &Measured::ms);
+  std::vector<Measured> front;
+  for (Measured& measured : all)
+    if (front.empty() || measured.error < front.back().error) front.push_back(std::move(measured));
+  return front;
+}
+
+}  // namespace
+
+std::vector<Pixel> most_different(const ImageView& a, const ImageView& b, std::size_t count) {
+  const volume::Rect rect = bounding(a.rect, b.rect);
+  std::vector<std::pair<float, Pixel>> all;
+  all.reserve(rect.pixels());
+  for (int y = rect.y; y < rect.y + rect.height; ++y)
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      const auto p = pixel_of(a, {x, y}), q = pixel_of(b, {x, y});
+      float most = 0;
+      for (std::size_t k = 0; k < 4; ++k) most = std::max(most, std::abs(p[k] - q[k]));
+      if (most > 0) all.push_back({most, {x, y}});
+    }
+  count = std::min(count, all.size());
+  std::ranges::partial_sort(all, all.begin() + std::ptrdiff_t(count), std::greater<>{},
+                            &std::pair<float, Pixel>::first);
+  std::vector<Pixel> worst;
+  for (std::size_t i = 0; i < count; ++i) worst.push_back(all[i].second);
+  return worst;
+}
+
+std::vector<Pixel> spread_over(const volume::Rect& rect, std::size_t first, std::size_t count) {
+  // Multiples of the plastic number's powers: any run of them lies evenly (Roberts 2018).
+  constexpr double across = 0.7548776662466927, up = 0.5698402909980532;
+  std::vector<Pixel> pixels;
+  if (rect.empty()) return pixels;
+  double whole = 0;
+  for (std::size_t i = first; i < first + count; ++i)
+    pixels.push_back({rect.x + int(std::modf(0.5 + across * double(i), &whole) * rect.width),
+                      rect.y + int(std::modf(0.5 + up * double(i), &whole) * rect.height)});
+  return pixels;
+}
+
+double greatest_error(const ImageView& picture, std::span<const Pixel> pixels,
+                      std::span<const PixelIntegral> integrals) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < integrals.size(); ++i) {
+    const auto shown = pixel_of(picture, pixels[i]);
+    for (std::size_t k = 0; k < 4; ++k)
+      greatest = std::max(greatest, std::abs(double(shown[k]) - integrals[i][k]));
+  }
+  return greatest;
+}
+
+Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
+                      const volume::VolumeDescription& volume, float termination, double enough) {
+  const auto start = Clock::now();
+  const volume::Rect seen = footprint(meaning.request, meaning.request.region);
+  const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_picture))));
+  const Meaning small{on_fewer_pixels(meaning.request, times), meaning.texels_a_step};
+  std::vector<Tried> tried;
+  const auto try_out = [&](volume::Method method, double texels) {
+    if (!tried.empty() && milliseconds_since(start) > patience_ms) return;
+    const Setting setting{method, texels / meaning.texels_a_step, termination};
+    volume::RenderRequest request = sampled_as(small, setting);
+    if (volume::margin_needed(volume, request) > volume.margin) return;
+    service.render(request);  // prepares what depends on the table alone
+    request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
+    const auto begin = Clock::now();
+    const compositor::Rendered rendered = service.render(request);
+    tried.push_back({setting, milliseconds_since(begin) * times * times, Image(rendered.image)});
+  };
+  for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels);
+  for (const double texels : fine_samples) {
+    try_out(volume::Method::post_classified, texels);
+    const std::size_t last = tried.size() - 1;
+    if (last > 0 && greatest_difference(tried[last - 1].picture.view(), tried[last].picture.view()) < enough)
+      break;
+  }
+  for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels);
+
+  const ImageView finest =
+      std::ranges::min_element(tried, {}, [](const Tried& one) { return one.setting.step; })->picture.view();
+  std::vector<Pixel> pixels;
+  for (const Tried& one : tried) {
+    const std::vector<Pixel> worst = most_different(one.picture.view(), finest, worst_pixels);
+    pixels.insert(pixels.end(), worst.begin(), worst.end());
+  }
+  const std::vector<Pixel> spread =
+      spread_over(footprint(small.request, small.request.region), 0, spread_pixels);
+  pixels.insert(pixels.end(), spread.begin(), spread.end());
+  // If time is up before all are integrated, then those of some settings are not all that are missing.
+  std::shuffle(pixels.begin(), pixels.end(), std::minstd_rand());
+  const std::vector<PixelIntegral> integrals = service.integrals(small.request, pixels, integrals_ms);
+
+  std::vector<Measured> measured;
+  for (const Tried& one : tried)
+    measured.push_back({one.setting, greatest_error(one.picture.view(), pixels, integrals), one.ms});
+  return {front_of(std::move(measured)), integrals.size()};
+}
+
+}  // namespace understudy::spu

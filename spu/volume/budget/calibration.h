@@ -1,0 +1,42 @@
+// What settings cost and how wrong they are, measured on a small picture of the scene that is to be shown.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "compositor/service.h"
+#include "spu/volume/budget/free_sampling.h"
+
+namespace understudy::spu {
+
+struct Measured {
+  Setting setting;
+  double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
+  double ms = 0;     ///< for a picture of the request's own size
+};
+
+struct Calibration {
+  std::vector<Measured> front;  ///< each the cheapest of its error: cheapest first, most exact last
+  std::size_t rays = 0;         ///< that were integrated
+};
+
+/// Settings that the volume was sent with enough margin for; `termination` belongs to all of them. Finer ones
+/// are not tried once pictures differ by less than `enough`. Takes well under a second. Throws as the service
+/// does.
+Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
+                      const volume::VolumeDescription& volume, float termination, double enough);
+
+/// The pixels of two pictures of one rectangle that differ most, worst first; at most `count`.
+std::vector<volume::Pixel> most_different(const volume::ImageView& a, const volume::ImageView& b,
+                                          std::size_t count);
+
+/// Pixels all over a rectangle, the `first`-th of an endless sequence and those after it.
+std::vector<volume::Pixel> spread_over(const volume::Rect& rect, std::size_t first, std::size_t count);
+
+/// The greatest difference of a channel between a picture and the first integrals of `pixels`. Pixels beside
+/// the picture show nothing.
+double greatest_error(const volume::ImageView& picture, std::span<const volume::Pixel> pixels,
+                      std::span<const volume::PixelIntegral> integrals);
+
+}  // namespace understudy::spu

@@ -1,0 +1,131 @@
+#include "spu/volume/budget/free_sampling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "volume/footprint.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+namespace {
+
+using volume::RenderRequest;
+using volume::Rgba;
+using volume::TransferFunction;
+using volume::Vec3;
+
+/// What of a request has no meaning without its own samples.
+std::optional<std::string> obstacle(const RenderRequest& request) {
+  if (std::holds_alternative<volume::LinearMap>(request.classification))
+    return "the texels are colours already, whose opacities are of the viewer's own samples";
+  if (!std::holds_alternative<TransferFunction>(request.classification))
+    return "a table of pairs is of the viewer's own slabs";
+  if (request.op != volume::Operator::over) return "samples are not composed by over";
+  if (request.filter != volume::Filter::linear) return "the filter is nearest, which has no samples in between";
+  if (request.fog) return "samples fade in fog";
+  return std::nullopt;
+}
+
+/// Entries as a medium can have them: what was measured of a program may be off by rounding.
+TransferFunction believable(TransferFunction function) {
+  for (Rgba& entry : function.entries) {
+    for (float& value : entry) value = std::isfinite(value) ? std::max(value, 0.0F) : 0.0F;
+    entry[3] = std::min(entry[3], 1.0F);
+  }
+  return function;
+}
+
+/// Direction of the ray through the middle of the picture, of any length; towards the far plane.
+std::optional<Vec3> middle_ray(const RenderRequest& request) {
+  const auto clip_to_texture = volume::inverse(request.texture_to_clip);
+  if (!clip_to_texture) return std::nullopt;
+  const volume::Rect seen = volume::footprint(request, request.region);
+  if (seen.empty()) return std::nullopt;
+  const double across = 2 * (seen.x + seen.width / 2.0 - request.viewport.x) / request.viewport.width - 1;
+  const double up = 2 * (seen.y + seen.height / 2.0 - request.viewport.y) / request.viewport.height - 1;
+  const auto point_at = [&](double depth) {
+    const volume::Vec4 p = volume::transform(*clip_to_texture, {across, up, depth, 1});
+    return Vec3{p[0] / p[3], p[1] / p[3], p[2] / p[3]};
+  };
+  return volume::subtract(point_at(1), point_at(-1));
+}
+
+double steps_along(const volume::RaySteps& steps, const Vec3& way) {
+  Vec3 in_steps{};
+  for (std::size_t row = 0; row < 3; ++row)
+    in_steps[row] =
+        volume::dot({steps.metric[3 * row], steps.metric[3 * row + 1], steps.metric[3 * row + 2]}, way);
+  return volume::length(in_steps);
+}
+
+/// The function for samples `step` steps apart. Between its entries opacity is linear for whole steps, and so
+/// it is not for others: there are more entries then, as many as fit.
+TransferFunction stepped(const TransferFunction& whole, double step, std::size_t most_entries) {
+  const std::size_t pieces = std::max<std::size_t>(whole.entries.size() - 1, 1);
+  const std::size_t parts = step == 1 ? 1 : std::max<std::size_t>(1, (most_entries - 1) / pieces);
+  TransferFunction function{whole.low, whole.high, {}};
+  function.entries.reserve(pieces * parts + 1);
+  for (std::size_t i = 0; i <= pieces * parts; ++i) {
+    const std::size_t below = std::min(i / parts, whole.entries.size() - 2);
+    const double share = double(i - below * parts) / double(parts);
+    std::array<double, 4> entry{};
+    for (std::size_t k = 0; k < 4; ++k)
+      entry[k] = std::lerp(double(whole.entries[below][k]), double(whole.entries[below + 1][k]), share);
+    const double alpha = std::min(entry[3], 1.0);
+    const double seen = alpha < 1 ? -std::expm1(step * std::log1p(-alpha)) : 1;
+    const double scale = alpha > 0 ? seen / alpha : step;
+    function.entries.push_back(
+        {float(entry[0] * scale), float(entry[1] * scale), float(entry[2] * scale), float(seen)});
+  }
+  return function;
+}
+
+}  // namespace
+
+std::string name_of(const Setting& setting) {
+  return fmt::format("{} of {:.4g} of the application's steps, rays end below {:.1e}",
+                     setting.method == volume::Method::pre_integrated ? "pre-integrated segments" : "samples",
+                     setting.step, setting.termination);
+}
+
+std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, const std::array<int, 3>& size) {
+  if (auto reason = obstacle(request)) return *std::move(reason);
+  Meaning meaning{request};
+  RenderRequest& meant = meaning.request;
+  meant.classification = believable(std::get<TransferFunction>(request.classification));
+  const auto way = middle_ray(request);
+  if (!way) return "nothing of it is in the picture";
+  volume::RaySteps steps;
+  if (request.steps) {
+    steps.metric = request.steps->metric;
+  } else {
+    const Vec3 normal = volume::scale(request.planes.normal, 1 / request.planes.spacing);
+    if (!(volume::dot(normal, *way) > 0)) return "slices are composed from the far end";
+    std::copy(normal.begin(), normal.end(), steps.metric.begin());
+  }
+  meant.steps = steps;
+  Vec3 in_texels{};
+  for (std::size_t k = 0; k < 3; ++k) in_texels[k] = (*way)[k] * size[k];
+  meaning.texels_a_step = volume::length(in_texels) / steps_along(steps, *way);
+  if (!std::isfinite(meaning.texels_a_step) || !(meaning.texels_a_step > 0)) return "rays run along the slices";
+  return meaning;
+}
+
+RenderRequest sampled_as(const Meaning& meaning, const Setting& setting) {
+  RenderRequest request = meaning.request;
+  for (double& value : request.steps->metric) value /= setting.step;
+  // Segments cover the way from the entry on; samples stand for the half step on either side.
+  const bool segments = setting.method == volume::Method::pre_integrated;
+  request.steps->first = segments ? 0 : 0.5;
+  // Tables of segments take time in the square of their entries.
+  request.classification =
+      stepped(std::get<TransferFunction>(meaning.request.classification), setting.step, segments ? 512 : 1024);
+  request.method = setting.method;
+  request.termination = setting.termination;
+  return request;
+}
+
+}  // namespace understudy::spu

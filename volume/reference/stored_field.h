@@ -1,0 +1,18 @@
+// The field of a brick store along one ray, exactly: what field_along_ray() says of a whole texture, of the
+// cells that one rank owns.
+#pragma once
+
+#include <vector>
+
+#include "volume/brick/brick_store.h"
+#include "volume/reference/field_along_ray.h"
+
+namespace understudy::volume {
+
+/// The stretches of the straight way between two points of texture space, which is `length` long, in order:
+/// those in cells that `store` owns, so that the stretches of all ranks together are the whole way's. Cells
+/// with a corner that is not a number are left out. The store is finished, and its volume's filter linear.
+std::vector<Stretch> stored_field_along_ray(const BrickStore& store, const Vec3& from, const Vec3& to,
+                                            double length);
+
+}  // namespace understudy::volume

@@ -54,7 +54,6 @@ struct Image {
 
   Image() = default;
   explicit Image(const Rect& where) : rect(where), rgba(4 * where.pixels(), 0.0F) {}
-  explicit Image(const ImageView& seen) : rect(seen.rect), rgba(seen.rgba.begin(), seen.rgba.end()) {}
 
   /// The four floats of pixel (x, y), given in window coordinates inside `rect`.
   float* at(int x, int y) { return rgba.data() + 4 * (std::size_t(y - rect.y) * rect.width + (x - rect.x)); }
@@ -63,5 +62,12 @@ struct Image {
   }
   ImageView view() const { return {rect, rgba}; }
 };
+
+inline Image copy_of(const ImageView& view) {
+  Image image;
+  image.rect = view.rect;
+  image.rgba.assign(view.rgba.begin(), view.rgba.end());
+  return image;
+}
 
 }  // namespace understudy::volume

@@ -101,6 +101,7 @@ std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
       case MessageType::render:
       case MessageType::load_volume:
       case MessageType::continue_load:
+      case MessageType::integrals:
         return message;
       default:
         throw MalformedMessage("an application does not send this type of message");

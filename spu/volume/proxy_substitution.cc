@@ -185,9 +185,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.ray_ends = ends_of(*box, s.cuts);
     ask(s.request, march, *box, s.cuts);
     const compositor::Rendered rendered = service.render(s.request);
-    volume::Image picture;
-    picture.rect = rendered.image.rect;
-    picture.rgba.assign(rendered.image.rgba.begin(), rendered.image.rgba.end());
+    volume::Image picture = copy_of(rendered.image);
     volume::FrameCounts counts;
     complete_picture(s, service, march, picture, counts);
     const double difference = difference_between(s.pipeline, *looked_at, picture.view()).mean_square;

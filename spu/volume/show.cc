@@ -33,7 +33,7 @@ struct VolumeUnit::Picture {
   volume::FrameCounts counts;
 
   void keep() {
-    kept = volume::Image(shown);
+    kept = copy_of(shown);
     shown = kept.view();
   }
 };

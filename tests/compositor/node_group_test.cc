@@ -90,6 +90,38 @@ class NodeGroupTest : public ::testing::Test {
   std::vector<std::unique_ptr<Group>> groups_;
 };
 
+TEST_F(NodeGroupTest, IntegralsAreThoseOfOneProcess) {
+  const Texture texture = some_texture();
+  volume::RenderRequest request = some_request(texture);
+  request.steps.emplace();
+  request.steps->metric = {40, 0, 0, 0, 36, 0, 0, 0, 28};
+  std::vector<volume::Pixel> pixels;
+  for (int y = 0; y < 120; y += 13)
+    for (int x = 0; x < 160; x += 13) pixels.push_back({x, y});
+  const auto embedded = embedded_service();
+  upload(*embedded, texture);
+  const auto expected = embedded->integrals(request, pixels, 2000);
+  ASSERT_EQ(expected.size(), pixels.size());
+  EXPECT_GT(std::ranges::max(expected, {}, [](const auto& pixel) { return pixel[3]; })[3], 0.5);
+  for (const int ranks : {1, 3, 4}) {
+    const Group& group = start(ranks);
+    const auto service = connect();
+    upload(*service, texture);
+    const auto integrals = service->integrals(request, pixels, 2000);
+    ASSERT_EQ(integrals.size(), pixels.size()) << ranks;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(integrals[i][k], expected[i][k], 1e-6) << ranks;
+    // A picture after them, and as many as time allows.
+    EXPECT_FALSE(service->render(request).image.rect.empty());
+    EXPECT_LE(service->integrals(request, pixels, 0).size(), pixels.size());
+    request.steps.reset();
+    EXPECT_THROW(service->integrals(request, pixels, 100), RequestRefused);
+    request.steps = volume::RaySteps{.metric = {40, 0, 0, 0, 36, 0, 0, 0, 28}};
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group.ended(); }));
+  }
+}
+
 TEST_F(NodeGroupTest, LinkedEqualsEmbeddedForAnyRankCountOperatorAndTexelType) {
   for (const int ranks : {1, 2, 3, 4, 7}) {
     Group& group = start(ranks);

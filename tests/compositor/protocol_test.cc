@@ -8,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
 #include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_caster.h"
@@ -123,6 +124,14 @@ std::vector<Kind> all_kinds() {
       {"request with a map and depth", encode(some_request(true, true)), request},
       {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
        [](auto b) { return encode(decode_rendered(b)); }},
+      {"integrals",
+       encode(some_request(false, false), std::array{volume::Pixel{3, -4}, volume::Pixel{70000, 5}}, 12.5),
+       [](auto b) {
+         const IntegralQuestion question = decode_integral_question(b);
+         return encode(question.request, question.pixels, question.most_ms);
+       }},
+      {"integrated", encode(std::array{volume::PixelIntegral{0.25, 0.5, 1.5, 1}, volume::PixelIntegral{}}),
+       [](auto b) { return encode(decode_integrals(b)); }},
       {"id", encode_id(~std::uint64_t(0)), [](auto b) { return encode_id(decode_id(b)); }},
       {"size", encode_size(4096), [](auto b) { return encode_size(decode_size(b)); }},
       {"text", encode_text("why not"), [](auto b) { return encode_text(decode_text(b)); }},

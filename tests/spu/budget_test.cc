@@ -52,7 +52,7 @@ class BudgetTest : public testing::Test {
     const auto medium =
         volume::Medium::of_samples(std::get<volume::TransferFunction>(meaning.request.classification), 1);
     const auto field = volume::texture_field(texture.description, volume::Filter::linear, texture.texels);
-    const Image shown(service->render(request).image);
+    const Image shown = copy_of(service->render(request).image);
     double worst = 0;
     for (int y = 0; y < 80; ++y)
       for (int x = 0; x < 90; ++x) {
@@ -141,7 +141,7 @@ TEST_F(BudgetTest, APictureThatIsWrongByMoreMakesTheNextFiner) {
   const auto first = ask(budget);
   ASSERT_TRUE(first);
   const std::string before = counters.setting;
-  Image wrong(service->render(*first).image);
+  Image wrong = copy_of(service->render(*first).image);
   for (float& value : wrong.rgba) value += 0.1F;
   // Rays are looked at in a fiftieth of the time that passes: sooner or later some are.
   const auto start = std::chrono::steady_clock::now();
@@ -159,7 +159,7 @@ TEST_F(BudgetTest, ATimeIsMetWithTheMostExactThatFits) {
   // What pictures take is said by whoever casts them: no clock decides here.
   Budget budget({.ms = 20});
   ASSERT_TRUE(ask(budget));
-  const Image picture(service->render(*ask(budget)).image);
+  const Image picture = copy_of(service->render(*ask(budget)).image);
   for (int frame = 0; frame < 200; ++frame) budget.look_at(*service, picture.view(), 100, counters);
   ASSERT_TRUE(ask(budget));
   EXPECT_NE(std::string(counters.note).find("the time that is asked for cannot be kept"), std::string::npos)

@@ -17,7 +17,9 @@ constexpr double share_of_termination = 0.125;
 constexpr float finest_termination = 5e-6F;
 constexpr float coarsest_termination = 0.02F;
 /// Rays that are looked at are a few of many: what calibration says must leave room for the others.
-constexpr double room_for_others = 0.7;
+constexpr double room_for_others = 0.6;
+/// The same, once the worst of a picture have been looked at.
+constexpr double room_when_proven = 0.8;
 /// Of the time that passes, what looking may take.
 constexpr double share_of_looking = 0.02;
 constexpr double most_credit_ms = 10;
@@ -50,6 +52,7 @@ std::optional<volume::RenderRequest> Budget::request(
   if (measured_for_ != now) {
     calibration_ = calibrate(service, meaning_, volume, termination_for(asked_), asked_.error / 3);
     measured_for_ = now;
+    table_.reset();
     ++counters.calibrations;
     choose();
     if (asked_.error > 0) prove(service);
@@ -60,14 +63,21 @@ std::optional<volume::RenderRequest> Budget::request(
     return std::nullopt;
   }
   tell(counters);
-  return sampled_as(meaning_, calibration_.front[chosen_].setting);
+  const Setting& setting = calibration_.front[chosen_].setting;
+  if (!table_ || table_for_ != setting) {
+    table_ = table_as(meaning_, setting);
+    table_for_ = setting;
+  }
+  volume::RenderRequest request = placed_as(meaning_, setting);
+  request.classification = *table_;
+  return request;
 }
 
 /// Segments between slices grow longer as the camera turns, and nodes know only so much beside their own.
 bool Budget::keep_margin(const volume::VolumeDescription& volume) {
   const auto& front = calibration_.front;
   const auto fits = [&](std::size_t i) {
-    return volume::margin_needed(volume, sampled_as(meaning_, front[i].setting)) <= volume.margin;
+    return volume::margin_needed(volume, placed_as(meaning_, front[i].setting)) <= volume.margin;
   };
   const std::size_t before = chosen_;
   while (!fits(chosen_) && go_finer()) {
@@ -101,7 +111,7 @@ void Budget::prove(compositor::RenderService& service) {
   do {
     const std::size_t other = chosen_ + 1 < front.size() ? chosen_ + 1 : std::max<std::size_t>(chosen_, 1) - 1;
     const compositor::Rendered beside = service.render(sampled_as(meaning_, front[other].setting));
-    const volume::Image kept(beside.image);
+    const volume::Image kept = copy_of(beside.image);
     const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
     suspects_ = most_different(shown.image, kept.view(), proving_pixels);
     std::vector<Pixel> pixels = suspects_;
@@ -111,7 +121,7 @@ void Budget::prove(compositor::RenderService& service) {
     spread_ += proving_pixels;
     worst_ = greatest_error(shown.image, pixels, integrals);
     rays_ = integrals.size();
-  } while (worst_ > asked_.error && go_finer());
+  } while (worst_ > room_when_proven * asked_.error && go_finer());
 }
 
 bool Budget::go_finer() {

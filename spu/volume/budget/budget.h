@@ -66,7 +66,9 @@ class Budget {
   const BudgetAsked asked_;
   std::optional<MeasuredFor> measured_for_;
   Calibration calibration_;
-  std::size_t chosen_ = 0;               ///< of the front
+  std::size_t chosen_ = 0;                         ///< of the front
+  std::optional<volume::TransferFunction> table_;  ///< of samples as chosen
+  Setting table_for_;
   Meaning meaning_;                      ///< of the last request
   double worst_ = 0;                     ///< error of the rays that were looked at, under the chosen setting
   std::uint64_t rays_ = 0;               ///< so many

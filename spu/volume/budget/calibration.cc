@@ -142,7 +142,7 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
     request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
     const auto begin = Clock::now();
     const compositor::Rendered rendered = service.render(request);
-    tried.push_back({setting, milliseconds_since(begin) * times * times, Image(rendered.image)});
+    tried.push_back({setting, milliseconds_since(begin) * times * times, copy_of(rendered.image)});
   };
   for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels);
   for (const double texels : fine_samples) {

@@ -114,17 +114,25 @@ std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, cons
   return meaning;
 }
 
-RenderRequest sampled_as(const Meaning& meaning, const Setting& setting) {
+RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
   RenderRequest request = meaning.request;
   for (double& value : request.steps->metric) value /= setting.step;
   // Segments cover the way from the entry on; samples stand for the half step on either side.
-  const bool segments = setting.method == volume::Method::pre_integrated;
-  request.steps->first = segments ? 0 : 0.5;
-  // Tables of segments take time in the square of their entries.
-  request.classification =
-      stepped(std::get<TransferFunction>(meaning.request.classification), setting.step, segments ? 512 : 1024);
+  request.steps->first = setting.method == volume::Method::pre_integrated ? 0 : 0.5;
   request.method = setting.method;
   request.termination = setting.termination;
+  return request;
+}
+
+TransferFunction table_as(const Meaning& meaning, const Setting& setting) {
+  // Tables of segments take time in the square of their entries.
+  const std::size_t most_entries = setting.method == volume::Method::pre_integrated ? 512 : 1024;
+  return stepped(std::get<TransferFunction>(meaning.request.classification), setting.step, most_entries);
+}
+
+RenderRequest sampled_as(const Meaning& meaning, const Setting& setting) {
+  RenderRequest request = placed_as(meaning, setting);
+  request.classification = table_as(meaning, setting);
   return request;
 }
 

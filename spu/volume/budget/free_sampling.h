@@ -33,7 +33,11 @@ struct Meaning {
 std::variant<Meaning, std::string> meaning_of(const volume::RenderRequest& request,
                                               const std::array<int, 3>& size);
 
-/// The request with samples as the setting says; opacities are those of its steps.
+/// The request with samples where the setting says, and still the opacities of whole steps.
+volume::RenderRequest placed_as(const Meaning& meaning, const Setting& setting);
+/// The opacities of the setting's steps.
+volume::TransferFunction table_as(const Meaning& meaning, const Setting& setting);
+/// Both.
 volume::RenderRequest sampled_as(const Meaning& meaning, const Setting& setting);
 
 }  // namespace understudy::spu

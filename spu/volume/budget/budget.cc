@@ -19,12 +19,13 @@ constexpr float coarsest_termination = 0.02F;
 /// Rays that are looked at are a few of many: what calibration says must leave room for the others.
 constexpr double room_for_others = 0.6;
 /// The same, once the worst of a picture have been looked at.
-constexpr double room_when_proven = 0.8;
+constexpr double room_when_proven = 0.7;
 /// Of the time that passes, what looking may take.
 constexpr double share_of_looking = 0.02;
 constexpr double most_credit_ms = 10;
-constexpr std::size_t proving_pixels = 32;  ///< of each kind
-constexpr double proving_ms = 120;
+constexpr std::size_t proving_suspects = 48;
+constexpr std::size_t proving_spread = 128;
+constexpr double proving_ms = 150;
 constexpr int patient_frames = 4;  ///< before time moves the setting again
 
 float termination_for(const BudgetAsked& asked) {
@@ -113,12 +114,12 @@ void Budget::prove(compositor::RenderService& service) {
     const compositor::Rendered beside = service.render(sampled_as(meaning_, front[other].setting));
     const volume::Image kept = copy_of(beside.image);
     const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
-    suspects_ = most_different(shown.image, kept.view(), proving_pixels);
+    suspects_ = most_different(shown.image, kept.view(), proving_suspects);
     std::vector<Pixel> pixels = suspects_;
-    const std::vector<Pixel> spread = spread_over(shown.image.rect, spread_, proving_pixels);
+    const std::vector<Pixel> spread = spread_over(shown.image.rect, spread_, proving_spread);
     pixels.insert(pixels.end(), spread.begin(), spread.end());
     const auto integrals = service.integrals(meaning_.request, pixels, proving_ms);
-    spread_ += proving_pixels;
+    spread_ += proving_spread;
     worst_ = greatest_error(shown.image, pixels, integrals);
     rays_ = integrals.size();
   } while (worst_ > room_when_proven * asked_.error && go_finer());

@@ -57,7 +57,10 @@ struct VolumeDescription {
   bool operator==(const VolumeDescription&) const = default;
 };
 
-enum class Operator : std::uint8_t { over, max, min, add };
+/// How a ray's samples become a pixel. First-hit: the first sample whose opacity is above 0 alone, opaque, in
+/// its plain colour (premultiplied colour over opacity, kept within what a float holds); pictures of it are
+/// composed by `over`, front to back.
+enum class Operator : std::uint8_t { over, max, min, add, first_hit };
 enum class Filter : std::uint8_t { nearest, linear };
 
 /// What a transfer function's samples stand for. Pre-integrated: the way between two samples is a segment, on
@@ -152,7 +155,8 @@ struct RenderRequest {
   // The following are for scalar fields with a transfer function, under `over`, with a linear filter and
   // without fog; those before `light` are for samples on `steps` that end before opaque geometry.
   Method method = Method::post_classified;
-  /// Each is composed where the ray passes it, between the samples before and behind it.
+  /// Each is composed where the ray passes it. A sample stands for the step behind it: what of that lies in
+  /// front of a surface, and what behind, has a power each of the sample's transparency.
   std::vector<Surface> surfaces;
   std::optional<Light> light;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.

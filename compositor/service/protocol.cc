@@ -221,6 +221,7 @@ void write(Writer& out, const std::optional<Light>& light) {
   write(out, light->direction);
   for (const auto& colour : {light->ambient, light->diffuse, light->specular}) write_shares(out, colour);
   out.real(light->shininess);
+  out.real(light->full_slope);
   out.integer(light->two_sided);
   out.integer(light->on_samples);
 }
@@ -234,6 +235,7 @@ std::optional<Light> read_light(Reader& in) {
   read_shares(in, "light.diffuse", light.diffuse);
   read_shares(in, "light.specular", light.specular);
   light.shininess = in.real32("light.shininess");
+  light.full_slope = in.real32("light.full_slope");
   light.two_sided = in.flag("light.two_sided");
   light.on_samples = in.flag("light.on_samples");
   return light;
@@ -424,7 +426,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.planes.spacing = in.real("planes.spacing");
   request.planes.count = in.small("planes.count", 0, max_planes);
   request.steps = read_steps(in);
-  request.op = in.enumerator("op", Operator::add);
+  request.op = in.enumerator("op", Operator::first_hit);
   request.filter = in.enumerator("filter", Filter::linear);
   read(in, "region.low", request.region.low);
   read(in, "region.high", request.region.high);

@@ -27,6 +27,9 @@ struct Scene {
   const PairLookup* pairs = nullptr;
   /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
   const SegmentScene* segments = nullptr;
+  /// The store holds values beyond the ends of `pairs`: segments between such a value and one within are
+  /// parted.
+  bool values_beyond = false;
   /// With pairs: the second sample of a slab lies so many samples on, and then away by a vector of cells; it is
   /// clamped to what the store holds, as are all places that segments look at.
   float samples_on = 0;

@@ -237,6 +237,7 @@ struct RayCaster::Prepared {
   std::optional<PairLookup> pairs;
   SkipMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
+  bool values_beyond = false;                ///< of the table of pairs
 
   bool visible(const BrickStore& store, std::size_t block) const {
     const auto ranges = store.ranges(block);
@@ -259,6 +260,13 @@ struct RayCaster::Prepared {
 
   bool has_slabs() const { return pairs && !circumstances.pre_integrated; }
 
+  bool lies_beyond(const BrickStore& store, std::size_t block) const {
+    const BrickStore::Range& range = store.ranges(block).front();
+    const auto place = [&](float value) { return (value - pairs->low()) * pairs->scale(); };
+    return range.low <= range.high &&
+           (place(range.low) < -table_end_slack || place(range.high) > pairs->last() + table_end_slack);
+  }
+
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
     if (has_slabs()) {
       // A slab's far end may lie blocks away.
@@ -267,6 +275,9 @@ struct RayCaster::Prepared {
     }
     if (bounds && !bounds->empty())
       for (const std::size_t b : blocks) (*bounds)[b] = block_bound(store, *table, b);
+    if (circumstances.pre_integrated)
+      values_beyond = values_beyond || std::any_of(blocks.begin(), blocks.end(),
+                                                   [&](std::size_t b) { return lies_beyond(store, b); });
     // Distances reach far, but depend on nothing but which blocks show something.
     if (std::all_of(blocks.begin(), blocks.end(),
                     [&](std::size_t b) { return visible(store, b) == skip.shows(b); }))
@@ -301,7 +312,10 @@ struct RayCaster::Prepared {
         circumstances(std::move(under)),
         table(make_table(store, classification, circumstances.keeps_clear_samples)),
         pairs(make_pairs(store, classification, circumstances)),
-        skip(skip_map(store)) {}
+        skip(skip_map(store)) {
+    for (std::size_t b = 0; circumstances.pre_integrated && !values_beyond && b < store.blocks(); ++b)
+      values_beyond = lies_beyond(store, b);
+  }
 };
 
 RayCaster::RayCaster(const BrickStore& store) : store_(&store) {}
@@ -357,6 +371,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.top = setup.top;
   scene.rounding = setup.rounding;
   scene.pairs = prepared.pairs ? &*prepared.pairs : nullptr;
+  scene.values_beyond = prepared.values_beyond;
   set_held(scene);
   if (request.slab) set_slab(*request.slab, scene);
   const SegmentScene segments(store.description(), request);

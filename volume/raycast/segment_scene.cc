@@ -111,8 +111,9 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
     demand(regular(light->space), "the matrix from texture space to the light's space is singular");
     demand(all_finite(light->direction), "the direction to the light holds a value that is not finite");
     demand(not_negative(light->ambient) && not_negative(light->diffuse) && not_negative(light->specular) &&
-               std::isfinite(light->shininess) && light->shininess >= 0,
-           "the light's colours and shininess must be finite and not negative");
+               std::isfinite(light->shininess) && light->shininess >= 0 && std::isfinite(light->full_slope) &&
+               light->full_slope >= 0,
+           "the light's colours, shininess and full slope must be finite and not negative");
   }
   if (const int cells = margin_needed(volume, request); cells > volume.margin)
     throw std::invalid_argument(fmt::format(
@@ -121,9 +122,11 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
         cells, volume.margin, cells));
 }
 
-Lamp::Lamp(const Light& light, const std::array<int, 3>& size)
-    : model(light), inverse_(inverse_of(light.space)) {
-  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = size[axis];
+Lamp::Lamp(const Light& light, const VolumeDescription& volume)
+    : model(light),
+      full_slope(float(light.full_slope * units(volume.type))),
+      inverse_(inverse_of(light.space)) {
+  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = volume.size[axis];
   const double largest =
       std::max({std::abs(light.direction[0]), std::abs(light.direction[1]), std::abs(light.direction[2])});
   if (largest > 0) {
@@ -170,7 +173,7 @@ SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest&
   }
   std::stable_sort(levels.begin(), levels.end(),
                    [](const Level& a, const Level& b) { return a.value < b.value; });
-  if (request.light) lamp.emplace(*request.light, volume.size);
+  if (request.light) lamp.emplace(*request.light, volume);
 }
 
 }  // namespace understudy::volume

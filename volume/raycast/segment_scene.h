@@ -27,7 +27,7 @@ struct Level {
 /// A light over gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light is
 /// -g . light / |g|, and that between normal and h is -g . half / |g|.
 struct Lamp {
-  Lamp(const Light& light, const std::array<int, 3>& size);
+  Lamp(const Light& light, const VolumeDescription& volume);
 
   /// `half` of a ray that goes along `step` (in cells); zero where there is none.
   std::array<float, 3> half(const std::array<float, 3>& step) const;
@@ -36,6 +36,7 @@ struct Lamp {
 
   Light model;
   std::array<float, 9> metric{};
+  float full_slope = 0;  ///< the model's, in units of the texel type
 
  private:
   Vec3 to_eye(const std::array<float, 3>& step) const;

@@ -405,6 +405,8 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   write(out, request.slab);
   write(out, request.fog);
   out.integer(std::int64_t(request.method));
+  out.integer(request.cut_at_bricks);
+  out.real(request.tolerance);
   write(out, request.surfaces);
   write(out, request.light);
   out.real(request.termination);
@@ -438,7 +440,9 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.classification = read_classification(in, kept);
   request.slab = read_slab(in);
   request.fog = read_fog(in);
-  request.method = in.enumerator("method", Method::pre_integrated);
+  request.method = in.enumerator("method", Method::adaptive);
+  request.cut_at_bricks = in.flag("cut_at_bricks");
+  request.tolerance = in.real32("tolerance");
   request.surfaces = read_surfaces(in);
   request.light = read_light(in);
   request.termination = in.real32("termination");

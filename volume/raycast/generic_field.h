@@ -94,6 +94,7 @@ class FieldReader {
   }
 
   const std::array<float, 3>& position() const { return position_; }
+  std::size_t block() const { return block_; }
 
   /// How many steps from here on lie in empty blocks for sure; negative in a block that shows something.
   float steps_in_empty(const std::array<float, 3>& step) const {

@@ -215,6 +215,8 @@ struct Circumstances {
   bool keeps_clear_samples = false;  ///< under `min`
   std::array<int, 3> reach{};        ///< of slabs, in blocks
   bool pre_integrated = false;
+  float tolerance = 0;        ///< of adaptive steps, otherwise 0
+  double step_cells = 0;      ///< their length
   std::vector<float> levels;  ///< of surfaces, in units of the texel type
 
   bool operator==(const Circumstances&) const = default;
@@ -225,6 +227,11 @@ Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequ
   c.keeps_clear_samples = request.op == Operator::min;
   c.reach = blocks_in_reach(volume, request.slab);
   c.pre_integrated = request.method == Method::pre_integrated;
+  if (request.method == Method::adaptive) {
+    c.tolerance = request.tolerance;
+    const std::array<double, 3> reach = step_reach(volume, request);
+    c.step_cells = *std::max_element(reach.begin(), reach.end());
+  }
   for (const Level& level : SegmentScene(volume, request).levels) c.levels.push_back(level.value);
   return c;
 }
@@ -238,6 +245,8 @@ struct RayCaster::Prepared {
   SkipMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
   bool values_beyond = false;                ///< of the table of pairs
+  std::optional<PartTable> parts;            ///< these two of adaptive steps
+  std::optional<StepDivision> division;
 
   bool visible(const BrickStore& store, std::size_t block) const {
     const auto ranges = store.ranges(block);
@@ -267,7 +276,14 @@ struct RayCaster::Prepared {
            (place(range.low) < -table_end_slack || place(range.high) > pairs->last() + table_end_slack);
   }
 
+  void divide_steps(const BrickStore& store) {
+    if (!parts) return;
+    division.emplace(store, std::get<TransferFunction>(classification), double(circumstances.tolerance),
+                     circumstances.step_cells);
+  }
+
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
+    divide_steps(store);
     if (has_slabs()) {
       // A slab's far end may lie blocks away.
       skip = skip_map(store);
@@ -313,6 +329,9 @@ struct RayCaster::Prepared {
         table(make_table(store, classification, circumstances.keeps_clear_samples)),
         pairs(make_pairs(store, classification, circumstances)),
         skip(skip_map(store)) {
+    if (circumstances.tolerance > 0)
+      parts.emplace(std::get<TransferFunction>(classification), store.description().type);
+    divide_steps(store);
     for (std::size_t b = 0; circumstances.pre_integrated && !values_beyond && b < store.blocks(); ++b)
       values_beyond = lies_beyond(store, b);
   }
@@ -372,11 +391,15 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.rounding = setup.rounding;
   scene.pairs = prepared.pairs ? &*prepared.pairs : nullptr;
   scene.values_beyond = prepared.values_beyond;
+  scene.parts = prepared.parts ? &*prepared.parts : nullptr;
+  scene.division = prepared.division ? &*prepared.division : nullptr;
   set_held(scene);
   if (request.slab) set_slab(*request.slab, scene);
   const SegmentScene segments(store.description(), request);
   if (walks_segments(request)) scene.segments = &segments;
-  const Kernel kernel = scene.segments != nullptr ? vector_segments : vector_kernel;
+  const Kernel kernel = scene.parts != nullptr      ? vector_adaptive
+                        : scene.segments != nullptr ? vector_segments
+                                                    : vector_kernel;
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 

@@ -53,7 +53,7 @@ std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
 }
 
 bool has_segments(const RenderRequest& request) {
-  return request.method == Method::pre_integrated || !request.surfaces.empty();
+  return request.method != Method::post_classified || !request.surfaces.empty();
 }
 
 double units(TexelType type) {
@@ -69,17 +69,21 @@ bool walks_segments(const RenderRequest& request) {
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request) {
   if (!walks_segments(request)) return 0;
   double reach = 0;
-  if (has_segments(request) && request.steps) {
-    const std::array<double, 9> inverse = inverse_of(request.steps->metric);
-    // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding
-    // steps.
-    const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      reach = std::max(reach, part * length(row_of(inverse, axis)) * volume.size[axis]);
-  }
+  if (has_segments(request) && request.steps)
+    for (const double along : step_reach(volume, request)) reach = std::max(reach, along);
   constexpr double rounding = 1e-6;  // of the reach, in cells
   const double gradient = request.light ? 1 : 0;
   return int(std::min(std::ceil(reach + gradient - rounding), 1e9));
+}
+
+std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request) {
+  const std::array<double, 9> inverse = inverse_of(request.steps->metric);
+  // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding steps.
+  const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
+  std::array<double, 3> reach{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach[axis] = part * length(row_of(inverse, axis)) * volume.size[axis];
+  return reach;
 }
 
 void validate_segments(const VolumeDescription& volume, const RenderRequest& request) {
@@ -98,6 +102,11 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
            "surfaces and pre-integration need steps along rays: give steps instead of planes");
     demand(request.steps->past_depth == 0,
            "surfaces and pre-integration end before opaque geometry: ask for no samples behind it");
+  }
+  if (request.method == Method::adaptive) {
+    demand(request.surfaces.empty() && !request.light,
+           "adaptive steps know neither surfaces nor light: ask for samples or pre-integration");
+    demand(request.tolerance > 0, "adaptive steps need a tolerance above 0");
   }
   if (request.surfaces.size() > max_surfaces)
     throw std::invalid_argument(

@@ -8,12 +8,15 @@
 
 namespace understudy::volume {
 
-/// Whether a request has surfaces, light or segments; other requests know nothing of all this.
+/// Whether a request has surfaces, light, segments or adaptive steps; other requests know nothing of all this.
 bool walks_segments(const RenderRequest& request);
 
 /// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
 /// margin must be no smaller. The steps' metric must not be singular.
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request);
+
+/// How far one step leads along each axis, at most, in cells.
+std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request);
 
 /// Throws std::invalid_argument when surfaces, light or method make no sense on `volume`.
 void validate_segments(const VolumeDescription& volume, const RenderRequest& request);

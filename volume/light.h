@@ -6,7 +6,10 @@
 // in which the field falls fastest: its gradient is taken by central differences of the linearly filtered
 // field, one texel to both sides of the point on each axis. (Beyond the texture the filter's wrapping holds; on
 // an axis that repeats, what is looked at stays within half a texel of the texture.) Points without a gradient,
-// because the field is even or not a number around them, keep their colour.
+// because the field is even or not a number around them, keep their colour. A gradient that is all but nothing
+// has a direction made of rounding: below `full_slope` what is lit fades into that colour, as
+//
+//     s lit + (1 - s) c,   s = |gradient| / full_slope
 #pragma once
 
 #include <array>
@@ -22,6 +25,8 @@ struct Light {
   std::array<float, 3> diffuse{0.8F, 0.8F, 0.8F};
   std::array<float, 3> specular{0.3F, 0.3F, 0.3F};
   float shininess = 20;
+  /// In values, normalised as those of a TransferFunction, per unit of length of `space`; 0: nothing fades.
+  float full_slope = 0;
   /// False: where n . l is negative the point lies in its own shadow, and where n . h is it does not gleam.
   bool two_sided = true;
   /// False: surfaces alone are lit; what the transfer function shows keeps its colour.

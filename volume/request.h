@@ -58,7 +58,10 @@ struct VolumeDescription {
   bool operator==(const VolumeDescription&) const = default;
 };
 
-enum class Operator : std::uint8_t { over, max, min, add };
+/// How a ray's samples become a pixel. First-hit: the first sample whose opacity is above 0 alone, opaque, in
+/// its plain colour (premultiplied colour over opacity, kept within what a float holds); pictures of it are
+/// composed by `over`, front to back.
+enum class Operator : std::uint8_t { over, max, min, add, first_hit };
 enum class Filter : std::uint8_t { nearest, linear };
 
 /// What a transfer function's samples stand for. Pre-integrated: the way between two samples is a segment, on
@@ -66,7 +69,12 @@ enum class Filter : std::uint8_t { nearest, linear };
 /// a medium would show of which an even field shows the transfer function's entries. Segments cover a ray's
 /// whole way through the region (at most one step before the first sample) and are cut where clip planes and
 /// opaque geometry cut the ray; a shorter segment has a power of the whole one's transparency.
-enum class Method : std::uint8_t { post_classified, pre_integrated };
+///
+/// Adaptive: every whole step is the longest that is taken. It is divided into 1, 2, 4, 8 or 16 equal parts, as
+/// the transfer function's bends near the value in its middle ask for, and a sample is taken in the middle of
+/// each, which has that power of the transfer function's transparency. Steps cover the ray as segments do, and
+/// are cut as they are.
+enum class Method : std::uint8_t { post_classified, pre_integrated, adaptive };
 
 /// The application's own sample positions: planes normal . t = first + i * spacing in texture space, 0 <= i <
 /// count. Plane 0 is the front: under `over`, sample i covers sample i + 1.
@@ -159,7 +167,14 @@ struct RenderRequest {
   // The following are for scalar fields with a transfer function, under `over`, with a linear filter and
   // without fog; those before `light` are for samples on `steps` that end before opaque geometry.
   Method method = Method::post_classified;
-  /// Each is composed where the ray passes it, between the samples before and behind it.
+  /// Pre-integrated: segments end where the cells of a node do, as bricks that share no texel but their faces
+  /// would have it (Mueller et al. 2006). It makes pictures depend on the partition, and is here to be compared
+  /// with.
+  bool cut_at_bricks = false;
+  /// Adaptive: steps are divided until the error of each, in colour and opacity, is estimated to be no more.
+  float tolerance = 1e-3F;
+  /// Each is composed where the ray passes it. A sample stands for the step behind it: what of that lies in
+  /// front of a surface, and what behind, has a power each of the sample's transparency.
   std::vector<Surface> surfaces;
   std::optional<Light> light;
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.

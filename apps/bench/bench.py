@@ -66,6 +66,14 @@ def text_of(row):
 
 
 def main(names):
+    sizes = []
+    if "--sizes" in names:
+        at = names.index("--sizes")
+        text = ",".join(names[at + 1:at + 2])
+        if not re.fullmatch(r"\d+(,\d+)*", text) or any(int(side) % frame.SIDE or not int(side) for side in text.split(",")):
+            sys.exit(f"bench: --sizes {text}: give multiples of {frame.SIDE}, as in --sizes 256,512")
+        sizes = sorted(int(side) for side in text.split(","))
+        names = ["raycast"]
     unknown = [name for name in names if name not in BENCHMARKS]
     if unknown:
         sys.exit(f"bench: no benchmark named {', '.join(unknown)}; there are: {', '.join(BENCHMARKS)}")
@@ -73,10 +81,10 @@ def main(names):
     folder.mkdir(parents=True, exist_ok=True)
     for name in names or BENCHMARKS:
         print(f"{name}: {machine()}; {instruction_set()}; {compiler()}", flush=True)
-        rows = BENCHMARKS[name]()
+        rows = BENCHMARKS[name](sizes) if sizes else BENCHMARKS[name]()
         for row in rows:
             print(text_of(row))
-        path = folder / f"{name}.json"
+        path = folder / (f"{name}-sizes.json" if sizes else f"{name}.json")
         path.write_text(json.dumps({"machine": machine(), "compiler": compiler(), "instruction_set": instruction_set(),
                                     "rows": rows}, indent=1), encoding="utf-8")
         print(path)

@@ -1,5 +1,7 @@
 """Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
 
+With --sizes 256,512,1024 cubes so large instead (multiples of 256; 1024 takes 4 GiB), by one ray a voxel.
+
 256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time stands the
 error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which
 has no samples (rms_total; not of surfaces and light, which the integral does not know). Where the prototype at
@@ -31,6 +33,7 @@ CASES = {
     "cpu/post-classified/dense/2 threads": (["--table", "dense", "--threads", "2"], ("dense", 2)),
     "cpu/post-classified/brain": (["--table", "sparse"], None),
     "cpu/pre-integrated/dense": (["--table", "dense", "--method", "pre-integrated"], None),
+    "cpu/adaptive/sparse": (["--table", "sparse", "--method", "adaptive"], None),
     "cpu/pre-integrated/sparse": (["--table", "sparse", "--method", "pre-integrated"], None),
     "cpu/shaded/dense": (["--table", "dense", "--light"], None),
     "cpu/iso/surface": (["--table", "clear", "--surfaces", "0.6", "--light"], None),
@@ -96,12 +99,31 @@ def vtk_rows(volume, rows_so_far):
     return result
 
 
-def rows():
+def size_rows(volume, sizes):
+    """Larger cubes, one ray a voxel, in turn: the time of a sample beside that of the smallest."""
+    tables, times = ("dense", "sparse"), {}
+    for number in range(ROUNDS):
+        for table in tables:
+            for side in sizes:
+                print(f"  round {number + 1} of {ROUNDS}, {side}^3, {table}", file=sys.stderr, flush=True)
+                figures = measured(volume, f"{side}x{side}x{side}", ["--magnify", str(side // SIDE), "--pixels", str(side),
+                                                                    "--table", table, "--unjudged"], frames=3)
+                times.setdefault((table, side), []).append(figures["ns"])
+    smallest = sizes[0]
+    return [{"name": f"cpu/post-classified/{table}/{side}", "value": statistics.median(times[table, side]), "unit": "ns",
+             "ratio_to": f"cpu/post-classified/{table}/{smallest}", "threads": 1,
+             "ratio": statistics.median(times[table, side]) / statistics.median(times[table, smallest])}
+            for table in tables for side in sizes]
+
+
+def rows(sizes=()):
     script = yardstick()
     if script:
         yardstick_ns(script, "dense", 1)  # builds it, and its volume
     made = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick" / f"{SIDE}.raw"
     volume = made if script else cube()
+    if sizes:
+        return size_rows(volume, sizes)
     brain = next(iter(sorted(Path("/usr/share/doc").glob("tachyon*/examples/scenes/vol/brain.256x256x109"))), None)
     times, theirs, last = {}, {}, {}
     for number in range(ROUNDS):

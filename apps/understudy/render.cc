@@ -141,6 +141,8 @@ Scene scene_of(const RenderArguments& arguments) {
   for (std::size_t k = 0; k < 3; ++k) extent[k] = scene.file.size[k] * scene.file.spacing[k];
   scene.shading = shading_of(arguments.shading, extent);
   scene.request.method = scene.shading.method;
+  scene.request.tolerance = scene.shading.tolerance;
+  scene.request.op = scene.shading.op;
   scene.request.light = scene.shading.light;
   for (const SurfaceChoice& surface : scene.shading.surfaces)
     scene.request.surfaces.push_back({0, surface.colour});
@@ -160,6 +162,11 @@ void classify(Scene& scene, const volume::TexelFigures& values, double step) {
   const std::vector<double> surfaces = surface_values(scene.shading, low, high);
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     scene.request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
+  if (scene.request.light) {
+    // A thousandth of the values' range per voxel.
+    const double range = std::abs(scene.mapping.normalised(high) - scene.mapping.normalised(low));
+    scene.request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
+  }
   if (!scene.shading.shows_volume) {
     scene.request.classification = volume::TransferFunction{0, 1, {{}, {}}};
     return;

@@ -41,13 +41,22 @@ Json picture_json(const RenderFigures& figures) {
   for (const volume::Surface& surface : request.surfaces)
     surfaces.push_back({{"value", figures.mapping.offset + figures.mapping.scale * surface.value / units},
                         {"colour", surface.colour}});
-  const bool pre_integrated = request.method == volume::Method::pre_integrated;
+  const char* const method = request.method == volume::Method::pre_integrated ? "pre-integrated"
+                             : request.method == volume::Method::adaptive     ? "adaptive"
+                                                                              : "post-classified";
+  const char* const op = request.op == volume::Operator::first_hit ? "first-hit"
+                         : request.op == volume::Operator::max     ? "max"
+                         : request.op == volume::Operator::add     ? "add"
+                                                                   : "over";
   return {{"width", figures.width},
           {"height", figures.height},
           {"step", figures.step},
-          {"method", pre_integrated ? "pre-integrated" : "post-classified"},
+          {"method", method},
+          {"operator", op},
           {"surfaces", surfaces},
-          {"light", !request.light ? "none" : request.light->on_samples ? "all" : "surfaces"}};
+          {"light", !request.light              ? "none"
+                    : request.light->on_samples ? "all"
+                                                : "surfaces"}};
 }
 
 }  // namespace

@@ -98,9 +98,20 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
   subcommand
       .add_option("--method", arguments.method,
                   "what is classified: each sample, or the way between two samples, integrated ahead "
-                  "(fewer steps will do)")
-      ->check(CLI::IsMember({"post-classified", "pre-integrated"}).description(""))
-      ->type_name("post-classified|pre-integrated")
+                  "(fewer steps will do), or samples on steps that are divided where the table bends")
+      ->check(CLI::IsMember({"post-classified", "pre-integrated", "adaptive"}).description(""))
+      ->type_name("post-classified|pre-integrated|adaptive")
+      ->capture_default_str();
+  subcommand.add_option("--tolerance", arguments.tolerance, "of adaptive steps: the error that each may have")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("ERROR")
+      ->capture_default_str();
+  subcommand
+      .add_option("--operator", arguments.op,
+                  "how a ray's samples become a pixel: composed front to back, the largest, their sum, or the "
+                  "first that is not clear, opaque")
+      ->check(CLI::IsMember({"over", "max", "add", "first-hit"}).description(""))
+      ->type_name("over|max|add|first-hit")
       ->capture_default_str();
   subcommand
       .add_option("--surface", arguments.surfaces,
@@ -128,6 +139,20 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
 Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent) {
   Shading shading;
   if (arguments.method == "pre-integrated") shading.method = volume::Method::pre_integrated;
+  if (arguments.method == "adaptive") shading.method = volume::Method::adaptive;
+  shading.tolerance = arguments.tolerance;
+  if (arguments.op == "max") shading.op = volume::Operator::max;
+  if (arguments.op == "add") shading.op = volume::Operator::add;
+  if (arguments.op == "first-hit") shading.op = volume::Operator::first_hit;
+  const bool samples_alone = shading.method == volume::Method::post_classified && arguments.surfaces.empty() &&
+                             arguments.light.empty() && arguments.light_from.empty();
+  if (arguments.op != "over" && !samples_alone)
+    throw std::invalid_argument(fmt::format(
+        "--operator {} is for samples alone; leave out --method, --surface and --light", arguments.op));
+  if (shading.method == volume::Method::adaptive &&
+      !(arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty()))
+    throw std::invalid_argument(
+        "--method adaptive knows neither surfaces nor light; give --method pre-integrated, or leave them out");
   shading.shows_volume = !arguments.no_volume;
   if (arguments.surfaces.size() > volume::max_surfaces)
     throw std::invalid_argument(fmt::format("{} surfaces are more than can be drawn; give at most {}",

@@ -12,6 +12,8 @@ namespace understudy::launcher {
 
 struct ShadingArguments {
   std::string method = "post-classified";
+  float tolerance = 1e-3F;
+  std::string op = "over";
   std::vector<std::string> surfaces;
   bool no_volume = false;
   std::string light;
@@ -29,6 +31,8 @@ struct SurfaceChoice {
 
 struct Shading {
   volume::Method method = volume::Method::post_classified;
+  float tolerance = 0;  ///< of adaptive steps
+  volume::Operator op = volume::Operator::over;
   bool shows_volume = true;  ///< false: surfaces alone
   std::vector<SurfaceChoice> surfaces;
   std::optional<volume::Light> light;

@@ -221,6 +221,7 @@ void write(Writer& out, const std::optional<Light>& light) {
   write(out, light->direction);
   for (const auto& colour : {light->ambient, light->diffuse, light->specular}) write_shares(out, colour);
   out.real(light->shininess);
+  out.real(light->full_slope);
   out.integer(light->two_sided);
   out.integer(light->on_samples);
 }
@@ -234,6 +235,7 @@ std::optional<Light> read_light(Reader& in) {
   read_shares(in, "light.diffuse", light.diffuse);
   read_shares(in, "light.specular", light.specular);
   light.shininess = in.real32("light.shininess");
+  light.full_slope = in.real32("light.full_slope");
   light.two_sided = in.flag("light.two_sided");
   light.on_samples = in.flag("light.on_samples");
   return light;
@@ -403,6 +405,8 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   write(out, request.slab);
   write(out, request.fog);
   out.integer(std::int64_t(request.method));
+  out.integer(request.cut_at_bricks);
+  out.real(request.tolerance);
   write(out, request.surfaces);
   write(out, request.light);
   out.real(request.termination);
@@ -424,7 +428,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.planes.spacing = in.real("planes.spacing");
   request.planes.count = in.small("planes.count", 0, max_planes);
   request.steps = read_steps(in);
-  request.op = in.enumerator("op", Operator::add);
+  request.op = in.enumerator("op", Operator::first_hit);
   request.filter = in.enumerator("filter", Filter::linear);
   read(in, "region.low", request.region.low);
   read(in, "region.high", request.region.high);
@@ -436,7 +440,9 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.classification = read_classification(in, kept);
   request.slab = read_slab(in);
   request.fog = read_fog(in);
-  request.method = in.enumerator("method", Method::pre_integrated);
+  request.method = in.enumerator("method", Method::adaptive);
+  request.cut_at_bricks = in.flag("cut_at_bricks");
+  request.tolerance = in.real32("tolerance");
   request.surfaces = read_surfaces(in);
   request.light = read_light(in);
   request.termination = in.real32("termination");

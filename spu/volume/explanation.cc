@@ -34,6 +34,8 @@ const char* name_of(const Blending& blending) {
       return "minimum";
     case volume::Operator::add:
       return "sum";
+    case volume::Operator::first_hit:
+      return "first hit";
   }
   return "";
 }

@@ -33,6 +33,7 @@ std::vector<float> random_pixels(std::size_t pixels, std::mt19937& random) {
 double expected(Operator op, double front, double back, double front_alpha) {
   switch (op) {
     case Operator::over:
+    case Operator::first_hit:
       return front + (1 - front_alpha) * back;
     case Operator::max:
       return std::max(front, back);

@@ -33,7 +33,8 @@ bool finite(const Image& image) {
 
 TEST(Extremes, SamplesThatTouchNanContributeNothing) {
   for (const Filter filter : {Filter::linear, Filter::nearest})
-    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add}) {
+    for (const Operator op :
+         {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit}) {
       Texture texture = noise(describe({19, 17, 21}, TexelType::f32), 41);
       std::mt19937 random(42);
       for (int i = 0; i < 400; ++i) put(texture, random() % stored_texels(texture.description), std::nanf(""));
@@ -65,7 +66,8 @@ TEST(Extremes, InfiniteAndHugeTexelsStayFinite) {
     table.low = low;
     table.high = high;
     request.classification = table;
-    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add}) {
+    for (const Operator op :
+         {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit}) {
       request.op = op;
       const Image image = render(texture, request);
       EXPECT_TRUE(finite(image));

@@ -49,7 +49,7 @@ TEST(InstructionSets, AllDrawTheSamePicture) {
   double worst = 0;
   std::string seen;
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
-    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add})
+    for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit})
       for (const Filter filter : {Filter::linear, Filter::nearest}) {
         const Texture texture = sampled(describe({45, 38, 51}, type, Wrap::border), sphere_field(0.3));
         RenderRequest request = request_for(texture, usual_camera(45, 39), 45, 39, 90);
@@ -64,8 +64,14 @@ TEST(InstructionSets, AllDrawTheSamePicture) {
         const auto all = draw_on_all(store, request);
         for (const Drawn& drawn : all) {
           const double d = difference(drawn.image, all[0].image).max;
-          worst = std::max(worst, d);
-          EXPECT_LE(d, 3e-5) << drawn.instruction_set;
+          if (op != Operator::first_hit) worst = std::max(worst, d);
+          if (op == Operator::first_hit) {
+            // The last bit of a value decides which sample is not clear.
+            EXPECT_LE(difference(drawn.image, all[0].image, 3e-5).pixels_over, 3)
+                << drawn.instruction_set << ", texels " << int(type) << ", filter " << int(filter);
+          } else {
+            EXPECT_LE(d, 3e-5) << drawn.instruction_set;
+          }
           EXPECT_EQ(drawn.counts.samples, all[0].counts.samples) << drawn.instruction_set;
           EXPECT_EQ(drawn.counts.rays, all[0].counts.rays) << drawn.instruction_set;
           if (seen.find(drawn.instruction_set) == std::string::npos) seen += drawn.instruction_set + " ";

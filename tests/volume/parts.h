@@ -38,6 +38,7 @@ inline Whole render_parts(const Texture& texture, const RenderRequest& request, 
         const float room = 1 - front[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {
             case Operator::over:
+            case Operator::first_hit:
               front[k] += room * back[k];
               break;
             case Operator::add:

@@ -131,6 +131,30 @@ TEST(PreIntegration, IsTheSameForAnyPartition) {
   std::printf("2 to 8 ranks against 1: largest difference %.2e\n", worst);
 }
 
+TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
+  Texture texture = sampled(describe({64, 64, 64}, TexelType::u16), marschner_lobb_field());
+  RenderRequest request = request_on_steps(texture);
+  request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
+  request.classification = smooth_table(256, 0.1F);
+  request.method = Method::pre_integrated;
+  give_margin(texture, request);
+  FrameCounts counts;
+  const Image uncut = drawn(texture, request, counts);
+  double last = 0;
+  for (const int ranks : {64, 512}) {
+    const double seamless = difference(drawn_in_parts(texture, request, ranks, counts), uncut).max;
+    RenderRequest cut = request;
+    cut.cut_at_bricks = true;
+    const Difference d = difference(drawn_in_parts(texture, cut, ranks, counts), uncut);
+    std::printf("%d bricks: cut at their faces max %.2e, rms %.2e; uncut max %.2e\n", ranks, d.max, d.rms,
+                seamless);
+    EXPECT_LE(seamless, 1e-5);
+    EXPECT_GT(d.max, std::max(1e-5, last)) << "cuts that change nothing";
+    EXPECT_LE(d.max, 5e-3);
+    last = d.max;
+  }
+}
+
 TEST(PreIntegration, LeavesOutWhatIsClear) {
   Texture texture = sampled(describe({96, 96, 96}, TexelType::u8), sphere_field(0.25, 0.01));
   RenderRequest request = request_on_steps(texture);

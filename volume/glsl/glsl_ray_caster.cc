@@ -219,7 +219,8 @@ GlslRayCaster::~GlslRayCaster() {
 std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request) const {
   if (std::holds_alternative<PairTable>(request.classification)) return "slabs with a table of pairs";
   if (request.fog) return "fog";
-  if (request.method != Method::post_classified) return "pre-integrated segments";
+  if (request.method == Method::pre_integrated) return "pre-integrated segments";
+  if (request.method == Method::adaptive) return "adaptive steps";
   if (!request.surfaces.empty()) return "surfaces";
   if (request.light) return "light";
   if (const auto* function = std::get_if<TransferFunction>(&request.classification);

@@ -105,8 +105,8 @@ void main() {
     }
     count += min(8.0, last - k + 1.0);
     k += 8.0;
-#ifdef OVER
-    if (1.0 - sum.a < termination) {
+#ifdef ENDS
+    if (ENDS) {
       taken = -count;
       break;
     }
@@ -127,6 +127,8 @@ const char* composition(Operator op) {
       return "sum = max(sum, colour);";
     case Operator::min:
       return "sum = min(sum, colour);";
+    case Operator::first_hit:
+      return "if (sum.a == 0.0 && colour.a > 0.0) sum = vec4(clamp(colour.rgb / colour.a, -3e38, 3e38), 1.0);";
   }
   return "";
 }
@@ -143,7 +145,8 @@ std::string defines(const MarchVariant& variant) {
   define(!variant.colours, "SWIZZLE r");
   define(variant.bordered, "BORDERED");
   define(variant.filter == Filter::nearest, "NEAREST");
-  define(variant.op == Operator::over, "OVER");
+  define(variant.op == Operator::over, "ENDS 1.0 - sum.a < termination");
+  define(variant.op == Operator::first_hit, "ENDS sum.a > 0.0");
   // The largest float, without a literal that some compilers would round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");

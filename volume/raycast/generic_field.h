@@ -52,21 +52,27 @@ inline bool classify(const Scene& scene, float value, Rgba& colour) {
   return true;
 }
 
+/// A table of pairs at places within it.
+inline Rgba interpolated(const PairLookup& pairs, float x, float y) {
+  const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
+  const std::size_t i = entry(x), j = entry(y);
+  const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
+  const float* upper = lower + 4 * std::size_t(pairs.edge());
+  Rgba colour;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto along = [&](const float* row) { return row[k] + (x - float(i)) * (row[4 + k] - row[k]); };
+    colour[k] = along(lower) + (y - float(j)) * (along(upper) - along(lower));
+  }
+  return colour;
+}
+
 /// Colour and opacity of a slab; false when it contributes nothing (NaN).
 inline bool classify(const PairLookup& pairs, float front, float back, Rgba& colour) {
   if (std::isnan(front) || std::isnan(back)) return false;
   const auto place = [&](float value) {
     return std::clamp((value - pairs.low()) * pairs.scale(), 0.0F, pairs.last());
   };
-  const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
-  const float x = place(front), y = place(back);
-  const std::size_t i = entry(x), j = entry(y);
-  const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
-  const float* upper = lower + 4 * std::size_t(pairs.edge());
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto along = [&](const float* row) { return row[k] + (x - float(i)) * (row[4 + k] - row[k]); };
-    colour[k] = along(lower) + (y - float(j)) * (along(upper) - along(lower));
-  }
+  colour = interpolated(pairs, place(front), place(back));
   if (pairs.multiply_by_alpha())
     for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
   return true;
@@ -88,6 +94,7 @@ class FieldReader {
   }
 
   const std::array<float, 3>& position() const { return position_; }
+  std::size_t block() const { return block_; }
 
   /// How many steps from here on lie in empty blocks for sure; negative in a block that shows something.
   float steps_in_empty(const std::array<float, 3>& step) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "volume/raycast/generic_field.h"
 #include "volume/raycast/kernel.h"
@@ -56,6 +57,11 @@ void compose(Operator op, const Rgba& colour, Rgba& pixel) {
       break;
     case Operator::min:
       for (std::size_t k = 0; k < 4; ++k) pixel[k] = std::min(pixel[k], colour[k]);
+      break;
+    case Operator::first_hit:
+      if (pixel[3] > 0 || !(colour[3] > 0)) break;
+      constexpr float largest = std::numeric_limits<float>::max();
+      for (std::size_t k = 0; k < 4; ++k) pixel[k] = std::clamp(colour[k] / colour[3], -largest, largest);
       break;
   }
 }
@@ -130,7 +136,9 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
       ++k;
       if (--until_test == 0) {
         until_test = samples_between_tests;
-        if (scene.op == Operator::over && 1 - pixel[3] < scene.termination) {
+        const bool opaque = scene.op == Operator::over ? 1 - pixel[3] < scene.termination
+                                                       : scene.op == Operator::first_hit && pixel[3] > 0;
+        if (opaque) {
           ++counts.rays_terminated;
           break;
         }

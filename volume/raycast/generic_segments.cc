@@ -14,7 +14,7 @@ namespace {
 
 using Place = std::array<float, 3>;
 
-/// What a piece of `length` steps shows of a segment that is one step long.
+/// What a piece of `length` steps shows of a layer that is one step long.
 void shorten(float length, Rgba& colour) {
   if (length >= 1) return;
   const float opacity = colour[3];
@@ -96,14 +96,12 @@ class SegmentWalk {
   void show(int k, float front, Rgba& pixel) {
     const float u0 = on_ray(k), u1 = on_ray(k + 1);
     const Place from = place(u0), to = place(u1);
-    Rgba colour;
-    if (!segments_.pre_integrated && k >= 0 && classify(scene_, front, colour)) {
-      if (segments_.lit_samples) lay_in_light(from, colour);
-      compose(colour, pixel);
-    }
-    if (segments_.levels.empty() && !segments_.pre_integrated) return;
-    const float back = value_at(to);
-    if (std::isnan(front) || std::isnan(back)) return;
+    Rgba sampled{};
+    if (!segments_.pre_integrated && k >= 0 && classify(scene_, front, sampled) && segments_.lit_samples)
+      lay_in_light(from, sampled);
+    const bool parted = !segments_.levels.empty() || segments_.pre_integrated;
+    const float back = parted ? value_at(to) : front;
+    if (!parted || std::isnan(front) || std::isnan(back)) return compose(sampled, pixel);
     SurfaceSearch search{0, front, back};
     const auto point = [&](float share) {
       Place p;
@@ -111,10 +109,10 @@ class SegmentWalk {
       return p;
     };
     const float cells = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+    float layer = 1;  // steps of the sample's own that are left
     const auto piece = [&](float begin, float end, float at_begin, float at_end) {
-      if (!segments_.pre_integrated || !(end > begin) || !classify(*scene_.pairs, at_begin, at_end, colour))
-        return;
-      shorten((end - begin) * (u1 - u0), colour);
+      if (!segments_.pre_integrated || !(end > begin)) return;
+      Rgba colour = shown_between(at_begin, at_end, (end - begin) * (u1 - u0));
       if (segments_.lit_samples) lay_in_light(point(0.5F * (begin + end)), colour);
       compose(colour, pixel);
     };
@@ -124,12 +122,54 @@ class SegmentWalk {
       if ((front >= level.value) == (back >= level.value)) continue;
       const SurfaceSearch before = search;
       if (!search.find(level.value, cells, [&](float share) { return value_at(point(share)); })) continue;
+      const float in_front = (search.front - before.front) * (u1 - u0);
+      Rgba part = sampled;
+      shorten(in_front, part);
+      compose(part, pixel);
+      layer -= in_front;
       piece(before.front, search.front, before.at_front, level.value);
-      colour = level.colour;
+      Rgba colour = level.colour;
       if (segments_.lamp) lay_in_light(point(search.front), colour);
       compose(colour, pixel);
     }
+    shorten(layer, sampled);
+    compose(sampled, pixel);
     piece(search.front, 1, search.at_front, back);
+  }
+
+  /// What `length` steps show on which the field changes evenly between two values. Beyond the ends of the
+  /// table the medium is that of its ends, so there the way is parted.
+  Rgba shown_between(float front, float back, float length) const {
+    const PairLookup& pairs = *scene_.pairs;
+    const auto place = [&](float value) {
+      constexpr float far = 1e18F;  // so that differences of places are numbers
+      return std::clamp((value - pairs.low()) * pairs.scale(), -far, far);
+    };
+    const auto inside = [&](float at) { return std::clamp(at, 0.0F, pairs.last()); };
+    const float from = place(front), to = place(back), first = inside(from), last = inside(to);
+    float enters = 0, leaves = 1;  // the table, as shares of the way
+    if (first != last) {
+      enters = (first - from) / (to - from);
+      leaves = (last - from) / (to - from);
+    }
+    Rgba sum{};
+    compose(stretch(first, first, enters * length), sum);
+    compose(stretch(first, last, (leaves - enters) * length), sum);
+    compose(stretch(last, last, (1 - leaves) * length), sum);
+    return sum;
+  }
+
+  /// Between two places in the table. A part of a step is more even than the whole, of whose light what is in
+  /// front takes from what is behind: to second order its colour is that of the segment and of its mirror
+  /// image.
+  Rgba stretch(float front, float back, float length) const {
+    Rgba colour = interpolated(*scene_.pairs, front, back);
+    if (length < 1) {
+      const Rgba mirrored = interpolated(*scene_.pairs, back, front);
+      for (std::size_t k = 0; k < 3; ++k) colour[k] += 0.5F * (1 - length) * (mirrored[k] - colour[k]);
+      shorten(length, colour);
+    }
+    return colour;
   }
 
   void lay_in_light(const Place& p, Rgba& colour) {
@@ -153,12 +193,16 @@ class SegmentWalk {
       const double c = projection / std::sqrt(square);
       return std::min(lamp.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
     };
+    const double slope = std::sqrt(square);
+    const double share = slope < double(lamp.full_slope) ? slope / double(lamp.full_slope) : 1;
     const double diffuse = cosine(to_light);
     const double gleam = std::pow(cosine(to_half), double(lamp.model.shininess));
-    for (std::size_t k = 0; k < 3; ++k)
-      colour[k] =
-          float((double(lamp.model.ambient[k]) + double(lamp.model.diffuse[k]) * diffuse) * double(colour[k]) +
-                double(lamp.model.specular[k]) * gleam * double(colour[3]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double own = double(colour[k]);
+      const double lit = (double(lamp.model.ambient[k]) + double(lamp.model.diffuse[k]) * diffuse) * own +
+                         double(lamp.model.specular[k]) * gleam * double(colour[3]);
+      colour[k] = float(own + share * (lit - own));
+    }
   }
 
   const Scene& scene_;

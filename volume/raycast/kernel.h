@@ -11,6 +11,7 @@
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/raycast/skip_map.h"
+#include "volume/raycast/step_division.h"
 #include "volume/raycast/transfer_table.h"
 #include "volume/request.h"
 
@@ -27,6 +28,13 @@ struct Scene {
   const PairLookup* pairs = nullptr;
   /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
   const SegmentScene* segments = nullptr;
+  /// Adaptive steps: what their parts show, and per block into how many they are divided; null: for other
+  /// kernels.
+  const PartTable* parts = nullptr;
+  const StepDivision* division = nullptr;
+  /// The store holds values beyond the ends of `pairs`: segments between such a value and one within are
+  /// parted.
+  bool values_beyond = false;
   /// With pairs: the second sample of a slab lies so many samples on, and then away by a vector of cells; it is
   /// clamped to what the store holds, as are all places that segments look at.
   float samples_on = 0;
@@ -64,5 +72,9 @@ void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, Ker
 /// Of the latter, the part for scenes that are pre-integrated.
 void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
                                     KernelCounts& counts);
+
+/// The same two for adaptive steps.
+void generic_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
 
 }  // namespace understudy::volume

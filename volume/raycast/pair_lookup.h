@@ -15,6 +15,9 @@ namespace understudy::volume {
 /// Longest edge of a table of pairs that is believed.
 constexpr int max_pair_edge = 1024;
 
+/// Values no further than so many entries beyond an end of a table are rounding.
+constexpr float table_end_slack = 1e-3F;
+
 class PairLookup {
  public:
   /// `neutral` is what changes nothing in a composite: see neutral_value().

@@ -1,5 +1,7 @@
 #include "volume/raycast/pre_integration.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,6 +42,16 @@ double mean_depth(double a, double b) {
   return (integral(b) - integral(a)) / (b - a);
 }
 
+/// Premultiplied colour of a layer with such opacity, of the medium of which one step shows `colour`; `way`
+/// steps of it, should it be clear.
+Colour layer(const Colour& colour, double opacity, double way) {
+  constexpr double clear = 1e-12;
+  Colour seen{0, 0, 0, opacity};
+  for (std::size_t k = 0; k < 3; ++k)
+    seen[k] = colour[3] > clear ? colour[k] / std::min(colour[3], 1.0) * opacity : colour[k] * way;
+  return seen;
+}
+
 /// What a segment of `length` steps shows over which the entries change evenly from `front` to `back`, in
 /// `parts` parts of even colour.
 Colour piece(const Colour& front, const Colour& back, double length, int parts) {
@@ -49,27 +61,30 @@ Colour piece(const Colour& front, const Colour& back, double length, int parts) 
                  to = between(front, back, (part + 1.0) / parts);
     const Colour middle = between(from, to, 0.5);
     const double way = length / parts;
-    const double opacity = -std::expm1(-way * mean_depth(from[3], to[3]));
-    Colour seen{0, 0, 0, opacity};
-    constexpr double clear = 1e-12;
-    for (std::size_t k = 0; k < 3; ++k)
-      seen[k] = middle[3] > clear ? middle[k] / std::min(middle[3], 1.0) * opacity : middle[k] * way;
-    sum = over(sum, seen);
+    sum = over(sum, layer(middle, -std::expm1(-way * mean_depth(from[3], to[3])), way));
   }
   return sum;
 }
 
 /// Calls `segment` with front, back and colour of all segments whose back lies at a later entry than their
-/// front.
+/// front, from several threads.
 template <typename Segment>
 void rising_segments(const std::vector<Colour>& entries, Segment segment) {
   const std::size_t pieces = entries.size() - 1;
-  std::vector<Colour> piece_at(pieces), up_to(pieces), from(pieces);
-  for (std::size_t count = 1; count <= pieces; ++count) {
+  std::vector<Colour> middles(pieces);
+  std::vector<double> depths(pieces);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    middles[i] = between(entries[i], entries[i + 1], 0.5);
+    depths[i] = mean_depth(entries[i][3], entries[i + 1][3]);
+  }
+  tbb::parallel_for(std::size_t(1), pieces + 1, [&](std::size_t count) {
+    std::vector<Colour> piece_at(pieces), up_to(pieces), from(pieces);
     // Within a group of `count` pieces: composed from its beginning up to each, and from each to its end.
     const int parts = count <= 2 ? 8 : count <= 8 ? 2 : 1;
+    const double way = 1 / double(count);
     for (std::size_t i = 0; i < pieces; ++i)
-      piece_at[i] = piece(entries[i], entries[i + 1], 1 / double(count), parts);
+      piece_at[i] = parts == 1 ? layer(middles[i], -std::expm1(-way * depths[i]), way)
+                               : piece(entries[i], entries[i + 1], way, parts);
     for (std::size_t i = 0; i < pieces; ++i)
       up_to[i] = i % count == 0 ? piece_at[i] : over(up_to[i - 1], piece_at[i]);
     for (std::size_t i = pieces; i-- > 0;)
@@ -78,17 +93,32 @@ void rising_segments(const std::vector<Colour>& entries, Segment segment) {
       const std::size_t last = front + count - 1;
       segment(front, front + count, front % count == 0 ? up_to[last] : over(from[front], up_to[last]));
     }
-  }
+  });
+}
+
+/// By how much the slope of `function` changes from one entry to the next at most, in any component.
+double sharpest_bend(const TransferFunction& function) {
+  double sharpest = 0;
+  for (std::size_t i = 1; i + 1 < function.entries.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      sharpest =
+          std::max(sharpest, std::abs(double(function.entries[i - 1][k]) - 2 * double(function.entries[i][k]) +
+                                      double(function.entries[i + 1][k])));
+  return sharpest;
 }
 
 }  // namespace
 
 PairTable pre_integrated(const TransferFunction& function) {
-  constexpr std::size_t least_pieces = 255;
+  constexpr std::size_t least_pieces = 255, most_pieces = std::size_t(max_pair_edge) - 1;
+  constexpr double tolerance = 1e-3;
   const std::size_t given = function.entries.size() - 1;
-  const std::size_t pieces = given >= std::size_t(max_pair_edge)
-                                 ? std::size_t(max_pair_edge) - 1
-                                 : given * ((std::max(least_pieces, given) + given - 1) / given);
+  std::size_t pieces = most_pieces;
+  if (given < most_pieces) {
+    const std::size_t for_edge = (least_pieces + given - 1) / given;
+    const auto for_bends = std::size_t(std::min(std::ceil(sharpest_bend(function) / (8 * tolerance)), 1e4));
+    pieces = given * std::clamp(std::max(for_edge, for_bends), std::size_t(1), most_pieces / given);
+  }
   std::vector<Colour> entries;
   for (std::size_t i = 0; i <= pieces; ++i) {
     const double place = double(i) * double(given) / double(pieces);

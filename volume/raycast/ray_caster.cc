@@ -217,6 +217,8 @@ struct Circumstances {
   bool keeps_clear_samples = false;  ///< under `min`
   std::array<int, 3> reach{};        ///< of slabs, in blocks
   bool pre_integrated = false;
+  float tolerance = 0;        ///< of adaptive steps, otherwise 0
+  double step_cells = 0;      ///< their length
   std::vector<float> levels;  ///< of surfaces, in units of the texel type
 
   bool operator==(const Circumstances&) const = default;
@@ -227,6 +229,11 @@ Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequ
   c.keeps_clear_samples = request.op == Operator::min;
   c.reach = blocks_in_reach(volume, request.slab);
   c.pre_integrated = request.method == Method::pre_integrated;
+  if (request.method == Method::adaptive) {
+    c.tolerance = request.tolerance;
+    const std::array<double, 3> reach = step_reach(volume, request);
+    c.step_cells = *std::max_element(reach.begin(), reach.end());
+  }
   for (const Level& level : SegmentScene(volume, request).levels) c.levels.push_back(level.value);
   return c;
 }
@@ -239,6 +246,9 @@ struct RayCaster::Prepared {
   std::optional<PairLookup> pairs;
   SkipMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
+  bool values_beyond = false;                ///< of the table of pairs
+  std::optional<PartTable> parts;            ///< these two of adaptive steps
+  std::optional<StepDivision> division;
 
   bool visible(const BrickStore& store, std::size_t block) const {
     const auto ranges = store.ranges(block);
@@ -261,7 +271,21 @@ struct RayCaster::Prepared {
 
   bool has_slabs() const { return pairs && !circumstances.pre_integrated; }
 
+  bool lies_beyond(const BrickStore& store, std::size_t block) const {
+    const BrickStore::Range& range = store.ranges(block).front();
+    const auto place = [&](float value) { return (value - pairs->low()) * pairs->scale(); };
+    return range.low <= range.high &&
+           (place(range.low) < -table_end_slack || place(range.high) > pairs->last() + table_end_slack);
+  }
+
+  void divide_steps(const BrickStore& store) {
+    if (!parts) return;
+    division.emplace(store, std::get<TransferFunction>(classification), double(circumstances.tolerance),
+                     circumstances.step_cells);
+  }
+
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
+    divide_steps(store);
     if (has_slabs()) {
       // A slab's far end may lie blocks away.
       skip = skip_map(store);
@@ -269,6 +293,9 @@ struct RayCaster::Prepared {
     }
     if (bounds && !bounds->empty())
       for (const std::size_t b : blocks) (*bounds)[b] = block_bound(store, *table, b);
+    if (circumstances.pre_integrated)
+      values_beyond = values_beyond || std::any_of(blocks.begin(), blocks.end(),
+                                                   [&](std::size_t b) { return lies_beyond(store, b); });
     // Distances reach far, but depend on nothing but which blocks show something.
     if (std::all_of(blocks.begin(), blocks.end(),
                     [&](std::size_t b) { return visible(store, b) == skip.shows(b); }))
@@ -303,7 +330,13 @@ struct RayCaster::Prepared {
         circumstances(std::move(under)),
         table(make_table(store, classification, circumstances.keeps_clear_samples)),
         pairs(make_pairs(store, classification, circumstances)),
-        skip(skip_map(store)) {}
+        skip(skip_map(store)) {
+    if (circumstances.tolerance > 0)
+      parts.emplace(std::get<TransferFunction>(classification), store.description().type);
+    divide_steps(store);
+    for (std::size_t b = 0; circumstances.pre_integrated && !values_beyond && b < store.blocks(); ++b)
+      values_beyond = lies_beyond(store, b);
+  }
 };
 
 RayCaster::RayCaster(const BrickStore& store) : store_(&store) {}
@@ -359,11 +392,16 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.top = setup.top;
   scene.rounding = setup.rounding;
   scene.pairs = prepared.pairs ? &*prepared.pairs : nullptr;
+  scene.values_beyond = prepared.values_beyond;
+  scene.parts = prepared.parts ? &*prepared.parts : nullptr;
+  scene.division = prepared.division ? &*prepared.division : nullptr;
   set_held(scene);
   if (request.slab) set_slab(*request.slab, scene);
   const SegmentScene segments(store.description(), request);
   if (walks_segments(request)) scene.segments = &segments;
-  const Kernel kernel = scene.segments != nullptr ? vector_segments : vector_kernel;
+  const Kernel kernel = scene.parts != nullptr      ? vector_adaptive
+                        : scene.segments != nullptr ? vector_segments
+                                                    : vector_kernel;
   for (std::size_t axis = 0; axis < 3; ++axis)
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 

@@ -228,9 +228,37 @@ int first_reached(int least, int count, double guess, Reached reached) {
   return low;
 }
 
+/// Lets ray `r` begin and end where it enters and leaves the owned cells.
+void cut_to_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
+  float begin = strip.begin[r], end = strip.end[r];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float start = strip.start[axis][r], step = strip.step[axis][r];
+    const auto keep = [&](float bound, bool above) {
+      if (step == 0) {
+        if ((start >= bound) != above) end = begin - 1;
+      } else if ((step > 0) == above) {
+        begin = std::max(begin, (bound - start) / step);
+      } else {
+        end = std::min(end, (bound - start) / step);
+      }
+    };
+    if (setup.low_is_bound[axis]) keep(setup.owned_low[axis], true);
+    if (setup.high_is_bound[axis]) keep(setup.owned_high[axis], false);
+  }
+  if (strip.first[r] > strip.last[r] || !(begin < end)) {
+    strip.last[r] = strip.first[r] - 1;
+    return;
+  }
+  strip.begin[r] = begin;
+  strip.end[r] = end;
+  strip.first[r] = int(std::floor(begin));
+  strip.last[r] = int(std::ceil(end)) - 1;
+}
+
 /// Narrows the samples of ray `r` to those in the owned cells. Positions are monotone in k on every axis, in
 /// float arithmetic too, so these are one interval; it is found with the very arithmetic that samples.
 void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
+  if (setup.cut) cut_to_owned(setup, strip, r);
   int first = strip.first[r], last = strip.last[r];
   const int least = first;
   const float begin = setup.ends ? strip.begin[r] : 0.0F;
@@ -252,6 +280,7 @@ void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
       else
         last = std::min(last, crossing - 1);
     };
+    if (setup.cut) continue;
     if (setup.low_is_bound[axis]) narrow(setup.owned_low[axis], true);
     if (setup.high_is_bound[axis]) narrow(setup.owned_high[axis], false);
   }
@@ -331,7 +360,8 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
   last_plane = planes.count - 1;
   ends = walks_segments(request);
-  segments = ends && (request.method == Method::pre_integrated || !request.surfaces.empty());
+  cut = request.cut_at_bricks && request.method == Method::pre_integrated;
+  segments = ends && (request.method != Method::post_classified || !request.surfaces.empty());
   steps = request.steps;
   if (steps) {
     const auto& metric = steps->metric;

@@ -50,6 +50,7 @@ struct RaySetup {
   int last_plane = 0;
   bool segments = false;  ///< what lies between samples counts
   bool ends = false;      ///< the strip's begin and end are made
+  bool cut = false;       ///< segments end where the owned cells do
 
   /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that
   /// say so.

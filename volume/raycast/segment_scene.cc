@@ -55,21 +55,22 @@ std::array<double, 9> inverse_of(const std::array<double, 9>& m) {
 }
 
 bool has_segments(const RenderRequest& request) {
-  return request.method == Method::pre_integrated || !request.surfaces.empty();
+  return request.method != Method::post_classified || !request.surfaces.empty();
 }
 
 /// How far, in cells along an axis, a ray of the picture goes from plane to plane at most; infinite where rays
 /// run along the planes. Directions of rays are linear in the pixel's position, so that the ratio of their
 /// parts along an axis and across the planes is largest in a corner.
-double reach_between_planes(const VolumeDescription& volume, const RenderRequest& request) {
+std::array<double, 3> reach_between_planes(const VolumeDescription& volume, const RenderRequest& request) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr std::array<double, 3> endless{infinity, infinity, infinity};
   const auto clip_to_texture = inverse(request.texture_to_clip);
-  if (!clip_to_texture) return infinity;
+  if (!clip_to_texture) return endless;
   const Matrix4& m = *clip_to_texture;
   const Vec3 into{m[2], m[6], m[10]};
   const Vec3 normal = row_of(request.steps->metric, 0);
   const Rect seen = footprint(request, request.region);
-  double reach = 0;
+  std::array<double, 3> reach{};
   bool forwards = false, backwards = false;
   for (const int x : {seen.x, seen.x + seen.width})
     for (const int y : {seen.y, seen.y + seen.height}) {
@@ -80,9 +81,9 @@ double reach_between_planes(const VolumeDescription& volume, const RenderRequest
       forwards = forwards || !(across < 0);
       backwards = backwards || !(across > 0);
       for (std::size_t axis = 0; axis < 3; ++axis)
-        reach = std::max(reach, std::abs(way[axis] / across) * volume.size[axis]);
+        reach[axis] = std::max(reach[axis], std::abs(way[axis] / across) * volume.size[axis]);
     }
-  return forwards && backwards ? infinity : reach;
+  return forwards && backwards ? endless : reach;
 }
 
 double units(TexelType type) {
@@ -98,19 +99,22 @@ bool walks_segments(const RenderRequest& request) {
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request) {
   if (!walks_segments(request)) return 0;
   double reach = 0;
-  if (has_segments(request) && request.steps && request.steps->between_planes()) {
-    reach = reach_between_planes(volume, request);
-  } else if (has_segments(request) && request.steps) {
-    const std::array<double, 9> inverse = inverse_of(request.steps->metric);
-    // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding
-    // steps.
-    const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      reach = std::max(reach, part * length(row_of(inverse, axis)) * volume.size[axis]);
-  }
+  if (has_segments(request) && request.steps)
+    for (const double along : step_reach(volume, request)) reach = std::max(reach, along);
   constexpr double rounding = 1e-6;  // of the reach, in cells
   const double gradient = request.light ? 1 : 0;
   return int(std::min(std::ceil(reach + gradient - rounding), 1e9));
+}
+
+std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request) {
+  if (request.steps->between_planes()) return reach_between_planes(volume, request);
+  const std::array<double, 9> inverse = inverse_of(request.steps->metric);
+  // A ray of L steps that is divided into floor(L + rounding) parts has parts of less than 2 - rounding steps.
+  const double part = request.steps->divided ? 2 - request.steps->rounding : 1;
+  std::array<double, 3> reach{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach[axis] = part * length(row_of(inverse, axis)) * volume.size[axis];
+  return reach;
 }
 
 void validate_segments(const VolumeDescription& volume, const RenderRequest& request) {
@@ -130,6 +134,11 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
     demand(request.steps->past_depth == 0,
            "surfaces and pre-integration end before opaque geometry: ask for no samples behind it");
   }
+  if (request.method == Method::adaptive) {
+    demand(request.surfaces.empty() && !request.light,
+           "adaptive steps know neither surfaces nor light: ask for samples or pre-integration");
+    demand(request.tolerance > 0, "adaptive steps need a tolerance above 0");
+  }
   if (request.surfaces.size() > max_surfaces)
     throw std::invalid_argument(
         fmt::format("{} surfaces (at most {} are possible)", request.surfaces.size(), max_surfaces));
@@ -142,8 +151,9 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
     demand(regular(light->space), "the matrix from texture space to the light's space is singular");
     demand(all_finite(light->direction), "the direction to the light holds a value that is not finite");
     demand(not_negative(light->ambient) && not_negative(light->diffuse) && not_negative(light->specular) &&
-               std::isfinite(light->shininess) && light->shininess >= 0,
-           "the light's colours and shininess must be finite and not negative");
+               std::isfinite(light->shininess) && light->shininess >= 0 && std::isfinite(light->full_slope) &&
+               light->full_slope >= 0,
+           "the light's colours, shininess and full slope must be finite and not negative");
   }
   if (const int cells = margin_needed(volume, request); cells > volume.margin)
     throw std::invalid_argument(fmt::format(
@@ -152,9 +162,11 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
         cells, volume.margin, cells));
 }
 
-Lamp::Lamp(const Light& light, const std::array<int, 3>& size)
-    : model(light), inverse_(inverse_of(light.space)) {
-  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = size[axis];
+Lamp::Lamp(const Light& light, const VolumeDescription& volume)
+    : model(light),
+      full_slope(float(light.full_slope * units(volume.type))),
+      inverse_(inverse_of(light.space)) {
+  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = volume.size[axis];
   const double largest =
       std::max({std::abs(light.direction[0]), std::abs(light.direction[1]), std::abs(light.direction[2])});
   if (largest > 0) {
@@ -201,7 +213,7 @@ SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest&
   }
   std::stable_sort(levels.begin(), levels.end(),
                    [](const Level& a, const Level& b) { return a.value < b.value; });
-  if (request.light) lamp.emplace(*request.light, volume.size);
+  if (request.light) lamp.emplace(*request.light, volume);
 }
 
 }  // namespace understudy::volume

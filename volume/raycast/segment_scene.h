@@ -8,13 +8,16 @@
 
 namespace understudy::volume {
 
-/// Whether a request has surfaces, light or segments; other requests know nothing of all this.
+/// Whether a request has surfaces, light, segments or adaptive steps; other requests know nothing of all this.
 bool walks_segments(const RenderRequest& request);
 
 /// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
 /// margin must be no smaller. Of steps between planes it depends on the camera; elsewhere
 /// their metric must not be singular.
 int margin_needed(const VolumeDescription& volume, const RenderRequest& request);
+
+/// How far one step leads along each axis, at most, in cells.
+std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request);
 
 /// Throws std::invalid_argument when surfaces, light or method make no sense on `volume`.
 void validate_segments(const VolumeDescription& volume, const RenderRequest& request);
@@ -28,7 +31,7 @@ struct Level {
 /// A light over gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light is
 /// -g . light / |g|, and that between normal and h is -g . half / |g|.
 struct Lamp {
-  Lamp(const Light& light, const std::array<int, 3>& size);
+  Lamp(const Light& light, const VolumeDescription& volume);
 
   /// `half` of a ray that goes along `step` (in cells); zero where there is none.
   std::array<float, 3> half(const std::array<float, 3>& step) const;
@@ -37,6 +40,7 @@ struct Lamp {
 
   Light model;
   std::array<float, 9> metric{};
+  float full_slope = 0;  ///< the model's, in units of the texel type
 
  private:
   Vec3 to_eye(const std::array<float, 3>& step) const;

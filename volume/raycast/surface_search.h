@@ -1,6 +1,6 @@
 // Where on a segment the field passes a value: between two ends on different sides of it, by the rule of false
 // position (in the Illinois form, which halves the value at an end that stays), and by bisection where that is
-// slow.
+// slow. A field may be even at the very value: it passes where it comes to have it, or ceases to.
 #pragma once
 
 #include <cmath>
@@ -9,6 +9,8 @@ namespace understudy::volume {
 
 /// The search ends when the point is known to so many cells.
 constexpr float surface_tolerance = 2e-4F;
+/// From a point that has the very value the search goes on with one so many tolerances away.
+constexpr float surface_nudge = 0.125F;
 /// After so many rounds it bisects, and after so many more it ends: 2^-18 of a segment.
 constexpr int false_positions = 6;
 constexpr int bisections = 18;
@@ -30,14 +32,13 @@ struct SurfaceSearch {
     for (int round = 0; round < false_positions + bisections && (b - a) * cells > surface_tolerance; ++round) {
       float share = 0.5F * (a + b);
       if (round < false_positions) {
-        share = b - at_b * ((b - a) / (at_b - at_a));
+        const float nudge = surface_nudge * surface_tolerance / cells;
+        share = at_b == 0 ? b - nudge : at_a == 0 ? a + nudge : b - at_b * ((b - a) / (at_b - at_a));
         share = share > a ? (share < b ? share : b) : a;
       }
       const float there = value_at(share) - level;
       if (std::isnan(there)) return false;
-      if (there == 0) {
-        a = b = share;
-      } else if ((there >= 0) == above) {
+      if ((there >= 0) == above) {
         a = share;
         at_a = there;
         if (stays == 1) at_b *= 0.5F;

@@ -131,8 +131,10 @@ struct Constants {
         d,
         std::int32_t((wide(first[2]) * wide(counts[1]) + wide(first[1])) * wide(counts[0]) + wide(first[0])));
     neutral = hn::Set(f, neutral_value(scene.op));
-    termination =
-        hn::Set(f, scene.op == Operator::over ? scene.termination : -std::numeric_limits<float>::infinity());
+    // What a first hit shows is opaque.
+    termination = hn::Set(f, scene.op == Operator::over        ? scene.termination
+                             : scene.op == Operator::first_hit ? 0.5F
+                                                               : -std::numeric_limits<float>::infinity());
 
     Rgba border_texel = scene.store->border();
     for (float& v : border_texel) v = Source::factor * (v - Source::zero);
@@ -512,8 +514,9 @@ HWY_INLINE Floats colour_of_column(const Corners& corners, const Located& at, Fl
   const Floats one = hn::Set(f, 1.0F);
   colour = hn::Min(hn::Max(colour, hn::Zero(f)), one);
   const Floats alpha = hn::Broadcast<3>(colour);
-  // Times alpha where the map asks for it: 1 + (alpha - 1) * {1, 1, 1, 0}.
-  const Floats premultiplied = hn::Mul(colour, hn::MulAdd(hn::Sub(alpha, one), constants.scaled_by_alpha, one));
+  // Times alpha where the map asks for it.
+  const Floats otherwise = hn::Sub(one, constants.scaled_by_alpha);
+  const Floats premultiplied = hn::Mul(colour, hn::MulAdd(alpha, constants.scaled_by_alpha, otherwise));
   const auto shown =
       hn::And(hn::Gt(alpha, constants.alpha_above), hn::Gt(hn::Broadcast<q>(present), hn::Zero(f)));
   return hn::IfThenElse(shown, premultiplied, constants.neutral);
@@ -559,6 +562,14 @@ HWY_INLINE Floats composed(Floats pixel, Floats colour) {
     return hn::MulAdd(room, colour, pixel);
   } else if constexpr (op == Operator::add) {
     return hn::Add(pixel, colour);
+  } else if constexpr (op == Operator::first_hit) {
+    const FloatTag f;
+    const Floats zero = hn::Zero(f), alpha = hn::Broadcast<3>(colour);
+    const auto hit = hn::And(hn::Gt(alpha, zero), hn::Eq(hn::Broadcast<3>(pixel), zero));
+    if (hn::AllFalse(f, hit)) return pixel;
+    const Floats largest = hn::Set(f, std::numeric_limits<float>::max());
+    const Floats plain = hn::Div(colour, hn::IfThenElse(hit, alpha, largest));
+    return hn::IfThenElse(hit, hn::Min(hn::Max(plain, hn::Neg(largest)), largest), pixel);
   } else if constexpr (op == Operator::max) {
     return hn::Max(pixel, colour);
   } else {

@@ -83,6 +83,8 @@ HWY_INLINE void compose(const std::array<Classified, samples_between_tests>& sam
       return compose<Operator::max>(samples, constants, pixels);
     case Operator::min:
       return compose<Operator::min>(samples, constants, pixels);
+    case Operator::first_hit:
+      return compose<Operator::first_hit>(samples, constants, pixels);
   }
 }
 

@@ -136,7 +136,7 @@ constexpr float least_square = 1e-30F;
 /// half the way to the eye, raised to the shininess.
 struct Brightness {
   Floats diffuse, gleam;
-  Floats lit;  // 1, or 0 where there is no slope
+  Floats lit;  // the light's share: 1, less where it fades, and 0 where there is no slope
 };
 
 template <typename Source>
@@ -144,11 +144,12 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
                              Source, Brightness& out) {
   const FloatTag f;
   const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
-  Floats x = slope[0], y = slope[1], z = slope[2];
+  Floats x = slope[0], y = slope[1], z = slope[2], size = one;
   if constexpr (std::is_same_v<Source, Floats32>) {
     // Squares of what a float holds need not be floats.
     const Floats largest = hn::Max(hn::Abs(x), hn::Max(hn::Abs(y), hn::Abs(z)));
-    const Floats unit = hn::Div(one, hn::Max(largest, hn::Set(f, std::numeric_limits<float>::min())));
+    size = hn::Max(largest, hn::Set(f, std::numeric_limits<float>::min()));
+    const Floats unit = hn::Div(one, size);
     x = hn::Mul(x, unit);
     y = hn::Mul(y, unit);
     z = hn::Mul(z, unit);
@@ -172,6 +173,9 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   // What is below would only end in powers too small for normal floats.
   out.gleam = hn::Max(cosine(rays.half), constants.least_cosine);
   out.lit = hn::IfThenElseZero(slopes, one);
+  if (!constants.fades) return;
+  const Floats steepness = hn::Mul(hn::Mul(size, constants.share_of_slope), hn::Mul(safe, unit));
+  out.lit = hn::IfThenElseZero(slopes, hn::Min(steepness, one));
 }
 
 /// Raises cosines to the shininess: to whole powers by squaring, to others by logarithms. Point by point in the
@@ -207,9 +211,10 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
   const Floats third = shown(colours[2], hn::Broadcast<2>(at.diffuse), hn::Broadcast<2>(at.gleam));
   const Floats fourth = shown(colours[3], hn::Broadcast<3>(at.diffuse), hn::Broadcast<3>(at.gleam));
   const Floats zero = hn::Zero(f);
-  const bool all_lit = hn::AllTrue(f, hn::Gt(at.lit, zero));
-  const auto put = [&](Floats lit, Floats with, Floats& colour)
-                       HWY_ATTR { colour = all_lit ? with : hn::IfThenElse(hn::Gt(lit, zero), with, colour); };
+  const bool all_lit = hn::AllTrue(f, hn::Ge(at.lit, hn::Set(f, 1.0F)));
+  const auto put = [&](Floats lit, Floats with, Floats& colour) HWY_ATTR {
+    colour = all_lit ? with : hn::IfThenElse(hn::Gt(lit, zero), mix(colour, with, lit), colour);
+  };
   put(hn::Broadcast<0>(at.lit), first, colours[0]);
   put(hn::Broadcast<1>(at.lit), second, colours[1]);
   put(hn::Broadcast<2>(at.lit), third, colours[2]);

@@ -18,6 +18,7 @@ struct SegmentConstants : Constants {
       held_low[axis] = hn::Set(f, scene.held_low[axis]);
       held_high[axis] = hn::Set(f, scene.held_high[axis]);
     }
+    values_beyond = scene.values_beyond;
     levels = segments.levels.size();
     for (std::size_t i = 0; i < levels; ++i) {
       level[i] = hn::Set(f, Source::factor * (segments.levels[i].value - Source::zero));
@@ -31,6 +32,11 @@ struct SegmentConstants : Constants {
     const float unit = 1 / std::sqrt(std::max({of_lamp[0], of_lamp[4], of_lamp[8]}));
     for (std::size_t i = 0; i < 9; ++i) metric[i] = hn::Set(f, of_lamp[i] * unit * unit);
     normal_of_slope = Source::factor < 0 ? unit : -unit;
+    // Differences span two cells.
+    fades = segments.lamp->full_slope > 0;
+    if (fades)
+      share_of_slope =
+          hn::Set(f, std::min(1 / (2 * std::abs(Source::factor) * unit * segments.lamp->full_slope), 1e30F));
     two_sided = lamp->model.two_sided;
     const auto colour = [&](const std::array<float, 3>& rgb, float alpha) HWY_ATTR {
       alignas(16) const float components[4] = {rgb[0], rgb[1], rgb[2], alpha};
@@ -63,6 +69,7 @@ struct SegmentConstants : Constants {
   }
 
   std::array<Floats, 3> held_low, held_high;
+  bool values_beyond = false;
   std::size_t levels = 0;
   std::array<Floats, max_surfaces> level;    // as field_at() gives values
   std::array<Floats, max_surfaces> surface;  // components side by side
@@ -74,6 +81,8 @@ struct SegmentConstants : Constants {
   Floats shininess, least_cosine;
   std::optional<unsigned> whole_shininess;
   bool gleams = false, two_sided = false;
+  bool fades = false;     // where slopes are less than the light's full slope
+  Floats share_of_slope;  // what a slope in the units of `metric` is multiplied with
 
   std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of what is held
   bool has_inner = true;
@@ -182,7 +191,7 @@ HWY_INLINE bool show(const Colours& colours) {
   return !hn::AllFalse(f, hn::Or(either(0, 1), either(2, 3)));
 }
 
-/// What pieces of such lengths show of segments that are one step long.
+/// What pieces of such lengths show of layers that are one step long.
 HWY_INLINE void shorten(Floats length, Colours& colours) {
   const FloatTag f;
   const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
@@ -239,6 +248,7 @@ HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_f
                                const SegmentConstants& constants, Source source, Mask& sought) {
   const FloatTag f;
   const Floats zero = hn::Zero(f), half = hn::Set(f, 0.5F), tolerance = hn::Set(f, surface_tolerance);
+  const Floats nudge = hn::Div(hn::Mul(hn::Set(f, surface_nudge), tolerance), segment.cells);
   Floats a = front, b = hn::Set(f, 1.0F);
   Floats at_a = hn::Sub(at_front, level), at_b = hn::Sub(segment.back, level);
   const Mask above = is_above<Source>(at_a);
@@ -249,6 +259,8 @@ HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_f
     Floats share = hn::Mul(half, hn::Add(a, b));
     if (round < false_positions) {
       share = hn::Sub(b, hn::Mul(at_b, hn::Div(hn::Sub(b, a), hn::Sub(at_b, at_a))));
+      share = hn::IfThenElse(hn::Eq(at_a, zero), hn::Add(a, nudge), share);
+      share = hn::IfThenElse(hn::Eq(at_b, zero), hn::Sub(b, nudge), share);
       share = hn::IfThenElse(hn::Gt(share, a), hn::Min(share, b), a);
     }
     const Floats there = hn::Sub(value_at(segment.point(share, constants), constants, source), level);
@@ -257,16 +269,15 @@ HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_f
       sought = hn::And(sought, hn::Not(lost));
       searching = hn::And(searching, hn::Not(lost));
     }
-    const Mask there_exactly = hn::And(searching, hn::Eq(there, zero));
     const Mask other_side = hn::Xor(is_above<Source>(there), above);
-    const Mask move_back = hn::And(searching, hn::And(other_side, hn::Not(there_exactly)));
-    const Mask move_front = hn::And(searching, hn::Not(hn::Or(other_side, there_exactly)));
+    const Mask move_back = hn::And(searching, other_side);
+    const Mask move_front = hn::And(searching, hn::Not(other_side));
     at_b = hn::IfThenElse(hn::And(move_front, front_moved), hn::Mul(half, at_b), at_b);
     at_a = hn::IfThenElse(hn::And(move_back, back_moved), hn::Mul(half, at_a), at_a);
     at_a = hn::IfThenElse(move_front, there, at_a);
     at_b = hn::IfThenElse(move_back, there, at_b);
-    a = hn::IfThenElse(hn::Or(move_front, there_exactly), share, a);
-    b = hn::IfThenElse(hn::Or(move_back, there_exactly), share, b);
+    a = hn::IfThenElse(move_front, share, a);
+    b = hn::IfThenElse(move_back, share, b);
     front_moved = move_front;
     back_moved = move_back;
     searching = hn::And(searching, wide());
@@ -274,16 +285,96 @@ HWY_INLINE Floats find_surface(const Segment& segment, Floats front, Floats at_f
   return hn::Mul(half, hn::Add(a, b));
 }
 
+/// The way between two values, in places of the table.
+struct PlacedEnds {
+  Floats from, to;     // beyond the table too
+  Floats first, last;  // kept within it
+
+  PlacedEnds(Floats front, Floats back, const Constants& constants) {
+    const FloatTag f;
+    // So that differences of places are numbers.
+    const Floats far = hn::Set(f, 1e18F);
+    const auto place = [&](Floats value) HWY_ATTR {
+      const Floats free = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
+      return hn::Min(hn::Max(free, hn::Neg(far)), far);
+    };
+    const auto kept = [&](Floats at)
+                          HWY_ATTR { return hn::Min(hn::Max(at, hn::Zero(f)), constants.table_last); };
+    from = place(front);
+    to = place(back);
+    first = kept(from);
+    last = kept(to);
+  }
+
+  /// Whether it leads past an end of the table.
+  Mask part() const {
+    const Floats beyond = hn::Max(hn::Abs(hn::Sub(from, first)), hn::Abs(hn::Sub(to, last)));
+    return hn::And(hn::Ne(first, last), hn::Gt(beyond, hn::Set(FloatTag(), table_end_slack)));
+  }
+};
+
+/// What so many steps show between two places in the table; nothing in the rays that are absent. A part of a
+/// step is more even than the whole, of whose light what is in front takes from what is behind: to second order
+/// its colour is that of the segment and of its mirror image.
+HWY_INLINE void show_stretch(Floats front, Floats back, Floats length, Mask absent, const Constants& constants,
+                             Colours& out) {
+  const FloatTag f;
+  const Floats one = hn::Set(f, 1.0F);
+  const AxisPlace x = between_entries(front, constants), y = between_entries(back, constants);
+  const hn::Mask<IntTag> nothing = hn::RebindMask(IntTag(), absent);
+  const auto look_up = [&](const AxisPlace& a, const AxisPlace& b, Colours& colours) HWY_ATTR {
+    PairPlace place;
+    set_pair(a, b, hn::IfThenElse(nothing, constants.neutral_entry, corner_of_pair(a, b, constants)), place);
+    colours_of(place, constants, colours);
+  };
+  look_up(x, y, out);
+  if (hn::AllTrue(f, hn::Or(absent, hn::Ge(length, one)))) return;
+  Colours mirrored;
+  look_up(y, x, mirrored);
+  const Floats share = hn::Max(hn::Mul(hn::Set(f, 0.5F), hn::Sub(one, length)), hn::Zero(f));
+  out[0] = mix(out[0], mirrored[0], hn::Broadcast<0>(share));
+  out[1] = mix(out[1], mirrored[1], hn::Broadcast<1>(share));
+  out[2] = mix(out[2], mirrored[2], hn::Broadcast<2>(share));
+  out[3] = mix(out[3], mirrored[3], hn::Broadcast<3>(share));
+  shorten(length, out);
+}
+
+/// What so many steps show on which the field changes evenly between two values. Beyond the ends of the table
+/// the medium is that of its ends, so there the way is parted.
+template <typename Source>
+HWY_NOINLINE void show_between(Floats front, Floats back, Floats length, Mask absent,
+                               const SegmentConstants& constants, Source, Colours& out) {
+  const FloatTag f;
+  const Floats zero = hn::Zero(f), one = hn::Set(f, 1.0F);
+  if constexpr (std::is_same_v<Source, Floats32>)
+    absent = hn::Or(absent, hn::Or(hn::IsNaN(front), hn::IsNaN(back)));
+  const PlacedEnds ends(front, back, constants);
+  const Mask parted = hn::And(ends.part(), hn::Not(absent));
+  if (!constants.values_beyond || hn::AllFalse(f, parted))
+    return show_stretch(ends.first, ends.last, length, absent, constants, out);
+  const Floats way = hn::IfThenElse(parted, hn::Sub(ends.to, ends.from), one);
+  const auto share = [&](Floats place, Floats otherwise) HWY_ATTR {
+    return hn::IfThenElse(parted, hn::Div(hn::Sub(place, ends.from), way), otherwise);
+  };
+  const Floats enters = share(ends.first, zero), leaves = share(ends.last, one);
+  out.fill(zero);
+  Colours part;
+  show_stretch(ends.first, ends.first, hn::Mul(enters, length), absent, constants, part);
+  compose_over(part, out);
+  show_stretch(ends.first, ends.last, hn::Mul(hn::Sub(leaves, enters), length), absent, constants, part);
+  compose_over(part, out);
+  show_stretch(ends.last, ends.last, hn::Mul(hn::Sub(one, leaves), length), absent, constants, part);
+  compose_over(part, out);
+}
+
 /// A piece of a segment, pre-integrated, in the rays of `shown`.
 template <typename Source>
 HWY_INLINE void compose_piece(const SegmentPacket& rays, const Segment& segment, Floats begin, Floats end,
                               Floats at_begin, Floats at_end, Mask shown, bool lit,
                               const SegmentConstants& constants, Source source, Colours& pixels) {
-  PairPlace place;
-  look_up_pair(at_begin, at_end, hn::Not(shown), constants, source, place);
+  const Floats length = hn::Mul(hn::Sub(end, begin), hn::Sub(segment.end, segment.begin));
   Colours colours;
-  colours_of(place, constants, colours);
-  shorten(hn::Mul(hn::Sub(end, begin), hn::Sub(segment.end, segment.begin)), colours);
+  show_between(at_begin, at_end, length, hn::Not(shown), constants, source, colours);
   if (lit) {
     const Floats middle = hn::Mul(hn::Set(FloatTag(), 0.5F), hn::Add(begin, end));
     lay_in_light(rays, segment.point(middle, constants), shown, constants, source, colours);
@@ -291,13 +382,20 @@ HWY_INLINE void compose_piece(const SegmentPacket& rays, const Segment& segment,
   compose_over(colours, pixels);
 }
 
-/// The surfaces in a segment of the rays of `present`, and with `pre_integrated` what lies between them.
+/// The surfaces in a segment of the rays of `present`, and what lies between them: with `pre_integrated` of the
+/// segment, otherwise of the layer, one step long, that the sample at its front stands for.
 template <bool pre_integrated, typename Source>
 HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& segment, const Mask& present,
                                    bool lit, const SegmentConstants& constants, Source source,
-                                   Colours& pixels) {
+                                   const Colours& layer, Colours& pixels) {
   const FloatTag f;
   Floats front = hn::Zero(f), at_front = segment.front;
+  const Floats steps = hn::Sub(segment.end, segment.begin);
+  const auto compose_layer = [&](Floats length) HWY_ATTR {
+    Colours part = layer;
+    shorten(length, part);
+    compose_over(part, pixels);
+  };
   const Mask rising =
       Source::factor < 0 ? hn::Gt(segment.front, segment.back) : hn::Lt(segment.front, segment.back);
   for (const bool rise : {true, false}) {
@@ -308,8 +406,11 @@ HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& seg
       Mask sought = hn::And(these, passes<Source>(segment.front, segment.back, level));
       if (hn::AllFalse(f, sought)) continue;
       const Floats found = find_surface(segment, front, at_front, level, constants, source, sought);
-      if constexpr (pre_integrated)
+      if constexpr (pre_integrated) {
         compose_piece(rays, segment, front, found, at_front, level, sought, lit, constants, source, pixels);
+      } else {
+        compose_layer(hn::IfThenElseZero(sought, hn::Mul(hn::Sub(found, front), steps)));
+      }
       Colours colours;
       colours.fill(constants.surface[which]);
       keep(hn::IfThenElseZero(sought, hn::Set(f, 1.0F)), colours);
@@ -320,9 +421,12 @@ HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& seg
       at_front = hn::IfThenElse(sought, level, at_front);
     }
   }
-  if constexpr (pre_integrated)
+  if constexpr (pre_integrated) {
     compose_piece(rays, segment, front, hn::Set(f, 1.0F), at_front, segment.back, present, lit, constants,
                   source, pixels);
+  } else {
+    compose_layer(hn::NegMulAdd(front, steps, hn::Set(f, 1.0F)));
+  }
 }
 
 /// A whole segment's place in the table of pairs, whose entries are premultiplied.
@@ -339,7 +443,8 @@ struct SegmentBlock {
   static constexpr std::size_t count = samples_between_tests;
   using Classified = std::conditional_t<pre_integrated, SegmentPlace, TablePlace>;
 
-  bool inside = false;  // all are there, and a step long
+  bool inside = false;        // all are there, and a step long
+  bool in_one_piece = false;  // and, pre-integrated, none leads past an end of the table
   std::array<Floats, count + 1> u, values;
   std::array<Classified, count> classified;
 
@@ -372,6 +477,7 @@ HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& cons
     locate(place_at(rays, block.u[i + 1], constants), constants, located[i]);
   if (!rays.known) rays.value = value_at(place_at(rays, block.u[0], constants), constants, source);
   block.values[0] = rays.value;
+  block.in_one_piece = block.inside;
   if constexpr (pre_integrated) {
     AxisPlace front = place_on_axis(rays.value, constants);
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -386,6 +492,12 @@ HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& cons
       }
       set_pair(front, back, corner, block.classified[i]);
       front = back;
+    }
+    if (constants.values_beyond) {
+      Mask parted = hn::Lt(hn::Zero(f), hn::Zero(f));
+      for (std::size_t i = 0; i < block.count; ++i)
+        parted = hn::Or(parted, PlacedEnds(block.values[i], block.values[i + 1], constants).part());
+      block.in_one_piece = block.inside && hn::AllFalse(f, parted);
     }
   } else {
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -465,7 +577,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
   std::array<bool, samples_between_tests> parted{};
   const bool any_parted = find_parted(rays, constants, source, block, parted);
 
-  if (!lit && !any_parted && (!pre_integrated || block.inside)) {
+  if (!lit && !any_parted && (!pre_integrated || block.in_one_piece)) {
     Colours mine = pixels;
     for (const auto& at : block.classified) {
       mine[0] = composed<Operator::over>(mine[0], colour_at<0>(at, constants));
@@ -477,18 +589,19 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
   } else {
     std::array<Colours, samples_between_tests> colours;
     for (std::size_t i = 0; i < block.count; ++i) {
-      colours_of(block.classified[i], constants, colours[i]);
-      if constexpr (pre_integrated) {
-        if (block.inside) continue;
-        const Floats length = hn::Sub(block.u[i + 1], block.u[i]);
-        const Mask shorter = hn::And(block.present(rays, i), hn::Lt(length, hn::Set(f, 1.0F)));
-        if (!hn::AllFalse(f, shorter)) shorten(length, colours[i]);
+      if (pre_integrated && !block.in_one_piece) {
+        show_between(block.values[i], block.values[i + 1], hn::Sub(block.u[i + 1], block.u[i]),
+                     hn::Not(block.present(rays, i)), constants, source, colours[i]);
+      } else {
+        colours_of(block.classified[i], constants, colours[i]);
       }
     }
     if constexpr (lit) light_block(rays, constants, source, block, colours);
     for (std::size_t i = 0; i < block.count; ++i) {
-      if (!pre_integrated || !parted[i]) compose_over(colours[i], pixels);
-      if (!parted[i]) continue;
+      if (!parted[i]) {
+        compose_over(colours[i], pixels);
+        continue;
+      }
       Segment segment;
       segment.begin = block.u[i];
       segment.end = block.u[i + 1];
@@ -502,7 +615,8 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
         square = hn::MulAdd(way, way, square);
       }
       segment.cells = hn::Sqrt(square);
-      compose_surfaces<pre_integrated>(rays, segment, block.present(rays, i), lit, constants, source, pixels);
+      compose_surfaces<pre_integrated>(rays, segment, block.present(rays, i), lit, constants, source,
+                                       colours[i], pixels);
     }
   }
   rays.value = block.values[block.count];

@@ -27,12 +27,16 @@ struct AxisPlace {
   Floats between;
 };
 
+/// Of a place from 0 to the last.
+HWY_INLINE AxisPlace between_entries(Floats place, const Constants& constants) {
+  const Ints entry = hn::Min(truncated(place), constants.last_corner);
+  return {entry, hn::Sub(place, hn::ConvertTo(FloatTag(), entry))};
+}
+
 HWY_INLINE AxisPlace place_on_axis(Floats value, const Constants& constants) {
-  const FloatTag f;
   const Floats place = hn::Mul(hn::Sub(value, constants.table_low), constants.table_scale);
-  const Floats kept = hn::Min(hn::Max(place, hn::Zero(f)), constants.table_last);  // 0 where it is no number
-  const Ints entry = hn::Min(truncated(kept), constants.last_corner);
-  return {entry, hn::Sub(kept, hn::ConvertTo(f, entry))};
+  const Floats kept = hn::Min(hn::Max(place, hn::Zero(FloatTag())), constants.table_last);  // 0: no number
+  return between_entries(kept, constants);
 }
 
 HWY_INLINE Ints corner_of_pair(const AxisPlace& front, const AxisPlace& back, const Constants& constants) {
@@ -84,7 +88,6 @@ HWY_INLINE Floats interpolated_pair(const PairPlace& at, const Constants& consta
 template <std::size_t q>
 HWY_INLINE Floats colour_at(const PairPlace& at, const Constants& constants) {
   const Floats colour = interpolated_pair<q>(at, constants);
-  const Floats one = hn::Set(FloatTag(), 1.0F);
-  const Floats less = hn::Sub(hn::Broadcast<3>(colour), one);
-  return hn::Mul(colour, hn::MulAdd(less, constants.scaled_by_alpha, one));
+  const Floats otherwise = hn::Sub(hn::Set(FloatTag(), 1.0F), constants.scaled_by_alpha);
+  return hn::Mul(colour, hn::MulAdd(hn::Broadcast<3>(colour), constants.scaled_by_alpha, otherwise));
 }

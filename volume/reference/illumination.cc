@@ -71,6 +71,9 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   for (std::size_t k = 0; k < 3; ++k)
     lit[k] = (double(light.ambient[k]) + double(light.diffuse[k]) * diffuse) * colour[k] +
              double(light.specular[k]) * gleam * colour[3];
+  // As long as `slope` is less than light.full_slope.
+  const double share = slope < double(light.full_slope) ? slope / double(light.full_slope) : 1;
+  for (std::size_t k = 0; k < 3; ++k) lit[k] = colour[k] + share * (lit[k] - colour[k]);
   return lit;
 }
 

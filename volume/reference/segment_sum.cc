@@ -100,11 +100,10 @@ class Ray {
   Colour composed() {
     for (double u = way_.begin; u < way_.end;) {
       const double next = std::min(std::floor(u) + 1, way_.end);
-      if (u == std::floor(u)) sample(u);
-      if (request_.method == Method::pre_integrated || !surfaces_.empty()) segment(u, next);
+      segment(u, next);
       u = next;
     }
-    if (way_.end == std::floor(way_.end)) sample(way_.end);
+    if (way_.end == std::floor(way_.end)) compose(sample(way_.end));
     return pixel_;
   }
 
@@ -121,10 +120,11 @@ class Ray {
   }
   bool lights_samples() const { return request_.light && request_.light->on_samples; }
 
-  void sample(double u) {
-    if (medium_ || u < 0 || u >= way_.samples) return;
+  /// What the sample at u shows, lit; nothing where there is none.
+  Colour sample(double u) const {
+    if (medium_ || u < 0 || u >= way_.samples) return {};
     const double v = value(u);
-    if (std::isnan(v)) return;
+    if (std::isnan(v)) return {};
     const double last = double(function_.entries.size() - 1);
     const double place =
         std::clamp((v - function_.low) / (double(function_.high) - double(function_.low)) * last, 0.0, last);
@@ -134,7 +134,14 @@ class Ray {
       colour[k] = double(function_.entries[below][k]) +
                   (place - double(below)) *
                       (double(function_.entries[below + 1][k]) - double(function_.entries[below][k]));
-    compose(lights_samples() ? lit(u, colour) : colour);
+    return lights_samples() ? lit(u, colour) : colour;
+  }
+
+  /// A layer of so many steps, of a medium of which one step shows `colour`.
+  void layer(const Colour& colour, double steps) {
+    const double kept = -std::expm1(steps * std::log1p(-colour[3]));
+    const double ratio = colour[3] > 0 ? kept / colour[3] : steps;
+    compose({ratio * colour[0], ratio * colour[1], ratio * colour[2], kept});
   }
 
   void piece(double begin, double end, double at_begin, double at_end) {
@@ -148,12 +155,15 @@ class Ray {
   }
 
   void segment(double begin, double end) {
+    const Colour sampled = begin == std::floor(begin) ? sample(begin) : Colour{};
     const double front = value(begin), back = value(end);
-    if (std::isnan(front) || std::isnan(back)) return;
+    if (std::isnan(front) || std::isnan(back)) return compose(sampled);
     double so_far = begin, at_so_far = front;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       const Surface& surface = surfaces_[front < back ? i : surfaces_.size() - 1 - i];
-      const auto above = [&](double v) { return v >= surface.value; };
+      // A field may be even at the very value: what interpolation rounds away there does not lie below it.
+      constexpr double rounding = 1e-12;
+      const auto above = [&](double v) { return v >= surface.value - rounding * std::abs(surface.value); };
       if (above(front) == above(back)) continue;
       double a = so_far, b = end;
       bool known = true;
@@ -164,12 +174,18 @@ class Ray {
       }
       if (!known) continue;
       const double hit = (a + b) / 2;
+      layer(sampled, hit - so_far);
       piece(so_far, hit, at_so_far, surface.value);
       Colour colour{surface.colour[0], surface.colour[1], surface.colour[2], surface.colour[3]};
       for (std::size_t k = 0; k < 3; ++k) colour[k] *= colour[3];
       compose(request_.light ? lit(hit, colour) : colour);
       so_far = hit;
       at_so_far = surface.value;
+    }
+    if (so_far > begin) {
+      layer(sampled, begin + 1 - so_far);
+    } else {
+      compose(sampled);
     }
     piece(so_far, end, at_so_far, back);
   }

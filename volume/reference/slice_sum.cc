@@ -323,6 +323,12 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
         }
         if (shade) colour = shade(t, subtract(between(near, far, 1), between(near, far, 0)), colour);
         if (request.fog) lay_in_fog(*request.fog, t, colour);
+        if (request.op == Operator::first_hit) {
+          if (pixel[3] > 0 || !(colour[3] > 0)) return;
+          constexpr double largest = std::numeric_limits<float>::max();
+          for (int k = 0; k < 4; ++k) pixel[k] = std::clamp(colour[k] / colour[3], -largest, largest);
+          return;
+        }
         const double room = 1 - pixel[3];
         for (int k = 0; k < 4; ++k) switch (request.op) {
             case Operator::over:
@@ -336,6 +342,8 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
               break;
             case Operator::min:
               pixel[k] = std::min(pixel[k], colour[k]);
+              break;
+            case Operator::first_hit:  // above
               break;
           }
       };

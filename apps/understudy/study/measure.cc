@@ -8,9 +8,13 @@ namespace understudy::launcher::study {
 namespace {
 
 constexpr double finest_termination = 5e-6;
+/// Of steps one voxel long; that of others falls with the square of their length, as their error does.
+constexpr double adaptive_tolerance = 4e-3;
 
 volume::Method method_of(Scheme scheme) {
-  return scheme == Scheme::pre_integrated ? volume::Method::pre_integrated : volume::Method::post_classified;
+  return scheme == Scheme::pre_integrated ? volume::Method::pre_integrated
+         : scheme == Scheme::adaptive     ? volume::Method::adaptive
+                                          : volume::Method::post_classified;
 }
 
 }  // namespace
@@ -21,6 +25,8 @@ const char* name_of(Scheme scheme) {
       return "post-classified";
     case Scheme::pre_integrated:
       return "pre-integrated";
+    case Scheme::adaptive:
+      return "adaptive";
     case Scheme::eight_bit_slices:
       break;
   }
@@ -31,7 +37,7 @@ std::vector<Setting> settings(bool quick) {
   std::vector<Setting> all;
   std::vector<double> steps{4, 2, 1, 0.5, 0.25};
   if (!quick) steps.insert(steps.end(), {8, 0.125});
-  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated}) {
+  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive}) {
     for (const double step : steps) all.push_back({scheme, step, finest_termination});
     for (const double step : {1.0, 0.5})
       for (const double termination : {0.05, 0.01, 0.001}) all.push_back({scheme, step, termination});
@@ -59,8 +65,8 @@ Point measure(Scene& scene, const Setting& setting, int repetitions, Scene::Rays
     point.error = difference(rays, scene.exact());
     return point;
   }
-  const volume::RenderRequest request =
-      scene.request(setting.step, method_of(setting.scheme), setting.termination);
+  volume::RenderRequest request = scene.request(setting.step, method_of(setting.scheme), setting.termination);
+  request.tolerance = float(adaptive_tolerance * setting.step * setting.step);
   volume::Image picture(request.window);
   volume::RayCaster caster(scene.store());
   std::vector<double> times;

@@ -11,7 +11,7 @@
 
 namespace understudy::launcher::study {
 
-enum class Scheme : std::uint8_t { post_classified, pre_integrated, eight_bit_slices };
+enum class Scheme : std::uint8_t { post_classified, pre_integrated, adaptive, eight_bit_slices };
 const char* name_of(Scheme scheme);
 
 struct Setting {

@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array all_schemes{Scheme::post_classified, Scheme::pre_integrated, Scheme::eight_bit_slices};
+constexpr std::array all_schemes{Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive,
+                                 Scheme::eight_bit_slices};
 
 Json json_of(const Point& point) {
   Json json{{"scheme", name_of(point.setting.scheme)},
@@ -55,7 +56,7 @@ Json json_of(const SceneResults& scene) {
             {"rays", scene.rays},       {"reference_seconds", scene.reference_seconds},
             {"orders", Json::object()}, {"error_maps", scene.error_maps},
             {"points", Json::array()}};
-  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated})
+  for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive})
     if (const auto order = observed_order(scene.points, scheme)) json["orders"][name_of(scheme)] = *order;
   for (const Point& point : scene.points) json["points"].push_back(json_of(point));
   return json;

@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-COLOURS = {"post-classified": "tab:blue", "pre-integrated": "tab:orange"}
+COLOURS = {"post-classified": "tab:blue", "pre-integrated": "tab:orange", "adaptive": "tab:green"}
 FINEST = 1e-5  # termination thresholds below this count as none
 EXPECTED = "2 on a smooth field under a smooth table; at most 2 on voxels, 1 where the table has a step"
 

@@ -108,6 +108,40 @@ TEST_F(Render, SegmentsLeaveATableThatDoesNotSpanTheVolume) {
   EXPECT_LT(by_segments, by_samples / 4);
 }
 
+TEST_F(Render, AdaptiveStepsAreNearerThanSamplesAsMany) {
+  const std::string knots = folder_.write("spike.json", std::string(R"({"knots": [
+          {"at": 0, "colour": [1, 0, 0], "opacity": 0}, {"at": 0.60, "colour": [1, 0, 0], "opacity": 0},
+          {"at": 0.62, "colour": [1, 0.5, 0], "opacity": 0.6}, {"at": 0.64, "colour": [1, 0, 0], "opacity": 0},
+          {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
+  const std::string common =
+      cone(folder_, 64) + " --table " + knots + view + " --report " + folder_.file("r.json");
+  const Picture fine = picture(common + " --step 0.02");
+  const Picture adaptive = picture(common + " --step 1 --method adaptive --tolerance 0.01");
+  EXPECT_EQ(report()["picture"]["method"], "adaptive");
+  const double taken = report()["samples_taken"];
+  const Picture samples = picture(common + " --step 0.1");
+  std::printf("rms error of adaptive steps %.2e with %g samples, of samples %.2e with %g\n",
+              difference(adaptive, fine).rms, taken, difference(samples, fine).rms,
+              double(report()["samples_taken"]));
+  EXPECT_LE(taken, double(report()["samples_taken"]));
+  EXPECT_LT(difference(adaptive, fine).rms, 2 * difference(samples, fine).rms);
+}
+
+TEST_F(Render, AFirstHitIsOpaqueAndInTheTablesColour) {
+  const std::string knots = folder_.write("red.json", std::string(R"({"knots": [
+          {"at": 0, "colour": [1, 0.5, 0], "opacity": 0}, {"at": 0.5, "colour": [1, 0.5, 0], "opacity": 0},
+          {"at": 1, "colour": [1, 0.5, 0], "opacity": 0.01}]})"));
+  const std::string common = cone(folder_, 40) + " --table " + knots + view;
+  for (const char* const ranks : {"", " -n 4"}) {
+    const Picture hit = picture(common + " --operator first-hit" + ranks);
+    EXPECT_NEAR(hit.pixel(40, 40)[0], 1, 1e-4);
+    EXPECT_NEAR(hit.pixel(40, 40)[1], 0.5, 1e-4);
+    EXPECT_EQ(hit.pixel(40, 40)[3], 1);
+    EXPECT_EQ(hit.pixel(1, 1)[3], 0);
+  }
+  EXPECT_LT(picture(common).pixel(40, 40)[3], 0.5F) << "composed, it is thin";
+}
+
 TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
   const std::string file = cone(folder_, 8);
   const auto trouble = [&](const std::string& arguments) {
@@ -116,6 +150,9 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("p.png"))) << arguments;
     return result.output;
   };
+  EXPECT_THAT(trouble("--method adaptive --light all"), HasSubstr("pre-integrated"));
+  EXPECT_THAT(trouble("--operator first-hit --light all"), HasSubstr("leave out"));
+  EXPECT_THAT(trouble("--operator sum"), HasSubstr("first-hit"));
   EXPECT_THAT(trouble("--surface x"), AllOf(HasSubstr("no number"), HasSubstr("40%,#e8c090,0.5")));
   EXPECT_THAT(trouble("--surface ''"), HasSubstr("no number"));
   EXPECT_THAT(trouble("--surface nan"), HasSubstr("no number"));

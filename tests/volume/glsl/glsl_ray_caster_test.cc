@@ -94,6 +94,7 @@ std::vector<Scene> scenes() {
   RenderRequest& sum = add("noise, sum, floats", noise(describe({24, 31, 29}, TexelType::f32), 6), usual);
   sum.op = Operator::add;
   sum.classification = smooth_table(256, 0.02F);
+  add("noise, first hit", noise(describe({37, 29, 41}, TexelType::u16), 9), usual).op = Operator::first_hit;
   add("noise, from within", noise(describe({37, 29, 41}, TexelType::u8), 7), inside).steps = steps_of(0.03);
   RenderRequest& cut = add("ball, wall and clip plane",
                            sampled(describe({50, 50, 50}, TexelType::u8), sphere_field(0.4)), usual);
@@ -188,10 +189,10 @@ TEST_P(GlslRayCasterOn, LeavesOutWhatIsEmptyOrHidden) {
 void compose(Operator op, float* front, const float* back) {
   const float room = 1 - front[3];
   for (int k = 0; k < 4; ++k)
-    front[k] = op == Operator::over  ? front[k] + room * back[k]
-               : op == Operator::add ? front[k] + back[k]
-               : op == Operator::max ? std::max(front[k], back[k])
-                                     : std::min(front[k], back[k]);
+    front[k] = op == Operator::over || op == Operator::first_hit ? front[k] + room * back[k]
+               : op == Operator::add                             ? front[k] + back[k]
+               : op == Operator::max                             ? std::max(front[k], back[k])
+                                                                 : std::min(front[k], back[k]);
 }
 
 TEST_P(GlslRayCasterOn, GivesTheSamePictureForAnyPartition) {

@@ -152,7 +152,7 @@ def main():
 table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child, .name {{ text-align: left }} .front {{ font-weight: bold }}
 figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
-figure img {{ image-rendering: pixelated }}</style>
+figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
 <p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the
 integral of the table as viewers mean it, in double precision; times are medians on all cores, the table prepared. Numbers at

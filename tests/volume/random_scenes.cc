@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tests/volume/scenes.h"
+#include "volume/raycast/segment_scene.h"
 
 namespace understudy::volume::testing {
 
@@ -162,12 +163,20 @@ RandomScene random_scene(std::mt19937& random) {
   if (happens(random, 0.3))
     request.clip_planes = {
         {{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)}, uniform(random, -0.5, 0.5)}};
+  if (request.steps && request.op == Operator::over && request.filter == Filter::linear &&
+      description.type != TexelType::rgba8 && happens(random, 0.5)) {
+    request.method = Method::pre_integrated;
+    scene.texture.description.margin = margin_needed(description, request);
+  }
   scene.text = fmt::format(
       "{}x{}x{} texels of type {}{}, wrap {}, {} filter, operator {}, {}, {}x{} pixels, steepness {:.3g}",
       description.size[0], description.size[1], description.size[2], int(description.type),
       scene.wild_texels ? " (wild)" : "", int(description.wrap[0]),
       request.filter == Filter::linear ? "linear" : "nearest", int(request.op),
-      request.steps ? "steps" : "planes", width, height, scene.steepness);
+      request.method == Method::pre_integrated ? "segments"
+      : request.steps                          ? "steps"
+                                               : "planes",
+      width, height, scene.steepness);
   return scene;
 }
 

@@ -1,4 +1,5 @@
 // One rank or four: the same picture, under a table so narrow that samples mostly miss it as well.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,15 +29,15 @@ TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
         "positions": "values", "knots": [{"at": 0, "colour": [0.2, 0.4, 1], "opacity": 0},
         {"at": 0.598, "colour": [0.2, 0.4, 1], "opacity": 0}, {"at": 0.6, "colour": [1, 0.9, 0.5], "opacity": 0.9},
         {"at": 0.602, "colour": [1, 0.4, 0.2], "opacity": 0}, {"at": 1, "colour": [1, 0.4, 0.2], "opacity": 0}]})");
-  for (const std::string method : {"post-classified", "pre-integrated"}) {
+  for (const char* method : {"post-classified", "pre-integrated"}) {
     std::vector<Picture> floats, bytes;
     for (const char* ranks : {"1", "4"}) {
-      floats.push_back(picture(common + " --method " + method + " -n " + ranks));
+      floats.push_back(picture(fmt::format("{} --method {} -n {}", common, method, ranks)));
       bytes.push_back(read_picture(folder_.file("p.png")));
     }
     const Difference apart = difference(floats[1], floats[0]), shown = difference(bytes[1], bytes[0]);
-    std::printf("%s, four ranks from one: at most %.1e; rounded to bytes RMS %.2f/255\n", method.c_str(),
-                apart.max, 255 * shown.rms);
+    std::printf("%s, four ranks from one: at most %.1e; rounded to bytes RMS %.2f/255\n", method, apart.max,
+                255 * shown.rms);
     EXPECT_LE(apart.max, 1e-5);
     EXPECT_LE(255 * shown.rms, 0.05);
   }

@@ -62,7 +62,7 @@ TEST_F(HardCasesOnGl, HardViewsStayWithinTheirBounds) {
 }
 
 TEST_F(HardCasesOnGl, PropertiesHoldOnRandomScenes) {
-  expect_properties({.renderer = "GL", .trials = 60, .apart = widened(1e-5)}, draw());
+  expect_properties({.renderer = "GL", .trials = 60, .may_refuse = true, .apart = widened(1e-5)}, draw());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <string_view>
 #include <system_error>
 
 #include "apps/understudy/child_process.h"
@@ -170,7 +171,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     if (has_error_map(setting)) {
       std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
       std::ranges::replace_if(
-          file, [](char c) { return c == ' ' || c == ',' || c == '(' || c == ')'; }, '-');
+          file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
       write_error_map(folder / file, scene, rays);
       results.error_maps[text_of(setting)] = file;
     }

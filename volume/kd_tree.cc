@@ -22,6 +22,17 @@ Vec4 eye_of(const Matrix4& texture_to_clip) {
   return {-column[0], -column[1], -column[2], -column[3]};
 }
 
+/// The middle of the region, or its deepest corner when the middle lies behind the eye.
+Vec3 seen_point(const RenderRequest& request) {
+  const auto depth = [&](const Vec3& t) { return transform_point(request.texture_to_clip, t)[3]; };
+  const Box& region = request.region;
+  Vec3 point = scale(add(region.low, region.high), 0.5);
+  if (depth(point) > 0) return point;
+  for (int axis = 0; axis < 3; ++axis)
+    point[axis] = request.texture_to_clip[12 + axis] > 0 ? region.high[axis] : region.low[axis];
+  return point;
+}
+
 /// Where to cut `extent` cells (starting `offset` cells into the lattice) for `left` of `ranks`: on the block
 /// face nearest to the fair share, or between any two cells when no block face lies inside.
 int split_position(int offset, int extent, int left, int ranks) {
@@ -95,13 +106,10 @@ std::vector<int> KdTree::visibility_order(const Matrix4& texture_to_clip) const 
 std::vector<int> KdTree::visibility_order(const RenderRequest& request) const {
   if (request.steps) return visibility_order(request.texture_to_clip);  // steps are counted along depth
   const Vec4 eye = eye_of(request.texture_to_clip);
-  // The middle plane that the region meets says whether plane indices rise with depth or fall.
+  // The plane through a point that can be seen says whether plane indices rise with depth or fall.
   const Vec3& n = request.planes.normal;
-  double middle = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    middle += n[axis] * (request.region.low[axis] + request.region.high[axis]) / 2;
   const double towards_eye =
-      request.planes.spacing * (n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2] - middle * eye[3]);
+      request.planes.spacing * (dot(n, {eye[0], eye[1], eye[2]}) - dot(n, seen_point(request)) * eye[3]);
   std::vector<int> order;
   order.reserve(boxes_.size());
   walk(root_, eye, towards_eye > 0, order);

@@ -13,12 +13,11 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr double field_of_view = 30;  // degrees, of the shorter side
-constexpr double nearest = 1e-3;      // of the near plane, in half diagonals
+constexpr double nearest = 1e-3;  // of the near plane, in half diagonals
 constexpr double farthest_eye = 1e6;
 
 Matrix4 perspective(int width, int height, double near, double far) {
-  const double shorter = 1 / std::tan(field_of_view * std::numbers::pi / 360);
+  const double shorter = 1 / std::tan(orbit_field_of_view * std::numbers::pi / 360);
   const double side = std::min(width, height);
   Matrix4 m{};
   m[0] = shorter * side / width;
@@ -30,6 +29,13 @@ Matrix4 perspective(int width, int height, double near, double far) {
 }
 
 }  // namespace
+
+Vec3 eye_direction(const OrbitCamera& camera) {
+  const double azimuth = camera.azimuth * std::numbers::pi / 180,
+               elevation = camera.elevation * std::numbers::pi / 180;
+  return {std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth),
+          std::sin(elevation)};
+}
 
 RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing, const OrbitCamera& camera,
                             int width, int height, double step) {
@@ -54,12 +60,9 @@ RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing
   }
 
   // The directions come from the angles and not from an up vector: nothing is special at the poles.
-  const double azimuth = camera.azimuth * std::numbers::pi / 180,
-               elevation = camera.elevation * std::numbers::pi / 180,
-               roll = camera.roll * std::numbers::pi / 180;
+  const double azimuth = camera.azimuth * std::numbers::pi / 180, roll = camera.roll * std::numbers::pi / 180;
   const Vec3 level{std::cos(azimuth), std::sin(azimuth), 0};
-  const Vec3 back{std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth),
-                  std::sin(elevation)};
+  const Vec3 back = eye_direction(camera);
   const Vec3 side = add(scale(level, std::cos(roll)), scale(cross(back, level), std::sin(roll)));
   const Vec3 up = cross(back, side);
   const Matrix4 to_eye{side[0], side[1], side[2],          0, up[0], up[1], up[2], 0, back[0],

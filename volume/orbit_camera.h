@@ -12,6 +12,12 @@ struct OrbitCamera {
   double roll = 0;        ///< degrees that the camera turns about its line of sight; 180: z is down
 };
 
+/// Degrees, of the shorter side.
+constexpr double orbit_field_of_view = 30;
+
+/// From the volume's middle to the eye, of length 1, in the volume's axes.
+Vec3 eye_direction(const OrbitCamera& camera);
+
 /// A picture of `width` x `height` pixels of a volume of this size and spacing: one sample every `step` of the
 /// smallest spacing along each ray, the first half a step behind where it enters. The classification is left to
 /// the caller. Throws std::invalid_argument for a camera, a picture or a step that makes no sense.

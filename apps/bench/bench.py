@@ -18,10 +18,12 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
 import calls  # noqa: E402
 import frame  # noqa: E402
+import ranks  # noqa: E402
 import raycast  # noqa: E402
 import scaling  # noqa: E402
 
-BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows}
+BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows,
+              "ranks": ranks.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 

@@ -1,78 +1,77 @@
-"""The pictures of `raycast.py` by VTK's two volume mappers, for comparison: run by /usr/bin/python3, which knows Debian's
-python3-vtk9. Writes one picture of floats and prints the processor time of a frame.
+"""A scene by one of VTK's two volume mappers, for comparison: run by /usr/bin/python3, which knows Debian's python3-vtk9.
+Writes a picture of floats and prints how long a frame took. `raycast.py` and `understudy study` call it.
 
-The same voxels, camera, table of 256 colours and one sample a voxel. VTK's box ends at the outermost voxels' centres, its
-pictures have 8 bits.
+The scene is a JSON file: volume (raw), size, type (u8, u16 or f32), spacing, knots (at between value_at_0 and value_at_1 as
+0 and 1, plain colour, and opacity of one unit_distance), sample_distance, eye, centre, up, angle, near, far, and pixels. VTK's box
+ends at the outermost voxels' centres, its pictures have 8 bits.
 """
 
 import argparse
 import json
-import math
 import resource
 import sys
+import time
 
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
+TYPES = {"u8": numpy.uint8, "u16": numpy.uint16, "f32": numpy.float32}
 
-def transfer_function(name):
-    """Colours, not multiplied by opacity, and opacities of one voxel's way, as in raycast.cc."""
+
+def transfer_function(scene):
     colours, opacities = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
-    first_visible = 140
-    for i in range(256):
-        dense = 0.002 + 0.03 * i / 255
-        sparse = 0 if i < first_visible else min(1, 0.02 + 0.3 * (i - first_visible) / 60)
-        opacities.AddPoint(i, sparse if name == "sparse" else dense)
-        colours.AddRGBPoint(i, 0.3 + 0.7 * i / 255, 0.5 + 0.5 * math.sin(i * 0.05), 1 - 0.8 * i / 255)
+    low, high = scene["value_at_0"], scene["value_at_1"]
+    for knot in scene["knots"]:
+        value = low + knot["at"] * (high - low)
+        opacities.AddPoint(value, knot["opacity"])
+        colours.AddRGBPoint(value, *knot["colour"])
     return colours, opacities
 
 
-def volume_of(arguments):
-    voxels = numpy.fromfile(arguments.volume, dtype=numpy.uint8)
+def volume_of(scene, mapper_name, threads):
+    voxels = numpy.fromfile(scene["volume"], dtype=TYPES[scene["type"]])
     image = vtk.vtkImageData()
-    image.SetDimensions(*arguments.size)
+    image.SetDimensions(*scene["size"])
+    image.SetSpacing(*scene["spacing"])
+    image.SetOrigin(*(distance / 2 for distance in scene["spacing"]))
     image.GetPointData().SetScalars(numpy_to_vtk(voxels, deep=False))
-    if arguments.mapper == "gpu":
+    if mapper_name == "gpu":
         mapper = vtk.vtkOpenGLGPUVolumeRayCastMapper()
         mapper.SetUseJittering(False)
     else:
         mapper = vtk.vtkFixedPointVolumeRayCastMapper()
-        mapper.SetNumberOfThreads(1)
+        if threads > 0:
+            mapper.SetNumberOfThreads(threads)
     mapper.SetInputData(image)
     mapper.SetAutoAdjustSampleDistances(False)
-    mapper.SetSampleDistance(1)
+    mapper.SetSampleDistance(scene["sample_distance"])
     volume = vtk.vtkVolume()
     volume.SetMapper(mapper)
-    colours, opacities = transfer_function(arguments.table)
+    colours, opacities = transfer_function(scene)
     volume.GetProperty().SetColor(colours)
     volume.GetProperty().SetScalarOpacity(opacities)
-    volume.GetProperty().SetScalarOpacityUnitDistance(1)
+    volume.GetProperty().SetScalarOpacityUnitDistance(scene["unit_distance"])
     volume.GetProperty().SetInterpolationTypeToLinear()
     volume.GetProperty().ShadeOff()
     return volume, voxels
 
 
-def window_with(volume, arguments):
-    """From two edges away, 30 degrees around and 25 above, with an opening of 40 degrees, as in raycast.cc."""
-    side = max(arguments.size)
-    around, above = math.radians(30), math.radians(25)
-    back = (math.sin(around) * math.cos(above), math.sin(above), math.cos(around) * math.cos(above))
-    centre = [(n - 1) / 2 for n in arguments.size]
+def window_with(volume, scene):
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(0, 0, 0)
     renderer.AddVolume(volume)
     camera = renderer.GetActiveCamera()
-    camera.SetViewAngle(40)
-    camera.SetFocalPoint(*centre)
-    camera.SetPosition(*(c + 2 * side * b for c, b in zip(centre, back)))
-    camera.SetViewUp(0, 1, 0)
-    camera.SetClippingRange(0.5 * side, 4 * side)
+    camera.SetViewAngle(scene["angle"])
+    camera.SetFocalPoint(*scene["centre"])
+    camera.SetPosition(*scene["eye"])
+    camera.SetViewUp(*scene["up"])
+    camera.SetClippingRange(scene["near"], scene["far"])
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
     window.SetAlphaBitPlanes(1)
-    window.SetSize(arguments.pixels, arguments.pixels)
+    window.SetSize(scene["pixels"], scene["pixels"])
     window.AddRenderer(renderer)
     return window
 
@@ -93,28 +92,30 @@ def picture_of(window):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("volume")
-    parser.add_argument("--size", type=lambda text: [int(n) for n in text.split("x")], required=True)
-    parser.add_argument("--table", choices=("dense", "sparse"), required=True)
+    parser.add_argument("scene")
     parser.add_argument("--mapper", choices=("gpu", "fixed-point"), required=True)
-    parser.add_argument("--pixels", type=int, default=512)
+    parser.add_argument("--threads", type=int, default=0, help="of the fixed-point mapper; 0: as many as it likes")
     parser.add_argument("--frames", type=int, default=5)
     parser.add_argument("--picture", required=True, help="floats, RGBA, rows bottom up")
     arguments = parser.parse_args()
-    volume, voxels = volume_of(arguments)
-    window = window_with(volume, arguments)
+    with open(arguments.scene, encoding="utf-8") as file:
+        scene = json.load(file)
+    volume, voxels = volume_of(scene, arguments.mapper, arguments.threads)
+    window = window_with(volume, scene)
     window.Render()
     picture_of(window)
-    times = []
+    processor, wall = [], []
     for _ in range(arguments.frames):
         volume.GetMapper().Modified()
-        before = processor_seconds()
+        before, begin = processor_seconds(), time.monotonic()
         window.Render()
         window.WaitForCompletion()
-        times.append(processor_seconds() - before)
+        processor.append(processor_seconds() - before)
+        wall.append(time.monotonic() - begin)
     picture_of(window).tofile(arguments.picture)
     del voxels
-    json.dump({"seconds": sorted(times)[len(times) // 2]}, sys.stdout)
+    middle = len(wall) // 2
+    json.dump({"seconds": sorted(processor)[middle], "wall_seconds": sorted(wall)[middle]}, sys.stdout)
 
 
 if __name__ == "__main__":

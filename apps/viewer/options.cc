@@ -48,7 +48,7 @@ CLI::Validator number_between(double low, double high) {
 std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
   CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
   app.name("understudy-viewer");
-  std::string mode = "table", op = "over", preset = "engine", type, surface = "any", step = "whole";
+  std::string mode = "table", op = "over", preset = "engine", table, type, surface = "any", step = "whole";
   VolumeSize size{};
   Vec3 spacing{};
 
@@ -86,6 +86,11 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--preset", preset, "Transfer function by name or number:" + preset_list())
       ->check(is_preset)
       ->capture_default_str();
+  app.add_option(
+         "--table", table,
+         "Transfer function of your own instead: a JSON file of knots, with values and opacities from 0 to "
+         "1 as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
+      ->type_name("FILE");
   app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
   app.add_flag("--second", options.second_volume,
                "The volume twice, half as large, the second in the next preset's colours");
@@ -148,6 +153,10 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
        TimeStep::again}}.at(step);
   options.op = *operator_named(op);
   options.preset = find_preset(preset);
+  if (!table.empty()) {
+    options.preset_file = std::make_shared<const PresetFile>(table);
+    options.preset = &options.preset_file->preset();
+  }
   options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},
                                                             {"pbuffer", OffscreenSurface::pbuffer},
                                                             {"framebuffer", OffscreenSurface::framebuffer}}

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "apps/viewer/camera.h"
 #include "apps/viewer/modes/mode.h"
 #include "apps/viewer/operator.h"
+#include "apps/viewer/preset_file.h"
 #include "apps/viewer/volume_file.h"
 
 namespace viewer {
@@ -23,6 +25,7 @@ struct Options {
   Operator op = Operator::over;
   int slices = 0;  ///< across the box's diagonal; 0: one per finest voxel edge
   const Preset* preset = nullptr;
+  std::shared_ptr<const PresetFile> preset_file;  ///< where the preset comes from, if not built in
   bool frame_and_axes = true;
   bool opaque_ball = false;
   bool second_volume = false;

@@ -56,7 +56,11 @@ void Scene::set_preset(const Preset& preset) {
   table_ = make_table(preset, opacity_exponent(), volume_.not_finite > 0);
   mode_->set_table(colours_for(op_, table_));
   if (!second_) return;
-  const std::size_t next = static_cast<std::size_t>(&preset - presets().data() + 1) % presets().size();
+  // Of a preset from a file the next is the first.
+  const auto built_in = std::ranges::find(presets(), preset.name, &Preset::name);
+  const auto next = built_in == presets().end()
+                        ? std::size_t(0)
+                        : static_cast<std::size_t>(built_in - presets().begin() + 1) % presets().size();
   second_table_ = make_table(presets()[next], opacity_exponent(), volume_.not_finite > 0);
   second_->set_table(colours_for(op_, second_table_));
 }

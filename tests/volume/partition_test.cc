@@ -99,6 +99,19 @@ TEST(Partition, HoldsWhenRanksOutnumberBlocksAndCells) {
     }
 }
 
+TEST(Partition, HoldsWhenMostOfTheVolumeIsBehindTheEye) {
+  const Texture texture = noise(describe({37, 29, 41}, TexelType::u8), 34);
+  const Matrix4 camera =
+      multiply(perspective(60, 45.0 / 39, 0.01, 10),
+               multiply(look_at({0.1, -0.05, -0.25}, {-0.1, 0.1, -1}, {0, 1, 0}), unit_cube()));
+  for (int ranks = 2; ranks <= 16; ++ranks) {
+    const RenderRequest request = request_for(texture, camera, 45, 39, 80);
+    EXPECT_LE(difference(render_whole(texture, request).image, render_parts(texture, request, ranks).image).max,
+              1e-5)
+        << ranks << " ranks";
+  }
+}
+
 TEST(Partition, HoldsWhenPlanesRunAgainstTheDepth) {
   // Front to back by plane index even where the depth range is reversed.
   const Texture texture = noise(describe({37, 29, 41}, TexelType::u8), 35);

@@ -1,7 +1,8 @@
-// A volume rendered whole, and in the parts of several ranks.
+// A volume rendered whole, and in the parts of several ranks, by any ray caster.
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"
@@ -10,27 +11,32 @@
 
 namespace understudy::volume::testing {
 
+/// Draws what one rank holds, as raycast() does.
+using DrawBricks = std::function<void(const BrickStore&, const RenderRequest&, Image&, FrameCounts&)>;
+
 struct Whole {
   Image image;
   FrameCounts counts;
 };
 
-inline Whole render_whole(const Texture& texture, const RenderRequest& request) {
+inline Whole render_whole(const Texture& texture, const RenderRequest& request,
+                          const DrawBricks& draw = raycast) {
   Whole whole{Image(request.window), {}};
   const BrickStore store = filled(texture);
-  raycast(store, request, whole.image, whole.counts);
+  draw(store, request, whole.image, whole.counts);
   return whole;
 }
 
 /// Every rank renders its footprint alone; the pictures are composed in visibility order.
-inline Whole render_parts(const Texture& texture, const RenderRequest& request, int ranks) {
+inline Whole render_parts(const Texture& texture, const RenderRequest& request, int ranks,
+                          const DrawBricks& draw = raycast) {
   const KdTree tree(texture.description, ranks);
   Whole whole{Image(request.window), {}};
   std::fill(whole.image.rgba.begin(), whole.image.rgba.end(), neutral_value(request.op));
   for (const int rank : tree.visibility_order(request)) {
     const BrickStore store = filled(texture, tree.box(rank));
     Image part(footprint(request, texture.description, tree.box(rank)));
-    raycast(store, request, part, whole.counts);
+    draw(store, request, part, whole.counts);
     for (int y = part.rect.y; y < part.rect.y + part.rect.height; ++y)
       for (int x = part.rect.x; x < part.rect.x + part.rect.width; ++x) {
         float* front = whole.image.at(x, y);

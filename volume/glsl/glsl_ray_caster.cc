@@ -30,6 +30,29 @@ double largest_texel(TexelType type) {
   return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
 }
 
+/// A table's steepness is what an even ramp over all of a volume's values would have as 1. Beyond so much the
+/// rounding of OpenGL's filter, 1e-6 of these values on llvmpipe, would show.
+constexpr double steepest = 8;
+
+/// Between the least and the greatest value held, in units of the texel type.
+double value_span(const BrickStore& store) {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  for (std::size_t b = 0; b < store.blocks(); ++b)
+    if (const BrickStore::Range& range = store.ranges(b)[0]; range.low <= range.high) {
+      low = std::min(low, double(range.low));
+      high = std::max(high, double(range.high));
+    }
+  return std::max(high - low, 0.0);
+}
+
+bool changes_steeply(const BrickStore& store, const TransferTable& table, const std::vector<Rgba>& entries) {
+  double change = 0;
+  for (std::size_t i = 1; i < entries.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      change = std::max(change, std::abs(double(entries[i][k]) - double(entries[i - 1][k])));
+  return change * double(table.scale()) * value_span(store) > steepest;
+}
+
 void bind(const Functions& gl, Unit unit, GLenum target, GLuint texture) {
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + GLint(unit)));
   gl.BindTexture(target, texture);
@@ -51,6 +74,7 @@ struct GlslRayCaster::Prepared {
   bool keeps_clear_samples;
   std::optional<TransferTable> function;
   SkipMap skip;
+  bool steep;  ///< too much so for OpenGL's filter
   Texture distances;
   Texture table;
 
@@ -59,6 +83,7 @@ struct GlslRayCaster::Prepared {
         keeps_clear_samples(keeps_clear),
         function(make_function(store, from)),
         skip(skip_map(store)),
+        steep(is_steep(store)),
         distances(gl),
         table(gl) {
     upload_distances(gl, store);
@@ -73,6 +98,11 @@ struct GlslRayCaster::Prepared {
     const auto* function = std::get_if<TransferFunction>(&from);
     if (!function) return std::nullopt;
     return TransferTable(*function, store.description().type, 0.0F);
+  }
+
+  bool is_steep(const BrickStore& store) const {
+    if (function) return changes_steeply(store, *function, std::get<TransferFunction>(classification).entries);
+    return std::get<LinearMap>(classification).alpha_above >= 0;  // discarding is a step
   }
 
   SkipMap skip_map(const BrickStore& store) const {
@@ -292,6 +322,7 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
     for (const auto& prepared : here.prepared)
       if (prepared) {
         prepared->skip = prepared->skip_map(store_);
+        prepared->steep = prepared->is_steep(store_);
         prepared->upload_distances(gl, store_);
       }
     changed_.clear();
@@ -330,6 +361,7 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
       request.filter == Filter::linear && std::find(wrap.begin(), wrap.end(), Wrap::border) != wrap.end();
   variant.filter = request.filter;
   variant.op = request.op;
+  variant.own_filter = prepared.steep;
   set_uniforms(device_.program(variant), request, prepared, setup.top, setup.rounding);
   gl.BindFramebuffer(GL_FRAMEBUFFER, here.framebuffer);
   gl.Viewport(0, 0, pixels.width, pixels.height);

@@ -1,6 +1,7 @@
 // Ray casting in a fragment shader: what the ray caster on the CPU draws (raycast/ray_caster.h), from one 3-D
 // texture in an OpenGL context of its own. It takes the same samples, at the same float positions; what differs
-// is OpenGL's filter, which is exact on llvmpipe and has weights of 8 bits on most graphics cards.
+// is OpenGL's filter, which is exact to 1e-6 on llvmpipe and has weights of 8 bits on most graphics cards.
+// Where a table is so steep that this would show, the shader interpolates by itself, in float.
 //
 // It draws scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
 // every operator. Tables of pairs, fog, segments, surfaces, light, texels that are not numbers, and volumes or

@@ -40,16 +40,36 @@ layout(location = 1) out float taken;  // samples; negative when the ray became 
 
 vec3 start, step_;
 
+#ifdef OWN_FILTER
+TEXEL at_corner(ivec3 corner) { return texelFetch(field, corner, 0).SWIZZLE; }
+
+TEXEL interpolated(vec3 free) {
+  vec3 p = clamp(free, vec3(0.0), top);
+  vec3 cell = floor(p);
+  vec3 share = p - cell;
+  ivec3 a = clamp(ivec3(cell - texture_origin), ivec3(0), textureSize(field, 0) - 2), b = a + 1;
+  TEXEL front = mix(mix(at_corner(a), at_corner(ivec3(b.x, a.yz)), share.x),
+                    mix(at_corner(ivec3(a.x, b.y, a.z)), at_corner(ivec3(b.xy, a.z)), share.x), share.y);
+  TEXEL back = mix(mix(at_corner(ivec3(a.xy, b.z)), at_corner(ivec3(b.x, a.y, b.z)), share.x),
+                   mix(at_corner(ivec3(a.x, b.yz)), at_corner(b), share.x), share.y);
+  return mix(front, back, share.z);
+}
+#endif
+
 TEXEL sample_field(float k) {
-#if defined(NEAREST) || defined(BORDERED)
+#if defined(NEAREST) || defined(BORDERED) || defined(OWN_FILTER)
   vec3 free = k * step_ + start;
 #endif
 #ifdef NEAREST
   vec3 p = clamp(free, vec3(0.0), top);
   return texelFetch(field, ivec3(p + 0.5 - texture_origin), 0).SWIZZLE;
 #else
+#ifdef OWN_FILTER
+  TEXEL inside = interpolated(free);
+#else
   // Beyond its outermost texels the texture repeats them, as the lattice does.
   TEXEL inside = textureLod(field, k * (step_ * texture_scale) + (start - texture_origin + 0.5) * texture_scale, 0.0).SWIZZLE;
+#endif
 #ifdef BORDERED
   vec3 beyond = abs(free - clamp(free, vec3(0.0), top)) * has_border;
   vec3 weight = max(1.0 - beyond, 0.0);
@@ -68,7 +88,12 @@ vec4 classified(TEXEL value) {
   return colour;
 #else
   float place = clamp((value - table_low) * table_scale, 0.0, table_last);
+#ifdef OWN_FILTER
+  int entry = min(int(place), int(table_last) - 1);
+  return mix(texelFetch(table, entry, 0), texelFetch(table, entry + 1, 0), place - float(entry));
+#else
   return textureLod(table, (place + 0.5) / (table_last + 1.0), 0.0);
+#endif
 #endif
 }
 
@@ -147,6 +172,7 @@ std::string defines(const MarchVariant& variant) {
   define(variant.filter == Filter::nearest, "NEAREST");
   define(variant.op == Operator::over, "ENDS 1.0 - sum.a < termination");
   define(variant.op == Operator::first_hit, "ENDS sum.a > 0.0");
+  define(variant.own_filter, "OWN_FILTER");
   // The largest float, without a literal that some compilers would round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");

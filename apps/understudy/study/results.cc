@@ -14,15 +14,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array all_schemes{Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive,
-                                 Scheme::eight_bit_slices};
-
 Json json_of(const Point& point) {
   Json json{{"scheme", name_of(point.setting.scheme)},
             {"step", point.setting.step},
             {"termination", point.setting.termination},
             {"rms", point.error.rms},
             {"max", point.error.max},
+            {"rms_colour", point.error.colour},
             {"time_ms", nullptr},
             {"ns_per_ray", nullptr},
             {"samples_taken", point.samples_taken},
@@ -40,7 +38,7 @@ Point point_of(const Json& json) {
   const auto scheme = std::ranges::find(all_schemes, json.at("scheme").get<std::string>(), name_of);
   if (scheme == all_schemes.end()) throw std::invalid_argument("a scheme that is not known");
   point.setting = {*scheme, json.at("step"), json.at("termination")};
-  point.error = {json.at("max"), json.at("rms")};
+  point.error = {json.at("max"), json.at("rms"), json.at("rms_colour")};
   if (!json.at("time_ms").is_null()) {
     point.time_ms = json.at("time_ms");
     point.ns_per_ray = json.at("ns_per_ray");
@@ -50,12 +48,21 @@ Point point_of(const Json& json) {
   return point;
 }
 
+Json json_of(const std::optional<Ratio>& ratio) {
+  return ratio ? Json{{"value", ratio->value}, {"at_least", ratio->at_least}} : Json(nullptr);
+}
+
 Json json_of(const SceneResults& scene) {
-  Json json{{"name", scene.name},       {"shows", scene.shows},
-            {"volume", scene.volume},   {"size", scene.size},
-            {"rays", scene.rays},       {"reference_seconds", scene.reference_seconds},
-            {"orders", Json::object()}, {"error_maps", scene.error_maps},
+  Json json{{"name", scene.name},           {"shows", scene.shows},
+            {"volume", scene.volume},       {"size", scene.size},
+            {"rays", scene.rays},           {"reference_seconds", scene.reference_seconds},
+            {"orders", Json::object()},     {"error_maps", scene.error_maps},
+            {"advantages", Json::object()}, {"absent", scene.absent},
             {"points", Json::array()}};
+  for (const Scheme scheme : all_schemes)
+    if (const auto advantage = advantage_over(scene.points, scheme); advantage && is_other_program(scheme))
+      json["advantages"][name_of(scheme)] = {{"time_ratio", json_of(advantage->time)},
+                                             {"error_ratio", json_of(advantage->error)}};
   for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive})
     if (const auto order = observed_order(scene.points, scheme)) json["orders"][name_of(scheme)] = *order;
   for (const Point& point : scene.points) json["points"].push_back(json_of(point));
@@ -71,6 +78,7 @@ SceneResults scene_of(const Json& json) {
   scene.rays = json.at("rays");
   scene.reference_seconds = json.at("reference_seconds");
   scene.error_maps = json.at("error_maps");
+  scene.absent = json.at("absent");
   for (const Json& point : json.at("points")) scene.points.push_back(point_of(point));
   return scene;
 }
@@ -93,6 +101,7 @@ const Point* SceneResults::find(const Setting& setting) const {
 }
 
 std::string text_of(const Setting& setting) {
+  if (is_other_program(setting.scheme)) return name_of(setting.scheme);
   std::string text = fmt::format("{}, step {:g}", name_of(setting.scheme), setting.step);
   if (setting.termination > 1e-4) text += fmt::format(", ends below {:g}", setting.termination);
   return text;
@@ -120,14 +129,15 @@ void write_results(const std::filesystem::path& folder, const Results& results) 
             {"stride", results.stride},
             {"instruction_set", volume::instruction_set()},
             {"scenes", Json::array()}};
-  std::string csv = "scene,scheme,step,termination,rms,max,time_ms,ns_per_ray,samples_taken,samples,front\n";
+  std::string csv =
+      "scene,scheme,step,termination,rms,rms_colour,max,time_ms,ns_per_ray,samples_taken,samples,front\n";
   for (const SceneResults& scene : results.scenes) {
     json["scenes"].push_back(json_of(scene));
     for (const Point& point : scene.points)
-      csv += fmt::format("{},{},{:g},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{:d}\n", scene.name,
+      csv += fmt::format("{},{},{:g},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{},{:d}\n", scene.name,
                          name_of(point.setting.scheme), point.setting.step, point.setting.termination,
-                         point.error.rms, point.error.max, point.time_ms, point.ns_per_ray, point.samples_taken,
-                         point.samples, point.front);
+                         point.error.rms, point.error.colour, point.error.max, point.time_ms, point.ns_per_ray,
+                         point.samples_taken, point.samples, point.front);
   }
   write(folder / "study.json", json.dump(1) + "\n");
   write(folder / "study.csv", csv);

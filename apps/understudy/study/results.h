@@ -21,6 +21,8 @@ struct SceneResults {
   std::vector<Point> points;
   /// Pictures of where a setting is wrong, by the setting's name; files beside study.json.
   std::map<std::string, std::string> error_maps;
+  /// Why other programs have no point here, by the scheme's name.
+  std::map<std::string, std::string> absent;
 
   const Point* find(const Setting& setting) const;
 };

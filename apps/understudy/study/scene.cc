@@ -7,11 +7,14 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
-#include "volume/orbit_camera.h"
+#include "volume/matrix.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/pixel_integral.h"
 
@@ -107,15 +110,16 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
   spacing_ = description.spacing == volume::Vec3{} ? read.spacing : description.spacing;
   for (double& distance : spacing_) distance = volume::believable_spacing(distance);
 
-  std::vector<std::byte> texels;
   volume::TexelStream stream(std::move(file), {}, description_.stored);
   while (!stream.done()) {
     const volume::TexelStream::Slab slab = stream.next(slab_bytes);
-    texels.insert(texels.end(), slab.texels.begin(), slab.texels.end());
+    texels_.insert(texels_.end(), slab.texels.begin(), slab.texels.end());
   }
   const volume::TexelFigures& values = stream.figures();
   const double low = values.low <= values.high ? values.low : 0;
   const double high = values.low < values.high ? values.high : low + 1;
+  value_range_ = {mapping.normalised(low), mapping.normalised(high)};
+  std::ranges::sort(value_range_);
   table_ = resampled(sampled(spanning(description.knots, low, high), low, high, 1));
   table_.low = float(mapping.normalised(double(table_.low)));
   table_.high = float(mapping.normalised(double(table_.high)));
@@ -126,9 +130,9 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
 
   description_.margin = margin_needed(description_, request(8, volume::Method::pre_integrated, 0));
   store_ = std::make_unique<volume::BrickStore>(description_, volume::cell_lattice(description_).box());
-  store_->add_slices(description_.stored, texels);
+  store_->add_slices(description_.stored, texels_);
   store_->finish();
-  field_ = texture_field(description_, volume::Filter::linear, texels);
+  field_ = texture_field(description_, volume::Filter::linear, texels_);
 }
 
 TransferFunction Scene::table_for(double step) const {
@@ -144,11 +148,77 @@ TransferFunction Scene::table_for(double step) const {
 }
 
 volume::RenderRequest Scene::request(double step, volume::Method method, double termination) const {
-  volume::RenderRequest request = orbit_request(description_, spacing_, {35, 25, 3}, edge_, edge_, step);
+  volume::RenderRequest request = orbit_request(description_, spacing_, camera(), edge_, edge_, step);
   request.classification = table_for(step);
   request.method = method;
   request.termination = float(termination);
   return request;
+}
+
+const volume::OrbitCamera& Scene::camera() {
+  static constexpr volume::OrbitCamera fixed{35, 25, 3};
+  return fixed;
+}
+
+const char* Scene::texel_type() const {
+  return description_.type == volume::TexelType::u8    ? "u8"
+         : description_.type == volume::TexelType::u16 ? "u16"
+                                                       : "f32";
+}
+
+void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem::path& description) const {
+  std::ofstream raw(texels, std::ios::binary);
+  raw.write(reinterpret_cast<const char*>(texels_.data()), std::streamsize(texels_.size()));
+  raw.close();
+
+  // Bytes are known for 0 to 255 everywhere; what spans another range most programs stretch to 0 to 1.
+  const bool bytes = description_.type == volume::TexelType::u8;
+  const double low = bytes ? 0 : value_range_[0], high = bytes ? 1 : value_range_[1];
+  const double unit = bytes ? 255 : description_.type == volume::TexelType::u16 ? 65535 : 1;
+  std::vector<std::array<double, 4>> plain;
+  for (std::size_t i = 0; i < table_entries; ++i) {
+    std::array<double, 4>& entry =
+        plain.emplace_back(sample_of(table_, low + (high - low) * double(i) / double(table_entries - 1)));
+    for (std::size_t k = 0; k < 3 && entry[3] > 0; ++k) entry[k] = std::min(entry[k] / entry[3], 1.0);
+  }
+  // Where nothing shows, colours go on, so that interpolation draws no dark rim.
+  for (std::size_t i = 1; i < plain.size(); ++i)
+    if (plain[i][3] <= 0) std::copy_n(plain[i - 1].begin(), 3, plain[i].begin());
+  for (std::size_t i = plain.size() - 1; i-- > 0;)
+    if (plain[i][3] <= 0 && (i == 0 || plain[i - 1][3] <= 0))
+      std::copy_n(plain[i + 1].begin(), 3, plain[i].begin());
+  nlohmann::json knots = nlohmann::json::array();
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    knots.push_back({{"at", double(i) / double(table_entries - 1)},
+                     {"colour", {plain[i][0], plain[i][1], plain[i][2]}},
+                     {"opacity", plain[i][3]}});
+
+  volume::Vec3 extent{};
+  for (std::size_t k = 0; k < 3; ++k) extent[k] = description_.size[k] * spacing_[k];
+  const double radius = volume::length(extent) / 2, finest = *std::ranges::min_element(spacing_);
+  const volume::Vec3 centre = volume::scale(extent, 0.5), back = eye_direction(camera());
+  const nlohmann::json json{{"volume", std::filesystem::absolute(texels).string()},
+                            {"size", description_.size},
+                            {"type", texel_type()},
+                            {"spacing", spacing_},
+                            {"value_at_0", low * unit},
+                            {"value_at_1", high * unit},
+                            {"knots", knots},
+                            {"unit_distance", finest},
+                            {"sample_distance", finest},
+                            {"eye", volume::add(centre, volume::scale(back, camera().distance * radius))},
+                            {"centre", centre},
+                            {"up", {0, 0, 1}},
+                            {"angle", volume::orbit_field_of_view},
+                            {"near", (camera().distance - 1.01) * radius},
+                            {"far", (camera().distance + 1.01) * radius},
+                            {"pixels", edge_}};
+  std::ofstream file(description);
+  file << json.dump();
+  file.close();
+  if (!raw || !file)
+    throw std::runtime_error(texels.string() + " or " + description.string() +
+                             ": cannot be written; is the disk full?");
 }
 
 void Scene::integrate(const std::function<void(double done)>& progress) {

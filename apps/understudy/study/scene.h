@@ -3,12 +3,14 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "volume/brick/brick_store.h"
+#include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/reference/slice_sum.h"
 #include "volume/request.h"
@@ -47,6 +49,15 @@ class Scene {
   /// of the same samples.
   Rays in_eight_bits(double step) const;
   int rays_across() const { return edge_ / stride_; }
+  /// Of the pictures, in pixels.
+  int edge() const { return edge_; }
+
+  /// The scene for other programs: its texels in `texels`, and in `description` what apps/bench/vtk_mappers.py
+  /// and the bundled viewer's --table read. Throws std::runtime_error.
+  void hand_out(const std::filesystem::path& texels, const std::filesystem::path& description) const;
+  const char* texel_type() const;
+  const volume::Vec3& spacing() const { return spacing_; }
+  static const volume::OrbitCamera& camera();
 
   const volume::BrickStore& store() const { return *store_; }
   const std::array<int, 3>& size() const { return description_.size; }
@@ -60,6 +71,8 @@ class Scene {
   int stride_;
   volume::VolumeDescription description_;
   volume::Vec3 spacing_;
+  std::vector<std::byte> texels_;
+  std::array<double, 2> value_range_{0, 1};  ///< of the texels, normalised
   std::unique_ptr<volume::BrickStore> store_;
   volume::Field field_;
   volume::TransferFunction table_;  ///< for a step of one voxel

@@ -11,13 +11,16 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <string_view>
 #include <system_error>
 
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/knots_file.h"
 #include "apps/understudy/picture.h"
+#include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
+#include "volume/file/volume_file.h"
 
 namespace understudy::launcher {
 namespace {
@@ -38,6 +41,7 @@ struct StudyArguments {
   std::string out = "out/study";
   bool quick = false;
   bool fresh = false;
+  bool alone = false;
   int edge = 0;
 };
 
@@ -124,14 +128,28 @@ bool has_error_map(const Setting& setting) {
 }
 
 void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
-                 const fs::path& folder, const StudyArguments& arguments, Progress& progress) {
+                 const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
+                 Progress& progress) {
   std::vector<Setting> missing;
-  for (const Setting& setting : settings(arguments.quick))
-    if (results.find(setting) == nullptr) missing.push_back(setting);
+  results.absent.clear();
+  for (const Setting& setting : settings(arguments.quick)) {
+    if (results.find(setting) != nullptr) continue;
+    std::optional<std::string> absence;
+    if (is_other_program(setting.scheme))
+      absence = others == nullptr ? "not asked for" : others->absence(setting.scheme);
+    if (absence)
+      results.absent[name_of(setting.scheme)] = *absence;
+    else
+      missing.push_back(setting);
+  }
   if (missing.empty()) return;
   progress.show(0, "reading");
   Scene scene(description, all.edge, all.stride);
   scene.integrate([&](double done) { progress.show(reference_share * done, "reference"); });
+  if (std::ranges::all_of(scene.exact(), [](const auto& ray) { return *std::ranges::max_element(ray) <= 0; }))
+    throw std::invalid_argument(
+        fmt::format("{}: nothing of {} shows ({}); give another table or another volume", description.name,
+                    description.volume, description.shows));
   results.size = scene.size();
   results.rays = int(scene.exact().size());
   results.reference_seconds = scene.reference_seconds();
@@ -140,12 +158,20 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     progress.show(reference_share + (1 - reference_share) * double(i) / double(missing.size()),
                   text_of(setting));
     Scene::Rays rays;
-    results.points.push_back(
-        measure(scene, setting, arguments.quick ? quick_repetitions : whole_repetitions, rays));
+    try {
+      results.points.push_back(
+          is_other_program(setting.scheme)
+              ? others->measure(scene, setting, rays)
+              : measure(scene, setting, arguments.quick ? quick_repetitions : whole_repetitions, rays));
+    } catch (const std::runtime_error& error) {
+      if (!is_other_program(setting.scheme)) throw;
+      results.absent[name_of(setting.scheme)] = error.what();
+      continue;
+    }
     if (has_error_map(setting)) {
       std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
       std::ranges::replace_if(
-          file, [](char c) { return c == ' ' || c == ',' || c == '(' || c == ')'; }, '-');
+          file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
       write_error_map(folder / file, scene, rays);
       results.error_maps[text_of(setting)] = file;
     }
@@ -176,8 +202,29 @@ int write_page(const fs::path& folder) {
   return status == 0 ? 0 : 1;
 }
 
+std::string text_of(const char* what, const std::optional<Ratio>& ratio, const char* never) {
+  if (!ratio) return never;
+  return fmt::format("{}{} {:.3g}", ratio->at_least ? "at least " : "", what, ratio->value);
+}
+
+void print_advantages(const SceneResults& scene) {
+  for (const Point& point : scene.points) {
+    if (!is_other_program(point.setting.scheme)) continue;
+    fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e} of colour", name_of(point.setting.scheme), point.time_ms,
+               point.error.colour);
+    if (const auto advantage = advantage_over(scene.points, point.setting.scheme))
+      fmt::print("; at its error our time is less by {}, at its time our error by {}",
+                 text_of("a factor of", advantage->time, "nothing: none is as exact"),
+                 text_of("a factor of", advantage->error, "nothing: none is as fast"));
+    fmt::print("\n");
+  }
+  for (const auto& [program, why] : scene.absent) fmt::print("  {:<44} absent: {}\n", program, why);
+}
+
 int run_study(const StudyArguments& arguments) {
   const std::vector<SceneDescription> scenes = scenes_of(arguments);
+  // A path that is wrong is said now, not when its turn comes.
+  for (const SceneDescription& scene : scenes) volume::open_volume(scene.volume);
   const fs::path folder = arguments.out;
   std::error_code error;
   fs::create_directories(folder, error);
@@ -187,6 +234,8 @@ int run_study(const StudyArguments& arguments) {
   const int edge = arguments.edge > 0 ? arguments.edge : arguments.quick ? quick_edge : whole_edge;
   const int stride = std::min(arguments.quick ? quick_stride : whole_stride, edge);
   Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
+  std::optional<OtherPrograms> others;
+  if (!arguments.alone) others.emplace(folder / "other-programs");
   Progress progress(scenes.size());
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SceneDescription& scene = scenes[i];
@@ -197,7 +246,7 @@ int run_study(const StudyArguments& arguments) {
     if (found == results.scenes.end())
       found = results.scenes.insert(found, {scene.name, scene.shows, scene.volume});
     progress.begin(i, scene.name);
-    study_scene(scene, *found, results, folder, arguments, progress);
+    study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, progress);
   }
   for (const SceneResults& scene : results.scenes) {
     fmt::print("{}: {} rays, reference {:.1f} s ({:.0f} rays/s)\n", scene.name, scene.rays,
@@ -206,6 +255,7 @@ int run_study(const StudyArguments& arguments) {
       if (point.front)
         fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e}   max {:.1e}\n", text_of(point.setting), point.time_ms,
                    point.error.rms, point.error.max);
+    print_advantages(scene);
   }
   const int status = write_page(folder);
   if (status == 0) fmt::print("{}\n", (folder / "index.html").string());
@@ -226,6 +276,7 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   command->add_flag("--quick", arguments->quick, "fewer settings, smaller pictures, fewer repetitions");
   command->add_option("--size", arguments->edge, "edge of the pictures, in pixels")->check(CLI::Range(8, 4096));
   command->add_flag("--fresh", arguments->fresh, "measure again what an earlier study in DIR has measured");
+  command->add_flag("--alone", arguments->alone, "without the bare viewer and VTK beside it");
   command->add_option("--out", arguments->out, "where study.json, study.csv, error maps and index.html go")
       ->type_name("DIR")
       ->capture_default_str();

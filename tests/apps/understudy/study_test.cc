@@ -77,6 +77,34 @@ TEST(Study, TheFrontIsWhatNothingBeats) {
   EXPECT_FALSE(points[3].front);
 }
 
+TEST(Study, AdvantagesAreReadOffOurFront) {
+  std::vector<Point> points(5);
+  points[0].time_ms = 1, points[0].error.colour = 0.1;
+  points[1].time_ms = 2, points[1].error.colour = 0.2;  // beaten
+  points[2].time_ms = 4, points[2].error.colour = 0.001;
+  points[3].setting.scheme = Scheme::bare_viewer;
+  points[3].time_ms = 2, points[3].error.colour = 0.01;
+  points[4].setting.scheme = Scheme::vtk_gpu;
+  points[4].time_ms = 8, points[4].error.colour = 0.5;
+  auto advantage = advantage_over(points, Scheme::bare_viewer);
+  ASSERT_TRUE(advantage && advantage->time && advantage->error);
+  EXPECT_NEAR(advantage->time->value, 1, 1e-9) << "its point lies on our front";
+  EXPECT_NEAR(advantage->error->value, 1, 1e-9);
+  EXPECT_FALSE(advantage->time->at_least);
+  advantage = advantage_over(points, Scheme::vtk_gpu);
+  ASSERT_TRUE(advantage && advantage->time && advantage->error);
+  EXPECT_NEAR(advantage->time->value, 8, 1e-9);
+  EXPECT_TRUE(advantage->time->at_least);
+  EXPECT_NEAR(advantage->error->value, 500, 1e-9);
+  EXPECT_TRUE(advantage->error->at_least);
+  EXPECT_FALSE(advantage_over(points, Scheme::vtk_fixed_point)) << "not measured";
+  points[3].time_ms = 0.5, points[3].error.colour = 1e-4;
+  advantage = advantage_over(points, Scheme::bare_viewer);
+  ASSERT_TRUE(advantage);
+  EXPECT_FALSE(advantage->time) << "more exact than all of ours";
+  EXPECT_FALSE(advantage->error) << "faster than all of ours";
+}
+
 class StudyResults : public ::testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder); }
@@ -86,8 +114,8 @@ class StudyResults : public ::testing::Test {
 };
 
 TEST_F(StudyResults, AreReadAgainByAStudyThatGoesOn) {
-  Results results{64, 4, {{"fog", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {{"a", "a.png"}}}}};
-  Point point{{Scheme::pre_integrated, 0.5, 0.01}, {0.25, 0.125}, 3, 40, 10, 20, true};
+  Results results{64, 4, {{"fog", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {{"a", "a.png"}}, {}}}};
+  Point point{{Scheme::pre_integrated, 0.5, 0.01}, {0.25, 0.125, 0.0625}, 3, 40, 10, 20, true};
   results.scenes[0].points = {point};
   write_results(folder, results);
   const Results again = read_results(folder, 64, 4);
@@ -104,25 +132,35 @@ TEST_F(StudyResults, AreReadAgainByAStudyThatGoesOn) {
   std::ifstream csv(folder / "study.csv");
   std::string line;
   std::getline(csv, line);
-  EXPECT_EQ(line, "scene,scheme,step,termination,rms,max,time_ms,ns_per_ray,samples_taken,samples,front");
+  EXPECT_EQ(line,
+            "scene,scheme,step,termination,rms,rms_colour,max,time_ms,ns_per_ray,samples_taken,samples,front");
   std::getline(csv, line);
-  EXPECT_EQ(line, "fog,pre-integrated,0.5,0.01,0.125,0.25,3,40,10,20,1");
+  EXPECT_EQ(line, "fog,pre-integrated,0.5,0.01,0.125,0.0625,0.25,3,40,10,20,1");
 }
 
 TEST_F(StudyResults, AreShownOnAPage) {
   if (std::system("/usr/bin/python3 -c 'import matplotlib' 2>/dev/null") != 0)
     GTEST_SKIP() << "no matplotlib here; apt install python3-matplotlib";
-  SceneResults scene{"a<b", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {}};
+  SceneResults scene{"a<b", "thin", "synthetic:8x8x8", {8, 8, 8}, 256, 1.5, {}, {}, {{"VTK", "not<installed"}}};
   for (const double step : {2.0, 1.0, 0.5, 0.25})
-    scene.points.push_back(
-        {{Scheme::pre_integrated, step, 5e-6}, {step, step * step / 100}, 4 / step, 40, 10, 20, true});
-  scene.points.push_back({{Scheme::eight_bit_slices, 1, 0}, {0.5, 0.25}});
+    scene.points.push_back({{Scheme::pre_integrated, step, 5e-6},
+                            {step, step * step / 100, step * step / 100},
+                            4 / step,
+                            40,
+                            10,
+                            20,
+                            true});
+  scene.points.push_back({{Scheme::eight_bit_slices, 1, 0}, {0.5, 0.25, 0.25}});
+  scene.points.push_back({{Scheme::bare_viewer, 1, 0}, {0.02, 0.01, 0.01}, 40});
   write_results(folder, {64, 4, {scene}});
   ASSERT_EQ(std::system(("/usr/bin/python3 -B " STUDY_PAGE " " + folder.string()).c_str()), 0);
   std::ifstream file(folder / "index.html");
   const std::string page(std::istreambuf_iterator<char>(file), {});
   EXPECT_THAT(page, ::testing::HasSubstr("<h2>a&lt;b</h2>"));
   EXPECT_THAT(page, ::testing::HasSubstr("<td>2.00"));
+  EXPECT_THAT(page, ::testing::HasSubstr("<td>10×<td>≥ 16×"))
+      << "the bare viewer's time at its error; its error at its time";
+  EXPECT_THAT(page, ::testing::HasSubstr("not&lt;installed"));
   EXPECT_THAT(page, ::testing::HasSubstr("data:image/svg+xml;base64,"));
 }
 

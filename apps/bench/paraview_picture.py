@@ -1,0 +1,48 @@
+"""The picture of `ranks.py` by ParaView, for comparison: run by Debian's pvbatch, on one rank or under mpirun."""
+
+import json
+import math
+import sys
+
+from paraview import simple
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        scene = json.load(file)
+    side = scene["side"]
+    simple._DisableFirstRenderCameraReset()
+    reader = simple.ImageReader(FileNames=[scene["volume"]])
+    reader.DataScalarType = "float"
+    reader.DataByteOrder = "LittleEndian"
+    reader.DataExtent = [0, side - 1] * 3
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [scene["pixels"]] * 2
+    view.UseColorPaletteForBackground = 0
+    view.BackgroundColorMode = "Single Color"
+    view.Background = [0, 0, 0]
+    view.OrientationAxesVisibility = 0
+    display = simple.Show(reader, view)
+    display.SetRepresentationType("Volume")
+    name = reader.PointData.GetArray(0).Name
+    simple.ColorBy(display, ("POINTS", name))
+    colours, opacities = simple.GetColorTransferFunction(name), simple.GetOpacityTransferFunction(name)
+    colours.ColorSpace = "RGB"
+    colours.RGBPoints = [x for knot in scene["knots"] for x in (knot["at"], *knot["colour"])]
+    opacities.Points = [x for knot in scene["knots"] for x in (knot["at"], knot["opacity"], 0.5, 0)]
+    display.ScalarOpacityUnitDistance = 1
+    display.SetScalarBarVisibility(view, False)
+    middle = (side - 1) / 2
+    view.CameraFocalPoint = [middle] * 3
+    around, above = math.radians(scene["azimuth"]), math.radians(scene["elevation"])
+    back = (math.cos(above) * math.sin(around), -math.cos(above) * math.cos(around), math.sin(above))
+    away = scene["distance"] * side * math.sqrt(3) / 2  # in half diagonals, as for understudy render --camera
+    view.CameraPosition = [middle + away * d for d in back]
+    view.CameraViewUp = [0, 0, 1]
+    view.CameraViewAngle = 30
+    simple.GetSettingsProxy("RenderViewSettings").RemoteRenderThreshold = 0
+    simple.Render(view)
+    simple.SaveScreenshot(sys.argv[2], view, ImageResolution=[scene["pixels"]] * 2)
+
+
+main()

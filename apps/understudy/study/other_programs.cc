@@ -1,0 +1,176 @@
+#include "apps/understudy/study/other_programs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "apps/understudy/child_process.h"
+#include "apps/understudy/installation.h"
+#include "apps/understudy/picture.h"
+
+namespace understudy::launcher::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int patience_ms = 180000;
+constexpr int viewer_frames = 9, frames_that_settle = 3, vtk_frames = 3;
+constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages are for
+
+/// Runs to the end and returns what was written to both outputs. Throws std::runtime_error.
+std::string output_of(std::vector<std::string> arguments, const fs::path& log) {
+  const std::string name = fs::path(arguments.front()).filename().string();
+  fs::remove(log);  // children write at its end
+  Environment environment = current_environment();
+  environment["LIBGL_ALWAYS_SOFTWARE"] = "1";
+  std::optional<Ending> ending;
+  try {
+    ChildProcess child({std::move(arguments), std::move(environment), log, true});
+    ending = child.wait_for_ending(patience_ms);
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(error.what());
+  }
+  std::ifstream file(log);
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  if (!ending) throw std::runtime_error(fmt::format("{} took more than {} s", name, patience_ms / 1000));
+  if (ending->exit_status() != 0) {
+    constexpr std::size_t last_words = 300;
+    if (text.size() > last_words) text.erase(0, text.size() - last_words);
+    throw std::runtime_error(fmt::format("{} {}: {}", name, ending->text(), text));
+  }
+  return text;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+fs::path viewer() {
+  return this_installation().programs / "understudy-viewer";
+}
+
+fs::path vtk_script() {
+  return this_installation().programs.parent_path() / "share" / "understudy" / "vtk_mappers.py";
+}
+
+}  // namespace
+
+struct OtherPrograms::Drawn {
+  double time_ms = 0;
+  volume::Image picture;
+};
+
+OtherPrograms::OtherPrograms(fs::path folder) : folder_(std::move(folder)) {
+  fs::create_directories(folder_);
+  if (!fs::exists(viewer()))
+    absent_[Scheme::bare_viewer] = viewer().string() + " is not there; build the target understudy-viewer";
+  std::string vtk;
+  if (!program_on_path("xvfb-run")) {
+    vtk = "xvfb-run is not there; apt install xvfb";
+  } else if (!fs::exists(vtk_script())) {
+    vtk = vtk_script().string() + " is not there; build the target understudy";
+  } else {
+    try {
+      output_of({python, "-c", "import vtk, numpy"}, folder_ / "vtk.txt");
+    } catch (const std::runtime_error&) {
+      vtk = "it is not installed; apt install python3-vtk9 python3-numpy";
+    }
+  }
+  if (!vtk.empty()) absent_[Scheme::vtk_gpu] = absent_[Scheme::vtk_fixed_point] = vtk;
+}
+
+OtherPrograms::~OtherPrograms() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+std::optional<std::string> OtherPrograms::absence(Scheme scheme) const {
+  const auto found = absent_.find(scheme);
+  return found == absent_.end() ? std::nullopt : std::optional(found->second);
+}
+
+OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
+  const fs::path screenshot = folder_ / "viewer.png";
+  std::vector<std::string> arguments{viewer().string(), (folder_ / "texels.raw").string()};
+  const auto option = [&](const char* name, const auto&... values) {
+    arguments.emplace_back(name);
+    (arguments.push_back(fmt::format("{}", values)), ...);
+  };
+  const auto& size = scene.size();
+  const volume::Vec3& spacing = scene.spacing();
+  option("--size", size[0], size[1], size[2]);
+  option("--type", scene.texel_type());
+  option("--spacing", spacing[0], spacing[1], spacing[2]);
+  option("--table", (folder_ / "scene.json").string());
+  option("--azimuth", Scene::camera().azimuth);
+  option("--elevation", Scene::camera().elevation);
+  option("--distance", Scene::camera().distance / 2);  // it counts whole diagonals
+  option("--window-size", scene.edge(), scene.edge());
+  option("--frames", viewer_frames);
+  option("--screenshot", screenshot.string());
+  for (const char* flag : {"--offscreen", "--no-frame", "--print-times"}) arguments.emplace_back(flag);
+  std::istringstream lines(output_of(std::move(arguments), folder_ / "viewer.txt"));
+  std::vector<double> times;
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t colon = line.find(": "); line.starts_with("frame ") && colon != std::string::npos)
+      times.push_back(std::stod(line.substr(colon + 2)));
+  if (int(times.size()) != viewer_frames) throw std::runtime_error("understudy-viewer printed no times");
+  times.erase(times.begin(), times.begin() + frames_that_settle);
+
+  Drawn drawn{median(std::move(times)), volume::Image({0, 0, scene.edge(), scene.edge()})};
+  const Picture picture = read_picture(screenshot);
+  if (picture.width != scene.edge() || picture.height != scene.edge())
+    throw std::runtime_error("understudy-viewer's picture has another size");
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      std::copy_n(picture.pixel(x, picture.height - 1 - y), 4, drawn.picture.at(x, y));
+  return drawn;
+}
+
+OtherPrograms::Drawn OtherPrograms::vtk(const Scene& scene, const char* mapper) const {
+  const fs::path floats = folder_ / "vtk.f32";
+  const std::string text =
+      output_of({"xvfb-run", "-a", python, "-B", vtk_script().string(), (folder_ / "scene.json").string(),
+                 "--mapper", mapper, "--frames", fmt::format("{}", vtk_frames), "--picture", floats.string()},
+                folder_ / "vtk.txt");
+  const auto figures = nlohmann::json::parse(text.substr(std::min(text.rfind('{'), text.size())));
+  Drawn drawn{1000 * figures.at("wall_seconds").get<double>(),
+              volume::Image({0, 0, scene.edge(), scene.edge()})};
+  std::ifstream file(floats, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(drawn.picture.rgba.data()),
+                 std::streamsize(sizeof(float) * drawn.picture.rgba.size())))
+    throw std::runtime_error("VTK left no whole picture");
+  return drawn;
+}
+
+Point OtherPrograms::measure(const Scene& scene, const Setting& setting, Scene::Rays& rays) const {
+  scene.hand_out(folder_ / "texels.raw", folder_ / "scene.json");
+  Drawn drawn;
+  try {
+    drawn = setting.scheme == Scheme::bare_viewer
+                ? bare_viewer(scene)
+                : vtk(scene, setting.scheme == Scheme::vtk_gpu ? "gpu" : "fixed-point");
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(error.what());
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error("a time that is no number");
+  }
+  Point point{setting};
+  point.time_ms = drawn.time_ms;
+  point.ns_per_ray = 1e6 * drawn.time_ms / (double(scene.edge()) * scene.edge());
+  rays = scene.compared(drawn.picture);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i][3] = scene.exact()[i][3];
+  point.error = difference(rays, scene.exact());
+  point.error.rms = point.error.colour;
+  return point;
+}
+
+}  // namespace understudy::launcher::study

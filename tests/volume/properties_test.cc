@@ -1,0 +1,14 @@
+// What holds of every picture, on the CPU.
+#include "tests/volume/properties.h"
+
+#include <gtest/gtest.h>
+
+namespace understudy::volume::testing {
+namespace {
+
+TEST(Properties, HoldOnRandomScenes) {
+  expect_properties({.renderer = "CPU", .trials = 300}, raycast);
+}
+
+}  // namespace
+}  // namespace understudy::volume::testing

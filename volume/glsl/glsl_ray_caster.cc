@@ -149,7 +149,7 @@ struct GlslRayCaster::Rays {
           set_up_strip(setup, request, pixels.x + x, pixels.y + y, columns, rows, strip);
           for (int j = 0; j < rows; ++j)
             for (int i = 0; i < columns; ++i) {
-              const auto r = std::size_t(j * tile_width + i);
+              const auto r = std::size_t(j) * std::size_t(tile_width) + std::size_t(i);
               const std::size_t pixel = std::size_t(y + j) * std::size_t(width) + std::size_t(x + i);
               const int first = strip.first[r], last = strip.last[r];
               starts[pixel] = {strip.start[0][r], strip.start[1][r], strip.start[2][r], float(first)};

@@ -28,8 +28,10 @@ bool set_number(Options& options, const std::string& text) {
   return number.has_value();
 }
 
-/// "0.002" or "0.5/255", in (0, 1].
+/// "0.002" or "0.5/255", in (0, 1]; or "none".
 bool set_error(Options& options, const std::string& text) {
+  if (text == "none") options.error = 0;
+  if (text == "none") return true;
   const std::size_t slash = text.find('/');
   const auto above = number_in<double>(text.substr(0, slash), 0, 1e9);
   const auto below =
@@ -39,8 +41,10 @@ bool set_error(Options& options, const std::string& text) {
   return true;
 }
 
-/// "30ms", "30" or "0.03s", up to a minute.
+/// "30ms", "30" or "0.03s", up to a minute; or "none".
 bool set_time(Options& options, const std::string& text) {
+  if (text == "none") options.time_ms = 0;
+  if (text == "none") return true;
   const std::size_t unit = text.find_first_not_of("0123456789.");
   const std::string name = unit == std::string::npos ? "ms" : text.substr(unit);
   const auto number = number_in<double>(text.substr(0, unit), 0, 60000);
@@ -105,11 +109,11 @@ constexpr std::array rows{
     Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
          "say for every volume what was recognised, and why draws were left to the viewer"},
         set_switch<&Options::explain>},
-    Row{{"--error", "UNDERSTUDY_ERROR", "E", "",
+    Row{{"--error", "UNDERSTUDY_ERROR", "E", "none",
          "samples lie anywhere, as few as keep every channel of every pixel within E of the integral: a number "
          "like 0.002, or a fraction like 0.5/255, above 0 and at most 1"},
         set_error},
-    Row{{"--time", "UNDERSTUDY_TIME", "T", "",
+    Row{{"--time", "UNDERSTUDY_TIME", "T", "none",
          "samples lie anywhere, as many as can be cast in T a picture: 30ms, or 0.03s, above 0 and at most a "
          "minute; with --error, that goes first"},
         set_time},

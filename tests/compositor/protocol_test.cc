@@ -332,7 +332,7 @@ TEST(Protocol, LimitsAreKept) {
   r.surfaces.resize(max_surfaces + 1);
   refused(r);
   r = some_request(false, false);
-  r.method = Method(2);
+  r.method = Method(3);
   refused(r);
   r = some_request_for_slabs();
   std::get<PairTable>(r.classification).entries.pop_back();

@@ -35,6 +35,29 @@ TEST(Options, DefaultsInTheTableAreThoseInTheStructure) {
     EXPECT_EQ(options.disable, untouched.disable);
     EXPECT_EQ(options.debug_tint, untouched.debug_tint);
     EXPECT_EQ(options.chain, untouched.chain);
+    EXPECT_EQ(options.error, untouched.error);
+    EXPECT_EQ(options.time_ms, untouched.time_ms);
+  }
+}
+
+TEST(Options, ErrorsAreNumbersOrFractionsAndTimesHaveUnits) {
+  Options options;
+  EXPECT_FALSE(options.has_budget());
+  EXPECT_TRUE(set_option(options, "UNDERSTUDY_ERROR", "0.5/255"));
+  EXPECT_DOUBLE_EQ(options.error, 0.5 / 255);
+  EXPECT_TRUE(options.has_budget());
+  EXPECT_TRUE(set_option(options, "UNDERSTUDY_ERROR", "2e-3"));
+  for (const char* text : {"0", "10", "abc", "1/0", "2/1", "-0.1", "nan", "0.1/", "/255", "inf", ""}) {
+    EXPECT_FALSE(set_option(options, "UNDERSTUDY_ERROR", text)) << text;
+    EXPECT_DOUBLE_EQ(options.error, 2e-3);
+  }
+  EXPECT_TRUE(set_option(options, "UNDERSTUDY_TIME", "0.03s"));
+  EXPECT_DOUBLE_EQ(options.time_ms, 30);
+  EXPECT_TRUE(set_option(options, "UNDERSTUDY_TIME", "25ms"));
+  EXPECT_TRUE(set_option(options, "UNDERSTUDY_TIME", "25"));
+  for (const char* text : {"0", "-3ms", "3 hours", "61s", "s", "ms", "1e3", ""}) {
+    EXPECT_FALSE(set_option(options, "UNDERSTUDY_TIME", text)) << text;
+    EXPECT_DOUBLE_EQ(options.time_ms, 25);
   }
 }
 

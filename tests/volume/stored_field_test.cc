@@ -32,6 +32,7 @@ TEST_P(StoredField, ShowsTheIntegralsOfTheTexture) {
   for (const int ranks : {1, 2, 5}) {
     const KdTree tree(texture.description, ranks);
     std::vector<BrickStore> stores;
+    stores.reserve(std::size_t(ranks));
     for (int rank = 0; rank < ranks; ++rank) stores.push_back(filled(texture, tree.box(rank)));
     double opaque = 0;
     for (int y = 0; y < request.window.height; y += 5)

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "volume/matrix.h"
 
@@ -118,9 +118,10 @@ std::vector<double> faces_on(const Vec3& begin, const Vec3& way) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (way[axis] == 0) continue;
     const double end = begin[axis] + way[axis];
-    const double first = std::ceil(std::min(begin[axis], end)), last = std::floor(std::max(begin[axis], end));
-    for (double face = first; face <= last; ++face) {
-      const double s = (face - begin[axis]) / way[axis];
+    const auto first = std::int64_t(std::ceil(std::min(begin[axis], end))),
+               last = std::int64_t(std::floor(std::max(begin[axis], end)));
+    for (std::int64_t face = first; face <= last; ++face) {
+      const double s = (double(face) - begin[axis]) / way[axis];
       if (s > 0 && s < 1) cuts.push_back(s);
     }
   }

@@ -149,8 +149,9 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
     spread_ += pixels.size();
     for (std::size_t i = 0; i < count / 2 && i < suspects_.size(); ++i) pixels.push_back(suspects_[i]);
     if (!suspects_.empty())
-      std::ranges::rotate(suspects_,
-                          suspects_.begin() + std::ptrdiff_t(std::min(count / 2, suspects_.size() - 1)));
+      std::rotate(suspects_.begin(),
+                  suspects_.begin() + std::ptrdiff_t(std::min(count / 2, suspects_.size() - 1)),
+                  suspects_.end());
     const auto integrals = service.integrals(meaning_.request, pixels, credit_ms_);
     const std::chrono::duration<double, std::milli> took = Clock::now() - now;
     credit_ms_ -= took.count();

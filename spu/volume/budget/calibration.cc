@@ -77,8 +77,8 @@ double greatest_difference(const ImageView& a, const ImageView& b) {
 std::vector<Measured> front_of(std::vector<Measured> all) {
   std::ranges::sort(all, {}, &Measured::ms);
   std::vector<Measured> front;
-  for (Measured& measured : all)
-    if (front.empty() || measured.error < front.back().error) front.push_back(std::move(measured));
+  for (const Measured& measured : all)
+    if (front.empty() || measured.error < front.back().error) front.push_back(measured);
   return front;
 }
 
@@ -168,6 +168,7 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   const std::vector<PixelIntegral> integrals = service.integrals(small.request, pixels, integrals_ms);
 
   std::vector<Measured> measured;
+  measured.reserve(tried.size());
   for (const Tried& one : tried)
     measured.push_back({one.setting, greatest_error(one.picture.view(), pixels, integrals), one.ms});
   return {front_of(std::move(measured)), integrals.size()};

@@ -43,8 +43,8 @@ IntegralQuestion decode_integral_question(std::span<const std::byte> payload) {
   question.pixels = in.values<volume::Pixel>("pixels", limits::max_integrals);
   constexpr int farthest = limits::max_viewport_offset + limits::max_viewport_extent;
   for (const volume::Pixel& pixel : question.pixels)
-    if (std::max(std::abs(pixel.x), std::abs(pixel.y)) > farthest)
-      in.fail("pixels", "lie outside of any window");
+    for (const int place : {pixel.x, pixel.y})
+      if (place < -farthest || place > farthest) in.fail("pixels", "lie outside of any window");
   question.most_ms = in.real("most_ms");
   if (!(question.most_ms >= 0 && question.most_ms <= limits::max_integral_ms))
     in.fail("most_ms", "is no time that a node may take");

@@ -30,8 +30,10 @@ bool set_number(Options& options, const std::string& text) {
 
 /// "0.002" or "0.5/255", in (0, 1]; or "none".
 bool set_error(Options& options, const std::string& text) {
-  if (text == "none") options.error = 0;
-  if (text == "none") return true;
+  if (text == "none") {
+    options.error = 0;
+    return true;
+  }
   const std::size_t slash = text.find('/');
   const auto above = number_in<double>(text.substr(0, slash), 0, 1e9);
   const auto below =
@@ -43,8 +45,10 @@ bool set_error(Options& options, const std::string& text) {
 
 /// "30ms", "30" or "0.03s", up to a minute; or "none".
 bool set_time(Options& options, const std::string& text) {
-  if (text == "none") options.time_ms = 0;
-  if (text == "none") return true;
+  if (text == "none") {
+    options.time_ms = 0;
+    return true;
+  }
   const std::size_t unit = text.find_first_not_of("0123456789.");
   const std::string name = unit == std::string::npos ? "ms" : text.substr(unit);
   const auto number = number_in<double>(text.substr(0, unit), 0, 60000);

@@ -84,7 +84,7 @@ bool Budget::keep_margin(const volume::VolumeDescription& volume) {
   while (!fits(chosen_) && go_finer()) {
   }
   for (std::size_t i = before; !fits(chosen_) && i-- > 0;)
-    if (fits(i)) chosen_ = i;
+    if (fits(i)) use(i);
   return fits(chosen_);
 }
 
@@ -100,9 +100,14 @@ void Budget::choose() {
   chosen_ = std::size_t(good - front.begin());
   if (asked_.error > 0 && good == front.end()) chosen_ = front.size() - 1;
   if (!(asked_.error > 0)) chosen_ = std::max<std::size_t>(chosen_, 1) - 1;
-  worst_ = front[chosen_].error;
-  rays_ = calibration_.rays;
-  ms_ = front[chosen_].ms;
+  use(chosen_);
+}
+
+/// As calibration found it: no picture of it has been looked at.
+void Budget::use(std::size_t of_front) {
+  chosen_ = of_front;
+  worst_ = calibration_.front[chosen_].error;
+  ms_ = calibration_.front[chosen_].ms;
   frames_as_chosen_ = 0;
 }
 
@@ -121,17 +126,12 @@ void Budget::prove(compositor::RenderService& service) {
     const auto integrals = service.integrals(meaning_.request, pixels, proving_ms);
     spread_ += proving_spread;
     worst_ = greatest_error(shown.image, pixels, integrals);
-    rays_ = integrals.size();
   } while (worst_ > room_when_proven * asked_.error && go_finer());
 }
 
 bool Budget::go_finer() {
   if (chosen_ + 1 >= calibration_.front.size()) return false;
-  ++chosen_;
-  worst_ = 0;
-  rays_ = 0;
-  ms_ = 0;
-  frames_as_chosen_ = 0;
+  use(chosen_ + 1);
   return true;
 }
 
@@ -157,7 +157,6 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
     credit_ms_ -= took.count();
     if (!integrals.empty()) ms_a_ray_ = 0.5 * (ms_a_ray_ + took.count() / double(integrals.size()));
     worst_ = std::max(worst_, greatest_error(picture, pixels, integrals));
-    rays_ += integrals.size();
     counters.rays += integrals.size();
   }
   if (asked_.error > 0 && worst_ > asked_.error) {
@@ -173,15 +172,10 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
 void Budget::keep_time() {
   const auto& front = calibration_.front;
   if (frames_as_chosen_ < patient_frames) return;
-  const auto move_to = [&](std::size_t other) {
-    chosen_ = other;
-    worst_ = front[other].error;
-    frames_as_chosen_ = 0;
-  };
   if (ms_ > asked_.ms && chosen_ > 0) {
-    move_to(chosen_ - 1);
+    use(chosen_ - 1);
   } else if (chosen_ + 1 < front.size() && front[chosen_ + 1].ms / front[chosen_].ms * ms_ < 0.9 * asked_.ms) {
-    move_to(chosen_ + 1);
+    use(chosen_ + 1);
   }
 }
 
@@ -192,7 +186,8 @@ void Budget::tell(BudgetCounters& counters) const {
   counters.ms = ms_;
   put_text(counters.setting, name_of(chosen.setting));
   std::string note;
-  if (asked_.error > 0 && worst_ > asked_.error && chosen_ + 1 == front.size())
+  // A finer one would have been taken.
+  if (asked_.error > 0 && worst_ > asked_.error)
     note = fmt::format(
         "the error that is asked for cannot be kept: {:.2g} is the best there is here, at {:.3g} ms a picture",
         worst_, ms_);

@@ -57,6 +57,7 @@ class Budget {
   };
 
   void choose();
+  void use(std::size_t of_front);
   void prove(compositor::RenderService& service);
   bool go_finer();
   bool keep_margin(const volume::VolumeDescription& volume);
@@ -69,9 +70,8 @@ class Budget {
   std::size_t chosen_ = 0;                         ///< of the front
   std::optional<volume::TransferFunction> table_;  ///< of samples as chosen
   Setting table_for_;
-  Meaning meaning_;                      ///< of the last request
-  double worst_ = 0;                     ///< error of the rays that were looked at, under the chosen setting
-  std::uint64_t rays_ = 0;               ///< so many
+  Meaning meaning_;   ///< of the last request
+  double worst_ = 0;  ///< error under the chosen setting: calibrated, or of a ray that was looked at
   std::vector<volume::Pixel> suspects_;  ///< where errors were greatest
   std::size_t spread_ = 0;               ///< pixels of the sequence that were looked at
   std::optional<Clock::time_point> looked_at_;

@@ -171,7 +171,7 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   measured.reserve(tried.size());
   for (const Tried& one : tried)
     measured.push_back({one.setting, greatest_error(one.picture.view(), pixels, integrals), one.ms});
-  return {front_of(std::move(measured)), integrals.size()};
+  return {front_of(std::move(measured))};
 }
 
 }  // namespace understudy::spu

@@ -18,7 +18,6 @@ struct Measured {
 
 struct Calibration {
   std::vector<Measured> front;  ///< each the cheapest of its error: cheapest first, most exact last
-  std::size_t rays = 0;         ///< that were integrated
 };
 
 /// Settings that the volume was sent with enough margin for; `termination` belongs to all of them. Finer ones

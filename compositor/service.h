@@ -32,6 +32,7 @@ class RequestRefused : public std::runtime_error {
 struct Rendered {
   volume::ImageView image;  ///< over its footprint only; valid until the next call but integrals()
   volume::FrameCounts counts;
+  bool repeated = false;  ///< nothing was cast: it is a picture that was there already
 };
 
 class RenderService {

@@ -58,6 +58,12 @@ bool set_time(Options& options, const std::string& text) {
   return true;
 }
 
+bool set_never_left_out(Options& options, const std::string& text) {
+  const std::optional<Omissions> omissions = omissions_in(text);
+  if (omissions) options.never_left_out = *omissions;
+  return omissions.has_value();
+}
+
 template <auto member>
 bool set_text(Options& options, const std::string& text) {
   options.*member = text;
@@ -111,8 +117,14 @@ constexpr std::array rows{
     Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
         set_text<&Options::report>},
     Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
-         "say for every volume what was recognised, and why draws were left to the viewer"},
+         "say for every volume what was recognised, and why draws were left to the viewer; for every frame and "
+         "in the end what was left out of the work, and what was not, and why"},
         set_switch<&Options::explain>},
+    Row{{"--never-leave-out", "UNDERSTUDY_NEVER_LEAVE_OUT", "LIST", "none",
+         "do what nobody would see nevertheless, to compare: all, or some of empty-blocks, hidden-samples, "
+         "lesser-samples, footprints, unchanged-pictures, unchanged-texels, known-colours, absent-depth, "
+         "unseen-depth, with commas between"},
+        set_never_left_out},
     Row{{"--error", "UNDERSTUDY_ERROR", "E", "none",
          "samples lie anywhere, as few as keep every channel of every pixel within E of the integral: a number "
          "like 0.002, or a fraction like 0.5/255, above 0 and at most 1"},

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "spu/report/omission.h"
+
 namespace understudy::spu {
 
 constexpr int max_nodes = 256;  ///< ranks of one node group
@@ -16,6 +18,7 @@ struct Options {
   std::string report;   ///< JSON file; empty: none
   int verify = 0;       ///< every K frames; 0: the first frame of every volume only; -1: never
   bool explain = false;
+  Omissions never_left_out;
   bool disable = false;
   bool debug_tint = false;
   double error = 0;               ///< that pictures may have; 0: samples are the viewer's own

@@ -19,6 +19,8 @@ struct Fog {
   /// N >= 2 entries at u = i / (N - 1), linear between entries and constant outside [0, 1]: added colour in the
   /// first three components, weight in the last.
   std::vector<Rgba> entries;
+
+  bool operator==(const Fog&) const = default;
 };
 
 }  // namespace understudy::volume

@@ -16,6 +16,7 @@
 #include "volume/classification.h"
 #include "volume/fog.h"
 #include "volume/image.h"
+#include "volume/leave_out.h"
 #include "volume/light.h"
 #include "volume/surface.h"
 
@@ -83,6 +84,7 @@ struct SlicePlanes {
   double first = 0;
   double spacing = 0;
   int count = 0;
+  bool operator==(const SlicePlanes&) const = default;
 };
 
 /// How far into its first step every ray begins, as a tile of numbers that repeats over the window: some ray
@@ -97,6 +99,7 @@ struct RayOffsets {
     const auto row = std::size_t((y % height + height) % height);
     return double(steps[row * std::size_t(width) + column]);
   }
+  bool operator==(const RayOffsets&) const = default;
 };
 
 /// The sample positions of a ray caster: constant steps along every ray, from where it enters the region. The
@@ -118,6 +121,7 @@ struct RaySteps {
   /// Samples up to so many steps behind the opaque geometry still count.
   double past_depth = 0;
   std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
+  bool operator==(const RaySteps&) const = default;
 };
 
 /// Where the second sample of a slab lies, whose first one lies on its plane: so many plane spacings further
@@ -128,17 +132,20 @@ struct Slab {
   Vec3 offset{};
   /// The two samples are nowhere further apart than this, axis by axis in texture space.
   Vec3 reach{};
+  bool operator==(const Slab&) const = default;
 };
 
 struct Box {
   Vec3 low{0, 0, 0};
   Vec3 high{1, 1, 1};
+  bool operator==(const Box&) const = default;
 };
 
 /// Keeps the points with normal . t + offset >= 0.
 struct HalfSpace {
   Vec3 normal{};
   double offset = 0;
+  bool operator==(const HalfSpace&) const = default;
 };
 
 /// Window depth in [0,1] of the opaque geometry already drawn: samples that are not nearer are hidden.
@@ -146,6 +153,7 @@ struct DepthImage {
   Rect rect;
   std::vector<float> depth;  ///< rows bottom up
   bool or_equal = false;     ///< GL_LEQUAL instead of GL_LESS
+  bool operator==(const DepthImage&) const = default;
 };
 
 struct RenderRequest {
@@ -180,6 +188,9 @@ struct RenderRequest {
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   std::optional<DepthImage> depth;
+  LeaveOut leave_out;
+
+  bool operator==(const RenderRequest&) const = default;
 };
 
 /// What one frame did and, beside it, what it left out. Sums over nodes.
@@ -188,11 +199,18 @@ struct FrameCounts {
   std::uint64_t rays_terminated = 0;
   std::uint64_t samples = 0;  ///< samples inside the region, had nothing been left out
   std::uint64_t samples_taken = 0;
-  std::uint64_t blocks = 0;           ///< blocks of 8^3 cells held
-  std::uint64_t blocks_empty = 0;     ///< of these, invisible under the classification
-  std::uint64_t bytes_exchanged = 0;  ///< between nodes, for compositing
-  std::uint64_t nodes_idle = 0;       ///< nodes that had nothing to show and sent nothing
-  double render_ms = 0;               ///< slowest node
+  std::uint64_t samples_hidden = 0;  ///< left out behind what is opaque
+  std::uint64_t samples_lesser =
+      0;                     ///< left out under a maximum, in empty blocks or such that show nothing larger
+  std::uint64_t blocks = 0;  ///< blocks of 8^3 cells held
+  std::uint64_t blocks_empty = 0;  ///< of these, invisible under the classification
+  std::uint64_t nodes_idle = 0;    ///< nodes that had nothing to show and sent nothing
+  // Between nodes, for compositing: what travelled, and what would have without footprints.
+  std::uint64_t bytes_exchanged = 0;
+  std::uint64_t bytes_of_whole_windows = 0;
+  std::uint64_t messages = 0;
+  std::uint64_t messages_of_whole_windows = 0;
+  double render_ms = 0;  ///< slowest node
   double composite_ms = 0;
 
   /// Adds another volume of the same frame: they are rendered one after the other, so times add up too.
@@ -201,10 +219,15 @@ struct FrameCounts {
     rays_terminated += other.rays_terminated;
     samples += other.samples;
     samples_taken += other.samples_taken;
+    samples_hidden += other.samples_hidden;
+    samples_lesser += other.samples_lesser;
     blocks += other.blocks;
     blocks_empty += other.blocks_empty;
-    bytes_exchanged += other.bytes_exchanged;
     nodes_idle += other.nodes_idle;
+    bytes_exchanged += other.bytes_exchanged;
+    bytes_of_whole_windows += other.bytes_of_whole_windows;
+    messages += other.messages;
+    messages_of_whole_windows += other.messages_of_whole_windows;
     render_ms += other.render_ms;
     composite_ms += other.composite_ms;
     return *this;

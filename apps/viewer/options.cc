@@ -95,6 +95,8 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_flag("--second", options.second_volume,
                "The volume twice, half as large, the second in the next preset's colours");
   app.add_flag("!--no-frame", options.frame_and_axes, "Without the box's frame and the axes");
+  app.add_flag("--write-depth", options.write_depth,
+               "Slices back to front write their depth, as those of some programs do");
   app.add_option("--background", options.background, "Background colour, each 0 to 1")
       ->check(number_between(0.0, 1.0))
       ->type_name("R G B");

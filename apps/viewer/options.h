@@ -30,6 +30,7 @@ struct Options {
   bool opaque_ball = false;
   bool second_volume = false;
   std::array<double, 3> background{0, 0, 0};
+  bool write_depth = false;
 
   Camera camera;
   std::array<int, 2> window_size{512, 512};

@@ -29,7 +29,8 @@ Scene::Scene(const Options& options, Volume volume)
     : box_(box_of(volume.size, volume.spacing)),
       slices_across_diagonal_(viewer::slices_across_diagonal(box_, options.slices)),
       op_(options.op),
-      background_(options.background) {
+      background_(options.background),
+      write_depth_(options.write_depth) {
   if (options.frame_and_axes) opaque_ = frame_and_axes(box_);
   if (options.opaque_ball) add_ball(box_, opaque_);
   volume_.file = volume.file;
@@ -97,7 +98,7 @@ void Scene::draw_back_to_front(DrawnFrame& frame) {
   if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
 
   // Slices are hidden by what is solid, but never by each other.
-  glDepthMask(GL_FALSE);
+  glDepthMask(write_depth_ ? GL_TRUE : GL_FALSE);
   blend_with(op_);
   draw_volumes(frame);
   glDisable(GL_BLEND);

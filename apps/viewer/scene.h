@@ -71,6 +71,7 @@ class Scene {
   int slices_across_diagonal_;
   Operator op_;
   std::array<double, 3> background_;
+  bool write_depth_;
   OpaqueGeometry opaque_;
   std::unique_ptr<Mode> mode_;
   std::unique_ptr<Mode> second_;  ///< null: there is one volume

@@ -33,6 +33,7 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
       to.pixels_in += piece.rect.pixels();
       ++result.messages;
       result.pixels_sent += piece.rect.pixels();
+      result.bytes_sent += bytes_of_all_pixels(piece.rect, layout);
       sent[std::size_t(piece.from)] += piece.rect.pixels();
     }
     double slowest = 0;

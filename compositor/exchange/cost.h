@@ -20,6 +20,7 @@ struct LinkCost {
 struct ExchangeCost {
   std::uint64_t messages = 0;
   std::uint64_t pixels_sent = 0;       ///< that travel, when all pixels of the rectangles do
+  std::uint64_t bytes_sent = 0;        ///< in which these do
   std::uint64_t most_pixels_sent = 0;  ///< by any one rank
   double seconds = 0;                  ///< rounds one after the other, each as long as its slowest rank
 };

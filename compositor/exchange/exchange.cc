@@ -47,7 +47,7 @@ class Player {
     messages.reserve(given.size());
     outgoing.reserve(given.size());
     for (const Piece* piece : given) {
-      messages.push_back(encode_pixels(image_, piece->rect, op_, layout_));
+      messages.push_back(encode_pixels(image_, piece->rect, op_, layout_, schedule_.clear_pixels_travel));
       bytes_to_tell_ += messages.back().size();
     }
     if (!messages.empty()) messages.front().tell(std::exchange(bytes_to_tell_, 0));

@@ -74,12 +74,11 @@ using volume::Image;
 using volume::Operator;
 using volume::Rect;
 
-/// Before the pixels: what is told, and how many runs follow, or that all pixels travel.
+/// Before the pixels, in head_bytes: what is told, and how many runs follow, or that all pixels travel.
 struct Head {
   std::uint64_t told = 0;
   std::uint32_t runs = 0;
 };
-constexpr std::size_t head_bytes = 12;
 constexpr std::uint32_t all_pixels = 0xffffffff;
 
 /// So many pixels untouched, then so many that travel; runs go on from row to row.
@@ -88,11 +87,8 @@ struct PixelRun {
   std::uint32_t touched = 0;
 };
 
-/// Longer messages have a length that both sides know beforehand.
-constexpr std::size_t longest_of_unknown_length = std::size_t(1) << 30;
-
 bool of_unknown_length(const Rect& rect) {
-  return head_bytes + bytes_per_pixel(Layout::rgba32f) * rect.pixels() <= longest_of_unknown_length;
+  return bytes_of_all_pixels(rect, Layout::rgba32f) <= longest_of_unknown_length;
 }
 
 /// Narrow numbers have none for an untouched pixel under `min`.
@@ -172,12 +168,12 @@ std::uint64_t PixelMessage::told() const {
   return count;
 }
 
-PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, Layout layout) {
+PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, Layout layout, bool clear_too) {
   if (!of_unknown_length(rect)) layout = Layout::rgba32f;
   const std::size_t pixel = bytes_per_pixel(layout);
   std::vector<PixelRun> runs;
   std::size_t touched = rect.pixels();
-  if (of_unknown_length(rect)) {
+  if (of_unknown_length(rect) && (!clear_too || needs_runs(op, layout))) {
     runs = runs_in(image, rect, volume::neutral_value(op));
     std::size_t in_runs = 0;
     for (const PixelRun& run : runs) in_runs += run.touched;

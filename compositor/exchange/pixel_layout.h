@@ -16,6 +16,20 @@ constexpr std::size_t bytes_per_pixel(Layout layout) {
   return layout == Layout::rgba32f ? 16 : layout == Layout::rgba16f ? 8 : 4;
 }
 
+/// Before the pixels of a message.
+constexpr std::size_t head_bytes = 12;
+
+/// Longer messages have a length that both sides know beforehand: all pixels travel, as floats.
+constexpr std::size_t longest_of_unknown_length = std::size_t(1) << 30;
+
+/// The length of a message with all pixels of `rect`. (Under `min` narrow numbers always travel in runs, and
+/// take up to 8 bytes for every two pixels more.)
+inline std::size_t bytes_of_all_pixels(const volume::Rect& rect, Layout layout) {
+  const std::size_t as_floats = head_bytes + bytes_per_pixel(Layout::rgba32f) * rect.pixels();
+  return as_floats > longest_of_unknown_length ? as_floats
+                                               : head_bytes + bytes_per_pixel(layout) * rect.pixels();
+}
+
 /// One message, on its way out or on its way in.
 class PixelMessage {
  public:
@@ -37,10 +51,11 @@ class PixelMessage {
   std::size_t received_ = 0;
 };
 
-/// The pixels of `image` in `rect`, which lies inside it. Where that is shorter, only those that a sample has
-/// reached (volume::neutral_value) travel, in runs.
+/// The pixels of `image` in `rect`, which lies inside it. Where that is shorter, and `clear_too` is not asked
+/// for, only those that a sample has reached (volume::neutral_value) travel, in runs.
 PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect, volume::Operator op,
-                           Layout layout);
+                           Layout layout, bool clear_too = false);
+
 
 /// Room for the longest message about this rectangle.
 PixelMessage room_for_pixels(const volume::Rect& rect, Layout layout);

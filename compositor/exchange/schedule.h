@@ -37,6 +37,7 @@ struct Schedule {
   std::vector<Round> rounds;
   /// By rank: where its image stands in visibility order; -1 for ranks with nothing to show.
   std::vector<int> position;
+  bool clear_pixels_travel = false;  ///< also those that no sample has reached, to see what they cost
   volume::Rect whole;  ///< the picture that rank 0 ends with: the smallest rectangle that holds all footprints
 };
 

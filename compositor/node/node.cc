@@ -77,7 +77,9 @@ class Node {
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
   std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
-  Exchanged composite(const std::vector<Outcome>& outcomes);
+  Schedule schedule_of(std::span<const volume::Rect> footprints);
+  const ExchangeCost& cost_of_whole_windows();
+  Exchanged composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
 
   Link& link_;
@@ -92,8 +94,13 @@ class Node {
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
   volume::Operator op_{};
+  volume::Rect window_;          // that all samples lie in
+  bool only_footprints_ = true;  // travel
   std::vector<Rank> visible_order_;
   volume::Image image_;
+  // What pictures of a window cost without footprints.
+  volume::Rect priced_window_;
+  ExchangeCost price_;
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
   std::size_t integrated_ = 0;  // the first of them are known
@@ -117,6 +124,8 @@ volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
     total.rays_terminated += counts.rays_terminated;
     total.samples += counts.samples;
     total.samples_taken += counts.samples_taken;
+    total.samples_hidden += counts.samples_hidden;
+    total.samples_lesser += counts.samples_lesser;
     total.blocks += counts.blocks;
     total.blocks_empty += counts.blocks_empty;
     total.nodes_idle += outcome.footprint.empty();
@@ -165,7 +174,10 @@ void Node::follow() {
     if (!receive_payload(order, {})) continue;
     const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
     if (first_refusal(outcomes)) continue;
-    if (order.type == MessageType::render) composite(outcomes);
+    if (order.type == MessageType::render) {
+      volume::FrameCounts counts;
+      composite(outcomes, counts);
+    }
     if (order.type == MessageType::integrals) compose_integrals();
   }
 }
@@ -310,10 +322,9 @@ void Node::request(Clients& clients, Clients::Request request) {
   RenderedReply rendered;
   rendered.counts = sum(outcomes);
   const auto start = std::chrono::steady_clock::now();
-  const Exchanged exchanged = composite(outcomes);
+  const Exchanged exchanged = composite(outcomes, rendered.counts);
   rendered.counts.composite_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  rendered.counts.bytes_exchanged = exchanged.bytes;
   rendered.rect = exchanged.picture.rect;
 
   const std::span<float> memory = clients.image_memory(request.client);
@@ -378,6 +389,8 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
       case MessageType::render: {
         const volume::RenderRequest request = decode_request(payload, pair_tables_[order.client]);
         op_ = request.op;
+        window_ = intersection(request.window, request.viewport);
+        only_footprints_ = request.leave_out.footprints;
         visible_order_ = renderer_.visibility_order(order.client, request);
         image_ = renderer_.render(order.client, request, mine.counts);
         mine.footprint = image_.rect;
@@ -415,15 +428,38 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
   return outcomes;
 }
 
-Exchanged Node::composite(const std::vector<Outcome>& outcomes) {
+Schedule Node::schedule_of(std::span<const volume::Rect> footprints) {
+  if (exchange_.algorithm) return schedule(*exchange_.algorithm, visible_order_, footprints);
+  return cheapest(visible_order_, footprints, exchange_.layout, *link_cost_);
+}
+
+// What the picture in hand would cost if every rank sent the window whole.
+const ExchangeCost& Node::cost_of_whole_windows() {
+  if (window_ != priced_window_) {
+    const std::vector<volume::Rect> windows(std::size_t(link_.size()), window_);
+    price_ = cost(schedule_of(windows), exchange_.layout, LinkCost());
+    priced_window_ = window_;
+  }
+  return price_;
+}
+
+// Adds to the counts, on rank 0, what travelled.
+Exchanged Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts) {
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
   if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
-  const Schedule chosen = exchange_.algorithm
-                              ? schedule(*exchange_.algorithm, visible_order_, footprints)
-                              : cheapest(visible_order_, footprints, exchange_.layout, *link_cost_);
-  return exchange(std::move(image_), chosen, op_, exchange_.layout, link_);
+  Schedule chosen = schedule_of(footprints);
+  chosen.clear_pixels_travel = !only_footprints_;
+  Exchanged exchanged = exchange(std::move(image_), chosen, op_, exchange_.layout, link_);
+  if (link_.rank() == 0) {
+    const ExchangeCost& whole = cost_of_whole_windows();
+    counts.bytes_exchanged += exchanged.bytes;
+    counts.bytes_of_whole_windows += whole.bytes_sent;
+    counts.messages += cost(chosen, exchange_.layout, LinkCost()).messages;
+    counts.messages_of_whole_windows += whole.messages;
+  }
+  return exchanged;
 }
 
 // The whole integrals, from the parts of all ranks.

@@ -411,6 +411,9 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   write(out, request.light);
   out.real(request.termination);
   write(out, request.depth);
+  for (const bool left_out :
+       {request.leave_out.empty_blocks, request.leave_out.lesser_samples, request.leave_out.footprints})
+    out.integer(left_out);
   return out.bytes();
 }
 
@@ -447,6 +450,9 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.light = read_light(in);
   request.termination = in.real32("termination");
   request.depth = read_depth(in);
+  for (bool* left_out :
+       {&request.leave_out.empty_blocks, &request.leave_out.lesser_samples, &request.leave_out.footprints})
+    *left_out = in.flag("leave_out");
   in.end();
   return request;
 }
@@ -456,8 +462,9 @@ std::vector<std::byte> encode(const RenderedReply& reply) {
   write(out, reply.rect);
   const FrameCounts& counts = reply.counts;
   for (const std::uint64_t value :
-       {counts.rays, counts.rays_terminated, counts.samples, counts.samples_taken, counts.blocks,
-        counts.blocks_empty, counts.bytes_exchanged, counts.nodes_idle})
+       {counts.rays, counts.rays_terminated, counts.samples, counts.samples_taken, counts.samples_hidden,
+        counts.samples_lesser, counts.blocks, counts.blocks_empty, counts.nodes_idle, counts.bytes_exchanged,
+        counts.bytes_of_whole_windows, counts.messages, counts.messages_of_whole_windows})
     out.integer(std::int64_t(value));
   out.real(counts.render_ms);
   out.real(counts.composite_ms);
@@ -470,8 +477,10 @@ RenderedReply decode_rendered(std::span<const std::byte> payload) {
   reply.rect = read_pixels(in, "rect");
   FrameCounts& counts = reply.counts;
   for (std::uint64_t* value :
-       {&counts.rays, &counts.rays_terminated, &counts.samples, &counts.samples_taken, &counts.blocks,
-        &counts.blocks_empty, &counts.bytes_exchanged, &counts.nodes_idle})
+       {&counts.rays, &counts.rays_terminated, &counts.samples, &counts.samples_taken, &counts.samples_hidden,
+        &counts.samples_lesser, &counts.blocks, &counts.blocks_empty, &counts.nodes_idle,
+        &counts.bytes_exchanged, &counts.bytes_of_whole_windows, &counts.messages,
+        &counts.messages_of_whole_windows})
     *value = in.word("counts");
   counts.render_ms = in.real("counts.render_ms");
   counts.composite_ms = in.real("counts.composite_ms");

@@ -209,11 +209,12 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     if (request.window.pixels() > limits::max_window_pixels)
       throw RequestRefused(fmt::format("a picture of {} pixels is over the limit of {}",
                                        request.window.pixels(), limits::max_window_pixels));
-    Image result(footprint(request, description, volume.tree.box(rank_)));
+    Image result(request.leave_out.footprints ? footprint(request, description, volume.tree.box(rank_))
+                                              : intersection(request.window, request.viewport));
     volume.renderer->render(request, result, counts);
     return result;
   });
-  crop_to_content(image, request.op);
+  if (request.leave_out.footprints) crop_to_content(image, request.op);
   counts.render_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return image;

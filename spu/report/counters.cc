@@ -83,10 +83,28 @@ void add(volume::FrameCounts& total, const volume::FrameCounts& frame) {
   add(total.samples_taken, frame.samples_taken);
   add(total.blocks, frame.blocks);
   add(total.blocks_empty, frame.blocks_empty);
-  add(total.bytes_exchanged, frame.bytes_exchanged);
+  add(total.samples_hidden, frame.samples_hidden);
+  add(total.samples_lesser, frame.samples_lesser);
   add(total.nodes_idle, frame.nodes_idle);
+  add(total.bytes_exchanged, frame.bytes_exchanged);
+  add(total.bytes_of_whole_windows, frame.bytes_of_whole_windows);
+  add(total.messages, frame.messages);
+  add(total.messages_of_whole_windows, frame.messages_of_whole_windows);
   add(total.render_ms, frame.render_ms);
   add(total.composite_ms, frame.composite_ms);
+}
+
+/// The last slot takes all reasons for which there is no other.
+void add_reason(std::span<ReasonCount> slots, std::string_view reason, std::uint64_t times) {
+  const std::string_view known = reason.substr(0, sizeof ReasonCount::reason - 1);
+  ReasonCount& last = slots.back();
+  for (ReasonCount& slot : slots) {
+    if (slot.reason[0] == 0) put_text(slot.reason, &slot == &last ? "other reasons" : known);
+    if (&slot == &last || std::string_view(slot.reason) == known) {
+      slot.count.fetch_add(times, std::memory_order_relaxed);
+      return;
+    }
+  }
 }
 
 /// Moves the figures of a volume that is gone into the last place, and leaves its own as new.
@@ -167,15 +185,11 @@ void leave_behind(VolumeCounters& volume) {
 }
 
 void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times) {
-  const std::string_view known = reason.substr(0, sizeof ReasonCount::reason - 1);
-  ReasonCount& last = volume.left_because[max_counted_reasons - 1];
-  for (ReasonCount& slot : volume.left_because) {
-    if (slot.reason[0] == 0) put_text(slot.reason, &slot == &last ? "other reasons" : known);
-    if (&slot == &last || std::string_view(slot.reason) == known) {
-      slot.count.fetch_add(times, std::memory_order_relaxed);
-      return;
-    }
-  }
+  add_reason(volume.left_because, reason, times);
+}
+
+void count_done(Omission omission, std::string_view reason) {
+  add_reason(process_counters().done_because[std::size_t(omission)], reason, 1);
 }
 
 ProcessCounters& process_counters() {
@@ -191,6 +205,10 @@ void count_frame(const FrameRecord& frame) {
   if (frame.substituted > 0) counters.frames_substituted.fetch_add(1);
   if (frame.left > 0) counters.frames_left.fetch_add(1);
   add(counters.total, frame.counts);
+  for (std::size_t i = 0; i < omission_count; ++i) {
+    add(counters.total_amounts[i].done, frame.amounts[i].done);
+    add(counters.total_amounts[i].left_out, frame.amounts[i].left_out);
+  }
 }
 
 void forget_counted_frames() {
@@ -199,6 +217,9 @@ void forget_counted_frames() {
   counters.frames_substituted = 0;
   counters.frames_left = 0;
   counters.total = {};
+  counters.total_amounts = {};
+  for (auto& reasons : counters.done_because)
+    for (ReasonCount& reason : reasons) reason.count = 0;
 }
 
 std::uint64_t* thread_call_counter() {

@@ -6,11 +6,13 @@
 // happened yet".
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "spu/report/omission.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
@@ -18,6 +20,7 @@ namespace understudy::spu {
 constexpr std::uint32_t counters_magic = 0x55444331;  // "UDC1"
 constexpr int max_counted_volumes = 32;
 constexpr int max_counted_reasons = 8;
+constexpr int max_counted_omission_reasons = 4;
 constexpr int max_counted_threads = 64;
 constexpr int max_frame_records = 4096;
 
@@ -83,6 +86,23 @@ struct FrameShares {
   }
 };
 
+/// Of what could be left out: what was done, and what was left out. Units are those of the omission.
+struct Amount {
+  std::uint64_t done = 0;
+  std::uint64_t left_out = 0;
+};
+
+/// By Omission. In a process's own figures those stay empty that the nodes count (volume::FrameCounts).
+using Amounts = std::array<Amount, omission_count>;
+
+inline Amounts& operator+=(Amounts& sum, const Amounts& more) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    sum[i].done += more[i].done;
+    sum[i].left_out += more[i].left_out;
+  }
+  return sum;
+}
+
 struct FrameRecord {
   double time_ms;  ///< from the last frame end to this one
   FrameShares spent_ms;
@@ -91,6 +111,9 @@ struct FrameRecord {
   std::uint32_t within_budget;  ///< of the substituted: with samples that are not the application's own
   double error_rms;             ///< against the application's own drawing; negative: not measured
   volume::FrameCounts counts;
+  Amounts amounts;
+
+  Amount& amount(Omission omission) { return amounts[std::size_t(omission)]; }
 };
 
 struct ProcessCounters {
@@ -101,7 +124,9 @@ struct ProcessCounters {
   std::atomic<std::uint64_t> frames_substituted;  ///< with at least one substituted run of slices
   std::atomic<std::uint64_t> frames_left;         ///< with at least one run of slices left to the application
   volume::FrameCounts total;                      ///< over all frames; the ring below forgets
-  std::int32_t nodes;                             ///< 0: embedded
+  Amounts total_amounts;                          ///< likewise
+  ReasonCount done_because[omission_count][max_counted_omission_reasons];
+  std::int32_t nodes;  ///< 0: embedded
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   std::atomic<std::uint32_t> volumes;
@@ -133,6 +158,10 @@ void put_text(std::span<char> field, std::string_view text);
 /// Counts one more run that was left to the application. A volume knows max_counted_reasons; the last of them
 /// is "other reasons" once there are more.
 void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times = 1);
+
+/// Counts once more why something was done that this omission could have spared. An omission knows
+/// max_counted_omission_reasons; the last of them is "other reasons" once there are more.
+void count_done(Omission omission, std::string_view reason);
 
 /// Counts one finished frame: its ring slot, and the totals.
 void count_frame(const FrameRecord& frame);

@@ -36,6 +36,18 @@ constexpr const char* samples_skipped = "samples_skipped";
 constexpr const char* rays_ended_early = "rays_ended_early";
 constexpr const char* blocks_empty = "blocks_empty";
 constexpr const char* nodes_idle = "nodes_idle";
+constexpr const char* items =
+    "items";  ///< {omission: {unit, left_out, done, because}}; of a frame {omission: left_out}
+constexpr const char* unit = "unit";
+constexpr const char* done = "done";
+constexpr const char* because = "because";  ///< {reason: count}: why it was done
+
+// exchanged: between nodes, for compositing
+constexpr const char* exchanged = "exchanged";
+constexpr const char* bytes = "bytes";
+constexpr const char* messages = "messages";
+constexpr const char* bytes_of_whole_windows = "bytes_of_whole_windows";        ///< without footprints
+constexpr const char* messages_of_whole_windows = "messages_of_whole_windows";  ///< likewise
 
 // frames_detail[]
 constexpr const char* frame = "frame";

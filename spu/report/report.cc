@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -21,13 +22,12 @@
 #include <vector>
 
 #include "spu/report/keys.h"
+#include "spu/report/left_out.h"
 
 namespace understudy::spu {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using ReasonCounts = std::map<std::string, std::uint64_t>;
-
 /// A fixed field that a dying process may have left without its closing zero.
 template <std::size_t size>
 std::string text_in(const char (&field)[size]) {
@@ -64,12 +64,16 @@ bool did_something(const ProcessCounters& process) {
   return process.frames.load() > 0 || process.volumes.load() > 0 || calls_of(process) > 0;
 }
 
-ReasonCounts reasons_of(const VolumeCounters& volume) {
+ReasonCounts counts_in(std::span<const ReasonCount> counted) {
   ReasonCounts reasons;
-  for (const ReasonCount& reason : volume.left_because) {
+  for (const ReasonCount& reason : counted) {
     if (const std::uint64_t count = reason.count.load(); count > 0) reasons[text_in(reason.reason)] += count;
   }
   return reasons;
+}
+
+ReasonCounts reasons_of(const VolumeCounters& volume) {
+  return counts_in(volume.left_because);
 }
 
 Json median(std::vector<double> values) {
@@ -107,11 +111,26 @@ Json median_times(Processes processes) {
           {report_key::budget_median, median(std::move(budget))}};
 }
 
-Json left_out(const volume::FrameCounts& counts) {
+Json left_out(const volume::FrameCounts& counts, Json items) {
   return {{report_key::samples_skipped, counts.samples - std::min(counts.samples, counts.samples_taken)},
           {report_key::rays_ended_early, counts.rays_terminated},
           {report_key::blocks_empty, counts.blocks_empty},
-          {report_key::nodes_idle, counts.nodes_idle}};
+          {report_key::nodes_idle, counts.nodes_idle},
+          {report_key::items, std::move(items)}};
+}
+
+Json items_of(const FrameRecord& frame) {
+  const Amounts amounts = amounts_of(frame.amounts, frame.counts);
+  Json items;
+  for (std::size_t i = 0; i < omission_count; ++i) items[omission_table()[i].name] = amounts[i].left_out;
+  return items;
+}
+
+Json exchanged(const volume::FrameCounts& counts) {
+  return {{report_key::bytes, counts.bytes_exchanged},
+          {report_key::messages, counts.messages},
+          {report_key::bytes_of_whole_windows, counts.bytes_of_whole_windows},
+          {report_key::messages_of_whole_windows, counts.messages_of_whole_windows}};
 }
 
 const char* setting_of(const FrameRecord& frame) {
@@ -134,7 +153,8 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
               {report_key::substituted, frame.substituted},
               {report_key::left, frame.left},
               {report_key::error_rms, nullptr},
-              {report_key::left_out, left_out(frame.counts)}};
+              {report_key::left_out, left_out(frame.counts, items_of(frame))},
+              {report_key::exchanged, exchanged(frame.counts)}};
   if (frame.error_rms >= 0) detail[report_key::error_rms] = frame.error_rms;
   return detail;
 }
@@ -220,6 +240,8 @@ struct Totals {
   std::int32_t nodes = 0;
   std::size_t volumes = 0;
   volume::FrameCounts counts;
+  Amounts amounts{};
+  std::array<ReasonCounts, omission_count> done_because;
   ReasonCounts reasons;
   std::vector<std::string> budgets;  ///< of each volume that has one
 };
@@ -233,6 +255,10 @@ Totals totals_of(Processes processes) {
     // Not a sum: all processes of a run share one node group.
     totals.nodes = std::max(totals.nodes, process->nodes);
     totals.counts += process->total;
+    totals.amounts += process->total_amounts;
+    for (std::size_t i = 0; i < omission_count; ++i)
+      for (const auto& [reason, count] : counts_in(process->done_because[i]))
+        totals.done_because[i][reason] += count;
     for (const VolumeCounters* const entry : volumes_of(*process)) {
       const VolumeCounters& volume = *entry;
       ++totals.volumes;
@@ -243,6 +269,19 @@ Totals totals_of(Processes processes) {
     }
   }
   return totals;
+}
+
+Json items_of(const Totals& totals) {
+  const Amounts amounts = amounts_of(totals.amounts, totals.counts);
+  Json items;
+  for (std::size_t i = 0; i < omission_count; ++i) {
+    const OmissionText& about = omission_table()[i];
+    items[about.name] = {{report_key::unit, about.unit},
+                         {report_key::left_out, amounts[i].left_out},
+                         {report_key::done, amounts[i].done},
+                         {report_key::because, Json(totals.done_because[i])}};
+  }
+  return items;
 }
 
 std::string counted(std::uint64_t count, const char* noun) {
@@ -295,7 +334,8 @@ std::string report_json(Processes processes) {
               {report_key::remote, false},
               {report_key::processes, Json::array()},
               {report_key::time_ms, median_times(processes)},
-              {report_key::left_out, left_out(totals.counts)},
+              {report_key::left_out, left_out(totals.counts, items_of(totals))},
+              {report_key::exchanged, exchanged(totals.counts)},
               {report_key::volumes, Json::array()},
               {report_key::frames_detail, Json::array()}};
   for (const ProcessCounters* process : processes) {
@@ -360,11 +400,10 @@ std::string explanation_text(Processes processes) {
       }
     }
   }
-  const volume::FrameCounts all = totals_of(processes).counts;
-  if (all.samples > 0) {
-    text += fmt::format("understudy: left out: {} of {} samples, {} ended early, {} empty\n",
-                        all.samples - std::min(all.samples, all.samples_taken), all.samples,
-                        counted(all.rays_terminated, "ray"), counted(all.blocks_empty, "block"));
+  const Totals totals = totals_of(processes);
+  if (totals.frames_substituted > 0) {
+    for (const std::string& line : lines_about(totals.amounts, totals.counts, totals.done_because))
+      text += fmt::format("understudy: {}\n", line);
   }
   return text;
 }

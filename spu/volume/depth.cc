@@ -87,9 +87,11 @@ std::optional<volume::DepthImage> read_depth(const GlContext& context, const Tar
     gl.ReadPixels(resolve ? 0 : rect.x, resolve ? 0 : rect.y, rect.width, rect.height, GL_DEPTH_COMPONENT,
                   GL_FLOAT, image.depth.data());
   }
-  const bool nothing = std::all_of(image.depth.begin(), image.depth.end(), [](float d) { return d >= 1.0F; });
-  if (nothing) return std::nullopt;
   return image;
+}
+
+bool is_absent(const volume::DepthImage& image) {
+  return std::all_of(image.depth.begin(), image.depth.end(), [](float d) { return d >= 1.0F; });
 }
 
 }  // namespace understudy::spu

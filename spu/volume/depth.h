@@ -9,11 +9,13 @@
 
 namespace understudy::spu {
 
-/// Window depth of `rect` of the framebuffer bound for drawing, `target`. Empty where nothing was drawn before
-/// the volume (all depths are at the far end), so that a scene without opaque geometry sends no depth. Of a
+/// Window depth of `rect` of the framebuffer bound for drawing, `target`. Nothing where it has none. Of a
 /// multisampled framebuffer one sample's depth stands for the pixel: along the edges of opaque geometry the
 /// others may differ.
 std::optional<volume::DepthImage> read_depth(const GlContext& context, const Target& target,
                                              const volume::Rect& rect, bool or_equal);
+
+/// Whether it hides nothing: all of it is at the far end.
+bool is_absent(const volume::DepthImage& image);
 
 }  // namespace understudy::spu

@@ -33,6 +33,27 @@ void APIENTRY clear(GLbitfield mask) {
   unit.next().Clear(mask);
 }
 
+void use_depth(bool used) {
+  VolumeUnit& unit = here();
+  if (used && !unit.inside_begin) unit.depth_looked_at();
+}
+
+void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                          void* pixels) {
+  use_depth(format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL);
+  VolumeUnit& unit = here();
+  unit.chain().face(unit, Phase::watching).ReadPixels(x, y, width, height, format, type, pixels);
+}
+
+void APIENTRY blit_framebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to_x0, GLint to_y0, GLint to_x1,
+                               GLint to_y1, GLbitfield mask, GLenum filter) {
+  use_depth((mask & GL_DEPTH_BUFFER_BIT) != 0);
+  VolumeUnit& unit = here();
+  unit.chain()
+      .face(unit, Phase::watching)
+      .BlitFramebuffer(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);
+}
+
 bool looks_at_depth(CallId call) {
   if (call == CallId::End || kind_of(call) == CallKind::vertex) return false;
   if (kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists) return true;
@@ -65,6 +86,8 @@ void fill_owing_slots(DispatchTable& table) {
     if (looks_at_depth(CallId(i))) set_slot(table, CallId(i), slot(noting, CallId(i)));
   }
   table.Clear = clear;
+  table.ReadPixels = read_pixels;
+  table.BlitFramebuffer = blit_framebuffer;
 }
 
 }  // namespace understudy::spu

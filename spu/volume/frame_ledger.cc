@@ -12,8 +12,10 @@ void add(FrameRecord& sum, const FrameRecord& more) {
   sum.spent_ms += more.spent_ms;
   sum.substituted += more.substituted;
   sum.left += more.left;
+  sum.within_budget += more.within_budget;
   sum.error_rms = std::max(sum.error_rms, more.error_rms);
   sum.counts += more.counts;
+  sum.amounts += more.amounts;
 }
 
 }  // namespace

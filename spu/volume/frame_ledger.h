@@ -25,6 +25,12 @@ class FrameLedger {
     page.ends_frames |= into_window;
     change(page.record);
   }
+  /// The same for whatever belongs to no context: it goes to the next frame that ends anywhere.
+  template <class Change>
+  void note(Change change) {
+    const std::scoped_lock lock(mutex_);
+    change(left_behind_);
+  }
   /// `context` ends a frame: what belongs to it, everything but its time.
   FrameRecord close(Context context);
   /// The context is gone; what it drew is not.
@@ -41,7 +47,7 @@ class FrameLedger {
 
   mutable std::mutex mutex_;
   std::map<Context, Page> pages_;
-  FrameRecord left_behind_{.error_rms = -1};  ///< by contexts that are gone
+  FrameRecord left_behind_{.error_rms = -1};  ///< by contexts that are gone, or by none
   std::uint64_t frames_ = 0;
 };
 

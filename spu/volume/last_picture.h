@@ -1,17 +1,21 @@
-// A render service before another one: a request that is asked again within a frame is answered with the
-// picture that is still there. Some viewers draw all they show twice a frame.
+// A render service before another one: a request that was asked before is answered with the picture that is
+// still there. Some viewers draw all they show twice a frame; all draw frames in which nothing has moved.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "compositor/service.h"
 
 namespace understudy::spu {
 
-/// `frames` tells how many frames have ended: a picture is not kept for the next one, in which nodes may be
-/// gone.
+/// Hears of every picture that is asked for: why it is cast, or nothing where there was no need.
+using PictureNews = std::function<void(std::string_view why_cast)>;
+
+/// Up to four requests are remembered, for viewers that show several volumes, or one in several pictures. A
+/// picture is given again for as long as no volume changes. Without `keeps` every picture is cast.
 std::unique_ptr<compositor::RenderService> with_last_picture(std::unique_ptr<compositor::RenderService> service,
-                                                             std::function<std::uint64_t()> frames);
+                                                             bool keeps, PictureNews news);
 
 }  // namespace understudy::spu

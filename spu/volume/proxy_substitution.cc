@@ -110,7 +110,12 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   const bool same = known.march && inputs == known.march_inputs;
   const bool holds = same || (known.march && inputs.fixed == known.march_inputs.fixed &&
                               still_marches(measured, *known.march, box));
-  if (!holds) {
+  const char* const why = !known.march ? "the first of the volume"
+                          : !holds     ? "tables, uniforms or state that colours depend on changed"
+                          : session_->never_left_out(Omission::known_colours) ? "asked to"
+                                                                              : "";
+  count_probe(why);
+  if (*why != '\0') {
     // Another table is usual while somebody edits one; where samples lie is not tried again for that.
     std::optional<March> again;
     if (known.march) again = with_new_table(measured, *known.march, box);

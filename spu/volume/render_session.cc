@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "spu/volume/last_picture.h"
 #include "spu/volume/own_nodes.h"
@@ -28,7 +29,8 @@ compositor::RenderService& RenderSession::service() {
     throw compositor::ServiceLost("waiting for a new group of render nodes");
   }
   try {
-    service_ = with_last_picture(connect(), [this] { return ledger_.frames(); });
+    service_ = with_last_picture(connect(), !never_left_out(Omission::unchanged_pictures),
+                                 [this](std::string_view why) { heard_of_picture(why); });
   } catch (const compositor::ServiceLost& unreachable) {
     if (!connected_once_ && !launcher_tells()) {
       fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());
@@ -40,6 +42,15 @@ compositor::RenderService& RenderSession::service() {
   connected_once_ = true;
   ++generation_;
   return *service_;
+}
+
+void RenderSession::heard_of_picture(std::string_view why_cast) {
+  const bool cast = !why_cast.empty();
+  ledger_.note([&](FrameRecord& frame) {
+    Amount& pictures = frame.amount(Omission::unchanged_pictures);
+    ++(cast ? pictures.done : pictures.left_out);
+  });
+  if (cast) count_done(Omission::unchanged_pictures, why_cast);
 }
 
 std::unique_ptr<compositor::RenderService> RenderSession::connect() {

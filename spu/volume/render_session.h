@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "compositor/service.h"
 #include "spu/options.h"
@@ -20,6 +21,8 @@ class RenderSession {
   explicit RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
 
   const Options& options() const { return options_; }
+
+  bool never_left_out(Omission omission) const { return options_.never_left_out[std::size_t(omission)]; }
 
   FrameLedger& ledger() { return ledger_; }
 
@@ -50,6 +53,7 @@ class RenderSession {
   /// Whoever started the nodes says itself what became of them; then nothing is said here.
   bool launcher_tells() const;
   std::unique_ptr<compositor::RenderService> connect();
+  void heard_of_picture(std::string_view why_cast);
 
   const Options options_;
   FrameLedger ledger_;

@@ -74,16 +74,19 @@ bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitu
   }
   if (!request) return false;
   const auto start = std::chrono::steady_clock::now();
+  bool repeated = false;
   {
     const TimedShare timed(clock_, &FrameShares::render);
     const compositor::Rendered rendered = service.render(*request);
     picture.shown = rendered.image;
     picture.counts += rendered.counts;
+    repeated = rendered.repeated;
   }
+  note([](FrameRecord& frame) { ++frame.within_budget; });
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   const TimedShare timed(clock_, &FrameShares::budget);
-  s.volume.budget->look_at(service, picture.shown, took.count(), counters);
-  note([](FrameRecord& frame) { ++frame.within_budget; });
+  s.volume.budget->look_at(service, picture.shown, repeated ? std::nullopt : std::optional(took.count()),
+                           counters);
   return true;
 }
 
@@ -91,6 +94,10 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
                                      const std::function<void(const volume::ImageView&)>& check) {
   const Options& options = session_->options();
   const Blending& blending = s.pipeline.blending;
+  const auto left_out = [&](Omission omission) { return !session_->never_left_out(omission); };
+  s.request.leave_out = {left_out(Omission::empty_blocks), left_out(Omission::lesser_samples),
+                         left_out(Omission::footprints)};
+  if (!left_out(Omission::hidden_samples)) s.request.termination = 0;
   Picture picture;
   const bool own = !options.has_budget() || to_be_verified(s);
   if (own) {
@@ -125,7 +132,7 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
     request.op = blending.alpha.op;
     request.fog.reset();
     // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
-    if (s.pipeline.target.alpha_bits <= 8) request.termination = 1e-3F;
+    if (s.pipeline.target.alpha_bits <= 8 && left_out(Omission::hidden_samples)) request.termination = 1e-3F;
     const TimedShare also_rendered(clock_, &FrameShares::render);
     const compositor::Rendered alpha = service.render(request);
     picture.counts += alpha.counts;

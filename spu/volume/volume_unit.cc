@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "spu/report/left_out.h"
 #include "spu/track/track.h"
 #include "spu/volume/conditional_render.h"
 #include "spu/volume/depth.h"
@@ -111,47 +112,6 @@ std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
   return textures;
 }
 
-/// Everything that fixed-function fragments depend on, as numbers to compare.
-void append_fixed_function_state(const DispatchTable& gl, std::vector<float>& key) {
-  constexpr std::array<GLenum, 17> names = {
-      GL_TEXTURE_ENV_MODE, GL_COMBINE_RGB,  GL_COMBINE_ALPHA,  GL_SRC0_RGB,       GL_SRC1_RGB,
-      GL_SRC2_RGB,         GL_SRC0_ALPHA,   GL_SRC1_ALPHA,     GL_SRC2_ALPHA,     GL_OPERAND0_RGB,
-      GL_OPERAND1_RGB,     GL_OPERAND2_RGB, GL_OPERAND0_ALPHA, GL_OPERAND1_ALPHA, GL_OPERAND2_ALPHA,
-      GL_RGB_SCALE,        GL_ALPHA_SCALE};
-  GLint active = 0;
-  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
-  gl.ActiveTexture(GL_TEXTURE0);
-  for (const GLenum name : names) {
-    GLfloat value = 0;
-    gl.GetTexEnvfv(GL_TEXTURE_ENV, name, &value);
-    key.push_back(value);
-  }
-  std::array<GLfloat, 4> colour{};
-  gl.GetTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, colour.data());
-  key.insert(key.end(), colour.begin(), colour.end());
-  gl.ActiveTexture(GLenum(active));
-}
-
-void append_fog_state(const DispatchTable& gl, std::vector<float>& key) {
-  std::array<GLfloat, 4> colour{};
-  gl.GetFloatv(GL_FOG_COLOR, colour.data());
-  key.insert(key.end(), colour.begin(), colour.end());
-  for (const GLenum name : {GL_FOG_MODE, GL_FOG_DENSITY, GL_FOG_START, GL_FOG_END}) {
-    GLfloat value = 0;
-    gl.GetFloatv(name, &value);
-    key.push_back(value);
-  }
-}
-
-void append_alpha_test(const DispatchTable& gl, std::vector<float>& key) {
-  GLfloat value = 0;
-  key.push_back(gl.IsEnabled(GL_ALPHA_TEST) ? 1.0F : 0.0F);
-  gl.GetFloatv(GL_ALPHA_TEST_FUNC, &value);
-  key.push_back(value);
-  gl.GetFloatv(GL_ALPHA_TEST_REF, &value);
-  key.push_back(value);
-}
-
 /// The other value of inputs that nobody tells: a colour that depends on one of them is not the sample's alone.
 constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
 
@@ -167,40 +127,6 @@ void append_untold_inputs(std::vector<StageInput>& inputs) {
 /// Rays of all directions begin at the eye: a step that is not quite known shows more than from outside, and in
 /// other views than the one that is compared.
 constexpr double inside_psnr = 40;
-
-/// Texels of `size` that samples of `region` read, linear filter included.
-volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& size) {
-  volume::TexelBox box;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double n = size[k];
-    box.low[k] = std::clamp(int(std::floor(region.low[k] * n - 0.5)), 0, size[k] - 1);
-    box.high[k] = std::clamp(int(std::floor(region.high[k] * n - 0.5)) + 2, box.low[k] + 1, size[k]);
-  }
-  return box;
-}
-
-/// The region, and where the far ends of its slabs may lie.
-volume::Box with_slabs(volume::Box region, const std::vector<ObservedSlab>& slabs) {
-  const volume::Box without = region;
-  for (const ObservedSlab& observed : slabs) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      region.low[k] = std::min(region.low[k], without.low[k] - observed.slab.reach[k]);
-      region.high[k] = std::max(region.high[k], without.high[k] + observed.slab.reach[k]);
-    }
-  }
-  return region;
-}
-
-/// Cells around their own that nodes need for slabs: whole blocks, so that a view that turns sends nothing
-/// anew.
-int margin_of(const std::vector<ObservedSlab>& slabs, const std::array<int, 3>& size) {
-  double cells = 0;
-  for (const ObservedSlab& observed : slabs) {
-    for (std::size_t k = 0; k < 3; ++k) cells = std::max(cells, observed.slab.reach[k] * size[k]);
-  }
-  constexpr int block = 8;
-  return block * int(std::ceil(cells / block));
-}
 
 }  // namespace
 
@@ -498,142 +424,6 @@ void VolumeUnit::find_geometry(Substitution& s) {
   for (const ObservedSlab& observed : s.slabs) s.fragment.slab_ends.push_back(observed.input);
 }
 
-void VolumeUnit::describe_volume(Substitution& s) {
-  const DispatchTable& gl = *context().gl;
-  KnownVolume& known = s.volume;
-  GLint active = 0;
-  gl.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
-  gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
-  TextureDescription texture;
-  auto reason = describe_texture(context(), s.pipeline.volume.target, s.pipeline.volume.unit, texture);
-  gl.ActiveTexture(GLenum(active));
-  if (reason) throw Doubt{*reason};
-  if (s.pipeline.stack) {
-    texture.size[2] = int(s.stack.size());
-    texture.wrap[2] = volume::Wrap::edge;
-  }
-  known.texture = texture;
-  for (int k = 0; k < 3; ++k) known.counters->size[k] = texture.size[std::size_t(k)];
-  put_text(known.counters->texture_format, texture.format_name);
-}
-
-void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
-  const DispatchTable& gl = *context().gl;
-  describe_volume(s);
-  KnownVolume& known = s.volume;
-  const TextureDescription& texture = known.texture;
-  volume::VolumeDescription wanted = known.description;
-  wanted.size = texture.size;
-  wanted.type = texture.type;
-  wanted.wrap = texture.wrap;
-  wanted.border = texture.border;
-  const bool kept = known.generation == session_->generation();
-  wanted.stored = texels_of(with_slabs(s.slices.region, s.slabs), texture.size);
-  wanted.margin = margin_of(s.slabs, texture.size);
-  if (session_->options().has_budget()) wanted.margin = std::max(wanted.margin, budget_margin);
-  if (kept) wanted.margin = std::max(wanted.margin, known.description.margin);
-  if (kept && volume::contains(known.description.stored, wanted.stored)) {
-    wanted.stored = known.description.stored;
-  } else if (kept) {
-    // The view showed a part first and shows more now: take the whole, once.
-    wanted.stored = {{0, 0, 0}, texture.size};
-  }
-  const bool changed_at_most = kept && wanted == known.description;
-  if (changed_at_most && known.texture_version == s.texture_version) return;
-
-  const TimedShare timed(clock_, &FrameShares::upload);
-  known.generation = 0;
-  Transferred transferred;
-  {
-    SavedState saved(context());
-    gl.ActiveTexture(GLenum(GL_TEXTURE0 + s.pipeline.volume.unit));
-    if (s.pipeline.stack) saved.borrow_texture(GL_TEXTURE_2D, s.pipeline.volume.unit);
-    const auto source = s.pipeline.stack ? stack_source(context(), s.stack, texture)
-                                         : texture_source(context(), s.pipeline.volume.texture, texture);
-    if (changed_at_most) {
-      std::optional<std::vector<volume::TexelBox>> regions;
-      if (!s.pipeline.stack)
-        regions = chain_.group().changes_since(s.pipeline.volume.texture, known.texture_version);
-      if (!regions) regions = {wanted.stored};
-      transferred = send_changes(service, wanted, *regions, *source, known.hashes);
-    } else {
-      if (wanted.id == 0) wanted.id = session_->new_volume_id();
-      ++wanted.version;
-      known.hashes = TileHashes(wanted.stored, wanted.type);
-      transferred = send_volume(service, wanted, *source, known.hashes);
-    }
-  }
-  known.range = value_range(texture, known.hashes.range());
-  known.description = wanted;
-  known.texture_version = s.texture_version;
-  known.generation = session_->generation();
-  known.counters->texel_bytes_sent.fetch_add(transferred.sent, std::memory_order_relaxed);
-  known.counters->texel_bytes_left_out.fetch_add(transferred.left_out, std::memory_order_relaxed);
-}
-
-void VolumeUnit::classify(Substitution& s) {
-  const DispatchTable& gl = *context().gl;
-  KnownVolume& known = s.volume;
-  std::vector<float> key{known.range[0],
-                         known.range[1],
-                         s.pipeline.blending.premultiplied ? 1.0F : 0.0F,
-                         float(known.texture.base),
-                         known.texture.opaque ? 1.0F : 0.0F,
-                         float(known.texture.type),
-                         float(s.pipeline.blending.op),
-                         s.pipeline.target.floating ? 1.0F : 0.0F};
-  for (const GLint swizzle : known.texture.swizzle) key.push_back(float(swizzle));
-  if (!context().core) append_alpha_test(gl, key);
-  if (s.fragment.record != nullptr) {
-    key.push_back(float(s.fragment.record->link));
-    const auto values =
-        fragment_uniform_values(context(), s.pipeline.program, stages(s.pipeline.program, *s.fragment.record));
-    key.insert(key.end(), values.begin(), values.end());
-  } else if (s.pipeline.assembly) {
-    key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
-  } else {
-    append_fixed_function_state(gl, key);
-    if (s.pipeline.fog) append_fog_state(gl, key);
-  }
-  for (const SampledTexture& table : s.pipeline.others) {
-    key.push_back(float(table.texture));
-    key.push_back(float(chain_.group().texture_version(table.texture)));
-    if (chain_.group().is_rendered_to(table.texture))
-      key.push_back(std::nanf(""));  // never equal: probed every time
-  }
-  if (!known.probed || key != known.probed_under || !known.probed->range.covers(s.fragment.range)) {
-    ProbeFinding finding = probe_classification(context(), s.pipeline, known.texture, s.fragment, known.range);
-    if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
-    known.probed = std::get<Probed>(std::move(finding));
-    known.probed_under = std::move(key);
-    known.counters->probes.fetch_add(1, std::memory_order_relaxed);
-  }
-  s.request.classification = known.probed->classification;
-  if (known.probed->fog) place_fog(s, *known.probed->fog);
-  for (const ObservedSlab& observed : s.slabs) {
-    if (observed.input == known.probed->slab_end) s.request.slab = observed.slab;
-  }
-  if (known.probed->slab_end && !s.request.slab)
-    throw Doubt{"the second coordinate of slabs is neither a fixed way off nor on the ray"};
-}
-
-void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
-  // The number, observed at every vertex, as a map of the position: a camera that sees one coordinate.
-  std::vector<ObservedVertex> vertices = s.polygons.vertices;
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const float number =
-        s.pipeline.fog ? s.fog_numbers[v] : s.capture->value(v, measured.input, measured.component);
-    vertices[v].clip = {number, 0, 0, 0};
-  }
-  const auto fit = fit_camera(vertices);
-  if (!fit || fit->residual > max_fit_residual) throw Doubt{"fog is not an affine map of the position"};
-  const double scale = 1.0 / (double(measured.high) - measured.low);
-  volume::Fog& fog = s.request.fog.emplace();
-  for (std::size_t k = 0; k < 3; ++k) fog.normal[k] = fit->texture_to_clip[k] * scale;
-  fog.offset = (fit->texture_to_clip[3] - measured.low) * scale;
-  fog.entries = measured.entries;
-}
-
 void VolumeUnit::compose_request(Substitution& s) {
   const DispatchTable& gl = *context().gl;
   volume::RenderRequest& request = s.request;
@@ -661,6 +451,16 @@ void VolumeUnit::hide_behind_geometry(Substitution& s) {
   const TimedShare timed(clock_, &FrameShares::depth);
   s.request.depth = read_depth(context(), s.pipeline.target, volume::footprint(s.request, s.request.region),
                                s.pipeline.depth_or_equal);
+  if (!s.request.depth) return;
+  // A scene without opaque geometry sends none.
+  const std::uint64_t bytes = sizeof(float) * s.request.depth->depth.size();
+  const bool absent = is_absent(*s.request.depth) && !session_->never_left_out(Omission::absent_depth);
+  if (absent) s.request.depth.reset();
+  note([&](FrameRecord& frame) {
+    Amount& depth = frame.amount(Omission::absent_depth);
+    (absent ? depth.left_out : depth.done) += bytes;
+  });
+  if (!absent) count_done(Omission::absent_depth, "opaque geometry stands in the picture");
 }
 
 bool VolumeUnit::to_be_verified(const Substitution& s) const {
@@ -755,7 +555,18 @@ void VolumeUnit::count_substituted(KnownVolume& known, const volume::FrameCounts
 
 void VolumeUnit::settle_depth(const Substitution& s) {
   if (!s.pipeline.depth_test || !s.pipeline.depth_write) return;
-  if (s.volume.frames == 0 || s.volume.depth_looked_at) pay_depth(*context().gl, s.run);
+  const std::string_view why = s.volume.frames == 0                               ? "the first of the volume"
+                               : s.volume.depth_looked_at                         ? "somebody looked at it"
+                               : session_->never_left_out(Omission::unseen_depth) ? "asked to"
+                                                                                  : "";
+  note([&](FrameRecord& frame) {
+    Amount& runs = frame.amount(Omission::unseen_depth);
+    ++(why.empty() ? runs.left_out : runs.done);
+  });
+  if (!why.empty()) {
+    pay_depth(*context().gl, s.run);
+    count_done(Omission::unseen_depth, why);
+  }
   if (s.volume.depth_looked_at) return;
   depth_watched_ = s.run.volume_texture();
   chain_.set_phase(Phase::owing);
@@ -778,6 +589,9 @@ void VolumeUnit::frame_ended(FrameEnd kind) {
   FrameRecord frame = session_->ledger().close(this);
   frame.time_ms = milliseconds_since(frame_started_);
   count_frame(frame);
+  if (session_->options().explain && frame.substituted > 0)
+    fmt::print(stderr, "understudy: frame {}: {:.4g} ms; left out: {}\n", process_counters().frames.load(),
+               frame.time_ms, sentence_of(frame));
   frame_started_ = Clock::now();
   forget_deleted_volumes();
   leave_stacks();

@@ -34,6 +34,7 @@ namespace understudy::spu {
 
 struct Difference;
 struct MergedVolume;
+struct Transferred;
 
 /// What is remembered of one texture between frames.
 struct KnownVolume {
@@ -119,6 +120,12 @@ class VolumeUnit final : public Unit {
   void find_geometry(Substitution& s);
   void describe_volume(Substitution& s);
   void upload(Substitution& s, compositor::RenderService& service);
+  void count_transferred(VolumeCounters& volume, const Transferred& transferred, const char* why);
+  /// Why colours are found out, empty where they are known.
+  std::string_view why_probed(const KnownVolume& known, const std::vector<float>& key,
+                              const InputRange& range) const;
+  /// An empty reason: colours were known.
+  void count_probe(std::string_view why);
   void classify(Substitution& s);
   void place_fog(Substitution& s, const MeasuredFog& measured);
   void compose_request(Substitution& s);

@@ -6,9 +6,11 @@
 namespace understudy::volume {
 
 std::vector<float> block_bounds(const BrickStore& store, const TransferTable& table) {
+  const auto negative = [](float component) { return !(component >= 0); };
+  if (std::any_of(table.rows(), table.rows() + 4, negative)) return {};
   for (std::size_t i = 0; i + 1 < table.entries(); ++i) {
     const float* slope = table.rows() + 8 * i + 4;
-    if (!(slope[0] > 0 && slope[1] >= 0 && slope[2] >= 0 && slope[3] >= 0)) return {};
+    if (std::any_of(slope, slope + 4, negative)) return {};
   }
   std::vector<float> bounds(store.blocks());
   for (std::size_t b = 0; b < bounds.size(); ++b) bounds[b] = block_bound(store, table, b);
@@ -21,7 +23,8 @@ float block_bound(const BrickStore& store, const TransferTable& table, std::size
   const float place = std::clamp((range.high - table.low()) * table.scale(), 0.0F, table.last());
   const auto entry = std::size_t(place);
   const float* row = table.rows() + 8 * entry;
-  return row[0] + (place - float(entry)) * row[4];
+  const auto component = [&](std::size_t k) { return row[k] + (place - float(entry)) * row[4 + k]; };
+  return (component(0) + component(1)) + (component(2) + component(3));
 }
 
 }  // namespace understudy::volume

@@ -47,6 +47,7 @@ class PartWalk {
         until_test = samples_between_tests;
         if (1 - pixel[3] < scene_.termination) {
           ++counts.rays_terminated;
+          counts.samples_hidden += std::uint64_t(std::max(0, last - k + 1));
           break;
         }
       }

@@ -140,6 +140,7 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
                                                        : scene.op == Operator::first_hit && pixel[3] > 0;
         if (opaque) {
           ++counts.rays_terminated;
+          counts.samples_hidden += std::uint64_t(std::max(0, last - k + 1));
           break;
         }
       }

@@ -71,6 +71,7 @@ class SegmentWalk {
         until_test = samples_between_tests;
         if (1 - pixel[3] < scene_.termination) {
           ++counts.rays_terminated;
+          counts.samples_hidden += std::uint64_t(std::max(0, last_ - k + 1));
           break;
         }
       }

@@ -23,7 +23,7 @@ struct Scene {
   const BrickStore* store = nullptr;
   const SkipMap* skip = nullptr;
   const TransferTable* table = nullptr;
-  const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds); null: not known
+  const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds()); null: not known
   const LinearMap* map = nullptr;
   const PairLookup* pairs = nullptr;
   /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
@@ -56,6 +56,7 @@ constexpr int samples_between_tests = 8;
 struct KernelCounts {
   std::uint64_t samples_taken = 0;
   std::uint64_t rays_terminated = 0;
+  std::uint64_t samples_hidden = 0;  ///< that these had left
 };
 
 /// Writes the pixel of ray r to rgba + 4 r.

@@ -219,6 +219,7 @@ struct Circumstances {
   bool pre_integrated = false;
   float tolerance = 0;        ///< of adaptive steps, otherwise 0
   double step_cells = 0;      ///< their length
+  bool skips = true;          ///< LeaveOut::empty_blocks
   std::vector<float> levels;  ///< of surfaces, in units of the texel type
 
   bool operator==(const Circumstances&) const = default;
@@ -228,6 +229,7 @@ Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequ
   Circumstances c;
   c.keeps_clear_samples = request.op == Operator::min;
   c.reach = blocks_in_reach(volume, request.slab);
+  c.skips = request.leave_out.empty_blocks;
   c.pre_integrated = request.method == Method::pre_integrated;
   if (request.method == Method::adaptive) {
     c.tolerance = request.tolerance;
@@ -251,6 +253,7 @@ struct RayCaster::Prepared {
   std::optional<StepDivision> division;
 
   bool visible(const BrickStore& store, std::size_t block) const {
+    if (!circumstances.skips) return true;
     const auto ranges = store.ranges(block);
     if (circumstances.keeps_clear_samples) return ranges[0].low <= ranges[0].high;
     if (std::any_of(circumstances.levels.begin(), circumstances.levels.end(),
@@ -261,6 +264,7 @@ struct RayCaster::Prepared {
   }
 
   SkipMap skip_map(const BrickStore& store) const {
+    if (!circumstances.skips) return SkipMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
     if (has_slabs())
       return SkipMap(store.block_counts(),
                      blocks_with_slabs(store, *pairs, circumstances.reach, circumstances.keeps_clear_samples));
@@ -382,7 +386,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::optional<FogTable> fog;
   if (request.fog) fog.emplace(*request.fog, store);
   scene.fog = fog ? &*fog : nullptr;
-  if (request.op == Operator::max && prepared.table && !request.fog) {
+  if (request.op == Operator::max && prepared.table && !request.fog && request.leave_out.lesser_samples) {
     if (!prepared_[0]->bounds) prepared_[0]->bounds = block_bounds(store, *prepared.table);
     if (!prepared.bounds->empty()) scene.bounds = prepared.bounds->data();
   }
@@ -422,6 +426,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
       kernel(scene, strip, rgba.data(), done);
       mine.samples_taken += done.samples_taken;
       mine.rays_terminated += done.rays_terminated;
+      mine.samples_hidden += done.samples_hidden;
       for (int r = 0; r < rows; ++r)
         std::copy_n(rgba.data() + 4 * r * tile_width, 4 * width, out.at(x, y + row + r));
     }
@@ -444,6 +449,8 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     counts.rays_terminated += c.rays_terminated;
     counts.samples += c.samples;
     counts.samples_taken += c.samples_taken;
+    counts.samples_hidden += c.samples_hidden;
+    if (scene.bounds != nullptr) counts.samples_lesser += c.samples - c.samples_taken;
   });
 }
 

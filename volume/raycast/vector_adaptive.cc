@@ -214,7 +214,7 @@ void walk_steps_of_strip(const Scene& scene, const RayStrip& strip, Source sourc
   const IntTag d;
   const AdaptiveConstants constants(scene, source);
   const Floats one = hn::Set(f, 1.0F);
-  Ints taken = hn::Zero(d);
+  Ints taken = hn::Zero(d), hidden = hn::Zero(d);
   for (std::size_t y = 0; y < strip_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       SegmentGroup packets;
@@ -235,6 +235,8 @@ void walk_steps_of_strip(const Scene& scene, const RayStrip& strip, Source sourc
           const Floats room = hn::Sub(one, alphas(pixels[g]));
           const auto opaque = hn::And(hn::Lt(room, constants.termination), hn::Le(rays.k, rays.last));
           counts.rays_terminated += hn::CountTrue(f, opaque);
+          const Floats unseen = hn::Add(hn::Sub(rays.last, rays.k), one);
+          hidden = hn::Add(hidden, truncated(hn::IfThenElseZero(opaque, unseen)));
           rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
           done = done && rays.done();
         }
@@ -247,9 +249,8 @@ void walk_steps_of_strip(const Scene& scene, const RayStrip& strip, Source sourc
             std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + 4 * g + q));
         }
     }
-  alignas(64) std::int32_t taken_by_lane[lanes];
-  hn::Store(taken, d, taken_by_lane);
-  for (const std::int32_t n : taken_by_lane) counts.samples_taken += std::uint64_t(n);
+  counts.samples_taken += total(taken);
+  counts.samples_hidden += total(hidden);
 }
 
 void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {

@@ -80,6 +80,15 @@ HWY_INLINE Ints truncated(Floats v) {
 #endif
 }
 
+/// The sum of counts.
+HWY_INLINE std::uint64_t total(Ints counts) {
+  alignas(64) std::array<std::int32_t, lanes> by_lane;
+  hn::Store(counts, IntTag(), by_lane.data());
+  std::uint64_t sum = 0;
+  for (const std::int32_t count : by_lane) sum += std::uint64_t(count);
+  return sum;
+}
+
 /// Texels as the kernel reads them. Interpolation along x in 16-bit integers has the weights -2^15 (1 - s)
 /// and -2^15 s, because one is representable that way, and a power of two leaves texel values exact; `factor`
 /// and `zero` say how its results relate to texel values: result = factor * (value - zero).

@@ -136,14 +136,19 @@ HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source sour
   compose(classified, constants, pixels);
 }
 
-/// The first component of what every ray has seen of a maximum, less than any where it has seen nothing.
+/// The sum of components of what every ray has seen of a maximum, added up as block_bounds() does.
 HWY_INLINE Floats largest_seen(const std::array<Floats, 4>& pixels) {
   const FloatTag f;
   const hn::Repartition<double, FloatTag> wide;
-  const auto pair01 = hn::BitCast(wide, hn::InterleaveLower(f, pixels[0], pixels[1]));
-  const auto pair23 = hn::BitCast(wide, hn::InterleaveLower(f, pixels[2], pixels[3]));
-  const Floats first = hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
-  return hn::IfThenElse(hn::Gt(alphas(pixels), hn::Zero(f)), first, hn::Set(f, -1.0F));
+  std::array<Floats, 4> sums;
+#pragma GCC unroll 4
+  for (std::size_t q = 0; q < 4; ++q) {
+    const Floats pairs = hn::Add(pixels[q], hn::Shuffle2301(pixels[q]));
+    sums[q] = hn::Add(pairs, hn::Shuffle1032(pairs));
+  }
+  const auto pair01 = hn::BitCast(wide, hn::InterleaveLower(f, sums[0], sums[1]));
+  const auto pair23 = hn::BitCast(wide, hn::InterleaveLower(f, sums[2], sums[3]));
+  return hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
 }
 
 template <bool slabs, typename Source>
@@ -152,7 +157,7 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
   const IntTag d;
   const Constants constants(scene, source);
   const Floats one = hn::Set(f, 1.0F);
-  Ints taken = hn::Zero(d);
+  Ints taken = hn::Zero(d), hidden = hn::Zero(d);
   for (std::size_t y = 0; y < strip_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       Group packets;
@@ -186,6 +191,8 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
           const Floats room = hn::Sub(one, alphas(pixels[g]));
           const auto opaque = hn::And(hn::Lt(room, constants.termination), hn::Le(rays.k, rays.last));
           counts.rays_terminated += hn::CountTrue(f, opaque);
+          const Floats unseen = hn::Add(hn::Sub(rays.last, rays.k), one);
+          hidden = hn::Add(hidden, truncated(hn::IfThenElseZero(opaque, unseen)));
           rays.k = hn::IfThenElse(opaque, hn::Add(rays.last, one), rays.k);
           done = done && rays.done();
         }
@@ -198,9 +205,8 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
             std::copy_n(column + 4 * row, 4, rgba + 4 * ((y + row) * tile_width + x + 4 * g + q));
         }
     }
-  alignas(64) std::int32_t taken_by_lane[lanes];
-  hn::Store(taken, d, taken_by_lane);
-  for (const std::int32_t n : taken_by_lane) counts.samples_taken += std::uint64_t(n);
+  counts.samples_taken += total(taken);
+  counts.samples_hidden += total(hidden);
 }
 
 const char* target_name() {

@@ -4,57 +4,27 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
-#include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/picture.h"
+#include "apps/understudy/study/viewer_command.h"
 
 namespace understudy::launcher::study {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int patience_ms = 180000;
 constexpr int viewer_frames = 9, frames_that_settle = 3, vtk_frames = 3;
 constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages are for
-
-/// Runs to the end and returns what was written to both outputs. Throws std::runtime_error.
-std::string output_of(std::vector<std::string> arguments, const fs::path& log) {
-  const std::string name = fs::path(arguments.front()).filename().string();
-  fs::remove(log);  // children write at its end
-  Environment environment = current_environment();
-  environment["LIBGL_ALWAYS_SOFTWARE"] = "1";
-  std::optional<Ending> ending;
-  try {
-    ChildProcess child({std::move(arguments), std::move(environment), log, true});
-    ending = child.wait_for_ending(patience_ms);
-  } catch (const std::system_error& error) {
-    throw std::runtime_error(error.what());
-  }
-  std::ifstream file(log);
-  std::string text(std::istreambuf_iterator<char>(file), {});
-  if (!ending) throw std::runtime_error(fmt::format("{} took more than {} s", name, patience_ms / 1000));
-  if (ending->exit_status() != 0) {
-    constexpr std::size_t last_words = 300;
-    if (text.size() > last_words) text.erase(0, text.size() - last_words);
-    throw std::runtime_error(fmt::format("{} {}: {}", name, ending->text(), text));
-  }
-  return text;
-}
 
 double median(std::vector<double> values) {
   std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
   return values[values.size() / 2];
-}
-
-fs::path viewer() {
-  return this_installation().programs / "understudy-viewer";
 }
 
 fs::path vtk_script() {
@@ -70,8 +40,9 @@ struct OtherPrograms::Drawn {
 
 OtherPrograms::OtherPrograms(fs::path folder) : folder_(std::move(folder)) {
   fs::create_directories(folder_);
-  if (!fs::exists(viewer()))
-    absent_[Scheme::bare_viewer] = viewer().string() + " is not there; build the target understudy-viewer";
+  if (!fs::exists(viewer_program()))
+    absent_[Scheme::bare_viewer] =
+        viewer_program().string() + " is not there; build the target understudy-viewer";
   std::string vtk;
   if (!program_on_path("xvfb-run")) {
     vtk = "xvfb-run is not there; apt install xvfb";
@@ -99,24 +70,13 @@ std::optional<std::string> OtherPrograms::absence(Scheme scheme) const {
 
 OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
   const fs::path screenshot = folder_ / "viewer.png";
-  std::vector<std::string> arguments{viewer().string(), (folder_ / "texels.raw").string()};
-  const auto option = [&](const char* name, const auto&... values) {
-    arguments.emplace_back(name);
-    (arguments.push_back(fmt::format("{}", values)), ...);
+  std::vector<std::string> arguments = viewer_command(scene, folder_);
+  const auto option = [&](const char* name, const std::string& value) {
+    arguments.insert(arguments.end(), {name, value});
   };
-  const auto& size = scene.size();
-  const volume::Vec3& spacing = scene.spacing();
-  option("--size", size[0], size[1], size[2]);
-  option("--type", scene.texel_type());
-  option("--spacing", spacing[0], spacing[1], spacing[2]);
-  option("--table", (folder_ / "scene.json").string());
-  option("--azimuth", Scene::camera().azimuth);
-  option("--elevation", Scene::camera().elevation);
-  option("--distance", Scene::camera().distance / 2);  // it counts whole diagonals
-  option("--window-size", scene.edge(), scene.edge());
-  option("--frames", viewer_frames);
+  option("--frames", std::to_string(viewer_frames));
   option("--screenshot", screenshot.string());
-  for (const char* flag : {"--offscreen", "--no-frame", "--print-times"}) arguments.emplace_back(flag);
+  arguments.emplace_back("--print-times");
   std::istringstream lines(output_of(std::move(arguments), folder_ / "viewer.txt"));
   std::vector<double> times;
   for (std::string line; std::getline(lines, line);)
@@ -138,7 +98,7 @@ OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
 OtherPrograms::Drawn OtherPrograms::vtk(const Scene& scene, const char* mapper) const {
   const fs::path floats = folder_ / "vtk.f32";
   const std::string text =
-      output_of({"xvfb-run", "-a", python, "-B", vtk_script().string(), (folder_ / "scene.json").string(),
+      output_of({"xvfb-run", "-a", python, "-B", vtk_script().string(), description_in(folder_).string(),
                  "--mapper", mapper, "--frames", fmt::format("{}", vtk_frames), "--picture", floats.string()},
                 folder_ / "vtk.txt");
   const auto figures = nlohmann::json::parse(text.substr(std::min(text.rfind('{'), text.size())));
@@ -152,7 +112,7 @@ OtherPrograms::Drawn OtherPrograms::vtk(const Scene& scene, const char* mapper) 
 }
 
 Point OtherPrograms::measure(const Scene& scene, const Setting& setting, Scene::Rays& rays) const {
-  scene.hand_out(folder_ / "texels.raw", folder_ / "scene.json");
+  hand_out_to(folder_, scene);
   Drawn drawn;
   try {
     drawn = setting.scheme == Scheme::bare_viewer

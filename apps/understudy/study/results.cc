@@ -48,6 +48,25 @@ Point point_of(const Json& json) {
   return point;
 }
 
+Json json_of(const Saving& saving) {
+  return {{"item", saving.item},
+          {"unit", saving.unit},
+          {"shown", saving.shown},
+          {"left_out", saving.left_out},
+          {"all", saving.all},
+          {"time_ms", saving.ms},
+          {"time_ms_without", saving.ms_without},
+          {"difference", saving.difference},
+          {"tolerance", saving.tolerance},
+          {"absent", saving.absent}};
+}
+
+Saving saving_of(const Json& json) {
+  return {json.at("item"),      json.at("unit"),    json.at("shown"),           json.at("left_out"),
+          json.at("all"),       json.at("time_ms"), json.at("time_ms_without"), json.at("difference"),
+          json.at("tolerance"), json.at("absent")};
+}
+
 Json json_of(const std::optional<Ratio>& ratio) {
   return ratio ? Json{{"value", ratio->value}, {"at_least", ratio->at_least}} : Json(nullptr);
 }
@@ -58,7 +77,7 @@ Json json_of(const SceneResults& scene) {
             {"rays", scene.rays},           {"reference_seconds", scene.reference_seconds},
             {"orders", Json::object()},     {"error_maps", scene.error_maps},
             {"advantages", Json::object()}, {"absent", scene.absent},
-            {"points", Json::array()}};
+            {"points", Json::array()},      {"savings", Json::array()}};
   for (const Scheme scheme : all_schemes)
     if (const auto advantage = advantage_over(scene.points, scheme); advantage && is_other_program(scheme))
       json["advantages"][name_of(scheme)] = {{"time_ratio", json_of(advantage->time)},
@@ -66,6 +85,7 @@ Json json_of(const SceneResults& scene) {
   for (const Scheme scheme : {Scheme::post_classified, Scheme::pre_integrated, Scheme::adaptive})
     if (const auto order = observed_order(scene.points, scheme)) json["orders"][name_of(scheme)] = *order;
   for (const Point& point : scene.points) json["points"].push_back(json_of(point));
+  for (const Saving& saving : scene.savings) json["savings"].push_back(json_of(saving));
   return json;
 }
 
@@ -80,6 +100,7 @@ SceneResults scene_of(const Json& json) {
   scene.error_maps = json.at("error_maps");
   scene.absent = json.at("absent");
   for (const Json& point : json.at("points")) scene.points.push_back(point_of(point));
+  for (const Json& saving : json.at("savings")) scene.savings.push_back(saving_of(saving));
   return scene;
 }
 
@@ -139,7 +160,15 @@ void write_results(const std::filesystem::path& folder, const Results& results) 
                          point.error.rms, point.error.colour, point.error.max, point.time_ms, point.ns_per_ray,
                          point.samples_taken, point.samples, point.front);
   }
+  std::string savings = "scene,item,unit,left_out,all,time_ms,time_ms_without,difference,tolerance,shown\n";
+  for (const SceneResults& scene : results.scenes)
+    for (const Saving& saving : scene.savings)
+      if (saving.absent.empty())
+        savings += fmt::format("{},{},{},{},{},{:.4g},{:.4g},{:.4g},{:.4g},\"{}\"\n", scene.name, saving.item,
+                               saving.unit, saving.left_out, saving.all, saving.ms, saving.ms_without,
+                               saving.difference, saving.tolerance, saving.shown);
   write(folder / "study.json", json.dump(1) + "\n");
+  write(folder / "left_out.csv", savings);
   write(folder / "study.csv", csv);
 }
 

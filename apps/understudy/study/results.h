@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/study/leaving_out.h"
 #include "apps/understudy/study/measure.h"
 
 namespace understudy::launcher::study {
@@ -23,6 +24,7 @@ struct SceneResults {
   std::map<std::string, std::string> error_maps;
   /// Why other programs have no point here, by the scheme's name.
   std::map<std::string, std::string> absent;
+  std::vector<Saving> savings;  ///< empty: not measured here
 
   const Point* find(const Setting& setting) const;
 };

@@ -129,7 +129,7 @@ bool has_error_map(const Setting& setting) {
 
 void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
                  const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
-                 Progress& progress) {
+                 bool with_savings, Progress& progress) {
   std::vector<Setting> missing;
   results.absent.clear();
   for (const Setting& setting : settings(arguments.quick)) {
@@ -142,9 +142,17 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     else
       missing.push_back(setting);
   }
-  if (missing.empty()) return;
+  const bool to_leave_out = with_savings && results.savings.empty();
+  if (missing.empty() && !to_leave_out) return;
   progress.show(0, "reading");
   Scene scene(description, all.edge, all.stride);
+  if (to_leave_out) {
+    results.savings = savings_of(scene, folder / "left-out", [&](const std::string& item) {
+      progress.show(0, "without leaving out " + item);
+    });
+    write_results(folder, all);
+  }
+  if (missing.empty()) return;
   scene.integrate([&](double done) { progress.show(reference_share * done, "reference"); });
   if (std::ranges::all_of(scene.exact(), [](const auto& ray) { return *std::ranges::max_element(ray) <= 0; }))
     throw std::invalid_argument(
@@ -221,6 +229,18 @@ void print_advantages(const SceneResults& scene) {
   for (const auto& [program, why] : scene.absent) fmt::print("  {:<44} absent: {}\n", program, why);
 }
 
+void print_savings(const SceneResults& scene) {
+  if (!scene.savings.empty()) fmt::print("  left out, and what it would cost:\n");
+  for (const Saving& saving : scene.savings) {
+    if (!saving.absent.empty())
+      fmt::print("  {:<20} absent: {}\n", saving.item, saving.absent);
+    else
+      fmt::print("  {:<20} {:5.1f} % of {} {}: {:.2f} ms a frame, {:.2f} without; pictures differ by {:.1e}\n",
+                 saving.item, saving.all > 0 ? 100 * double(saving.left_out) / double(saving.all) : 0,
+                 saving.all, saving.unit, saving.ms, saving.ms_without, saving.difference);
+  }
+}
+
 int run_study(const StudyArguments& arguments) {
   const std::vector<SceneDescription> scenes = scenes_of(arguments);
   // A path that is wrong is said now, not when its turn comes.
@@ -246,7 +266,8 @@ int run_study(const StudyArguments& arguments) {
     if (found == results.scenes.end())
       found = results.scenes.insert(found, {scene.name, scene.shows, scene.volume});
     progress.begin(i, scene.name);
-    study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, progress);
+    const bool with_savings = !arguments.alone && (i == 0 || !arguments.quick);
+    study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, with_savings, progress);
   }
   for (const SceneResults& scene : results.scenes) {
     fmt::print("{}: {} rays, reference {:.1f} s ({:.0f} rays/s)\n", scene.name, scene.rays,
@@ -256,6 +277,7 @@ int run_study(const StudyArguments& arguments) {
         fmt::print("  {:<44} {:8.2f} ms   RMS {:.1e}   max {:.1e}\n", text_of(point.setting), point.time_ms,
                    point.error.rms, point.error.max);
     print_advantages(scene);
+    print_savings(scene);
   }
   const int status = write_page(folder);
   if (status == 0) fmt::print("{}\n", (folder / "index.html").string());

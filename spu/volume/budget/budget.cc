@@ -135,13 +135,14 @@ bool Budget::go_finer() {
   return true;
 }
 
-void Budget::look_at(compositor::RenderService& service, const volume::ImageView& picture, double ms,
-                     BudgetCounters& counters) {
+void Budget::look_at(compositor::RenderService& service, const volume::ImageView& picture,
+                     std::optional<double> ms, BudgetCounters& counters) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double, std::milli> passed = now - looked_at_.value_or(now);
   looked_at_ = now;
-  credit_ms_ = std::min(credit_ms_ + share_of_looking * passed.count(), most_credit_ms);
-  ms_ = frames_as_chosen_++ == 0 ? ms : 0.8 * ms_ + 0.2 * ms;
+  // A picture that was there already leaves the time in which it would have been cast.
+  credit_ms_ = std::min(credit_ms_ + share_of_looking * passed.count() + (ms ? 0 : ms_), most_credit_ms);
+  if (ms) ms_ = frames_as_chosen_++ == 0 ? *ms : 0.8 * ms_ + 0.2 * *ms;
   const auto count = std::size_t(std::max(0.0, credit_ms_) / ms_a_ray_);
   if (count > 0 && !picture.rect.empty()) {
     // Half where it was wrong before, half anywhere.
@@ -162,7 +163,7 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
   if (asked_.error > 0 && worst_ > asked_.error) {
     ++counters.pictures_over;
     go_finer();
-  } else if (!(asked_.error > 0)) {
+  } else if (!(asked_.error > 0) && ms) {
     keep_time();
   }
   tell(counters);

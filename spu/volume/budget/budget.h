@@ -39,9 +39,9 @@ class Budget {
                                                const volume::VolumeDescription& volume,
                                                std::uint64_t service_generation, BudgetCounters& counters);
 
-  /// Looks at the picture of what request() gave last, which took `ms`. Takes a fiftieth of the time that
-  /// passes.
-  void look_at(compositor::RenderService& service, const volume::ImageView& picture, double ms,
+  /// Looks at the picture of what request() gave last, which took `ms` if it was cast and not there already.
+  /// Takes a fiftieth of the time that passes, and the time of casting where nothing was cast.
+  void look_at(compositor::RenderService& service, const volume::ImageView& picture, std::optional<double> ms,
                BudgetCounters& counters);
 
  private:

@@ -441,8 +441,8 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
   whole.description = wanted;
   whole.generation = session_->generation();
   merged.versions = std::move(versions);
-  whole.counters->texel_bytes_sent.fetch_add(transferred.sent, std::memory_order_relaxed);
-  whole.counters->texel_bytes_left_out.fetch_add(transferred.left_out, std::memory_order_relaxed);
+  count_transferred(*whole.counters, transferred,
+                    kept ? "a texture was written to" : "the nodes do not have them");
 }
 
 void VolumeUnit::forget_single_bricks(const MergedVolume& merged) {

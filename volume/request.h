@@ -188,6 +188,8 @@ struct RenderRequest {
   /// A ray stops once its transparency falls below this; the error is at most this times the brightest colour.
   float termination = 5e-6F;
   std::optional<DepthImage> depth;
+  /// Nodes that send each other floats may send half floats, each time rounded to 2^-11 of a value.
+  bool may_travel_as_halves = false;
   LeaveOut leave_out;
 
   bool operator==(const RenderRequest&) const = default;

@@ -95,11 +95,13 @@ class Node {
   // Of the render request in hand.
   volume::Operator op_{};
   volume::Rect window_;          // that all samples lie in
+  Layout layout_{};              // that its parts travel in
   bool only_footprints_ = true;  // travel
   std::vector<Rank> visible_order_;
   volume::Image image_;
   // What pictures of a window cost without footprints.
   volume::Rect priced_window_;
+  Layout priced_layout_{};
   ExchangeCost price_;
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
@@ -390,6 +392,8 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         const volume::RenderRequest request = decode_request(payload, pair_tables_[order.client]);
         op_ = request.op;
         window_ = intersection(request.window, request.viewport);
+        layout_ = request.may_travel_as_halves && exchange_.layout == Layout::rgba32f ? Layout::rgba16f
+                                                                                      : exchange_.layout;
         only_footprints_ = request.leave_out.footprints;
         visible_order_ = renderer_.visibility_order(order.client, request);
         image_ = renderer_.render(order.client, request, mine.counts);
@@ -430,15 +434,16 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
 
 Schedule Node::schedule_of(std::span<const volume::Rect> footprints) {
   if (exchange_.algorithm) return schedule(*exchange_.algorithm, visible_order_, footprints);
-  return cheapest(visible_order_, footprints, exchange_.layout, *link_cost_);
+  return cheapest(visible_order_, footprints, layout_, *link_cost_);
 }
 
 // What the picture in hand would cost if every rank sent the window whole.
 const ExchangeCost& Node::cost_of_whole_windows() {
-  if (window_ != priced_window_) {
+  if (window_ != priced_window_ || layout_ != priced_layout_) {
     const std::vector<volume::Rect> windows(std::size_t(link_.size()), window_);
-    price_ = cost(schedule_of(windows), exchange_.layout, LinkCost());
+    price_ = cost(schedule_of(windows), layout_, LinkCost());
     priced_window_ = window_;
+    priced_layout_ = layout_;
   }
   return price_;
 }
@@ -451,12 +456,12 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCou
   if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
   Schedule chosen = schedule_of(footprints);
   chosen.clear_pixels_travel = !only_footprints_;
-  Exchanged exchanged = exchange(std::move(image_), chosen, op_, exchange_.layout, link_);
+  Exchanged exchanged = exchange(std::move(image_), chosen, op_, layout_, link_);
   if (link_.rank() == 0) {
     const ExchangeCost& whole = cost_of_whole_windows();
     counts.bytes_exchanged += exchanged.bytes;
     counts.bytes_of_whole_windows += whole.bytes_sent;
-    counts.messages += cost(chosen, exchange_.layout, LinkCost()).messages;
+    counts.messages += cost(chosen, layout_, LinkCost()).messages;
     counts.messages_of_whole_windows += whole.messages;
   }
   return exchanged;

@@ -411,6 +411,7 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   write(out, request.light);
   out.real(request.termination);
   write(out, request.depth);
+  out.integer(request.may_travel_as_halves);
   for (const bool left_out :
        {request.leave_out.empty_blocks, request.leave_out.lesser_samples, request.leave_out.footprints})
     out.integer(left_out);
@@ -450,6 +451,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.light = read_light(in);
   request.termination = in.real32("termination");
   request.depth = read_depth(in);
+  request.may_travel_as_halves = in.flag("may_travel_as_halves");
   for (bool* left_out :
        {&request.leave_out.empty_blocks, &request.leave_out.lesser_samples, &request.leave_out.footprints})
     *left_out = in.flag("leave_out");

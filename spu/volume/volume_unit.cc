@@ -584,8 +584,15 @@ void VolumeUnit::depth_cleared() {
 
 void VolumeUnit::frame_ended(FrameEnd kind) {
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
-  // After a swap the depth buffer's contents are undefined.
-  if (kind == FrameEnd::swap && depth_watched_ != 0) depth_cleared();
+  // After a swap the depth buffer's contents are undefined; without one they lie in memory that the application
+  // may look at without a call.
+  if (depth_watched_ != 0) {
+    if (kind == FrameEnd::swap) {
+      depth_cleared();
+    } else {
+      depth_looked_at();
+    }
+  }
   FrameRecord frame = session_->ledger().close(this);
   frame.time_ms = milliseconds_since(frame_started_);
   count_frame(frame);

@@ -144,6 +144,10 @@ class Run:
         }[way]
         if watched:
             environment["UNDERSTUDY_VERIFY_PSNR"] = "200"
+        # Some viewers draw one view again and again: times are of pictures that are cast. With LD_PRELOAD alone all is
+        # as users have it.
+        if way != "preload":
+            environment["UNDERSTUDY_NEVER_LEAVE_OUT"] = "unchanged-pictures"
         if way == "preload":
             saved.mkdir(parents=True)
         log = OUT / f"{stem}.log"

@@ -176,6 +176,43 @@ TEST_F(NodeGroupTest, RanksWithNothingToShowAreIdleAndExchangeNothing) {
   EXPECT_EQ(rendered.counts.bytes_exchanged, 0U);
 }
 
+TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
+  start(3);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  volume::RenderRequest request = some_request(texture);
+  const Rendered usual = linked->render(request);
+  const volume::FrameCounts counts = usual.counts;
+  const volume::Image picture = whole_picture(usual, request);
+  request.leave_out.footprints = false;
+  const Rendered whole = linked->render(request);
+  EXPECT_EQ(whole.image.rect, request.window);
+  EXPECT_LE(largest_difference(whole_picture(whole, request), picture), 4e-6);
+  EXPECT_EQ(whole.counts.bytes_exchanged, counts.bytes_of_whole_windows) << "as was said before";
+  EXPECT_EQ(whole.counts.messages, counts.messages_of_whole_windows);
+  EXPECT_LT(counts.bytes_exchanged, counts.bytes_of_whole_windows);
+  EXPECT_LE(counts.messages, counts.messages_of_whole_windows);
+  EXPECT_GT(counts.messages, 0U);
+}
+
+TEST_F(NodeGroupTest, PartsMayTravelAsHalves) {
+  start(3);
+  const auto linked = connect();
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  volume::RenderRequest request = some_request(texture);
+  const Rendered floats = linked->render(request);
+  const std::uint64_t bytes = floats.counts.bytes_exchanged;
+  const volume::Image picture = whole_picture(floats, request);
+  request.may_travel_as_halves = true;
+  const Rendered halves = linked->render(request);
+  EXPECT_LT(double(halves.counts.bytes_exchanged), 0.6 * double(bytes));
+  const double off = largest_difference(whole_picture(halves, request), picture);
+  EXPECT_GT(off, 0);
+  EXPECT_LE(off, 3.0 / 2048) << "three parts, each rounded";
+}
+
 TEST_F(NodeGroupTest, PicturesFollowAWindowThatGrowsAndShrinks) {
   start(2);
   const auto linked = connect(), embedded = embedded_service();

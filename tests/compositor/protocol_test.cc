@@ -69,6 +69,8 @@ RenderRequest some_request(bool colours, bool depth) {
   }
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.termination = 1e-5F;
+  r.may_travel_as_halves = depth;
+  r.leave_out = {true, !colours, depth};
   if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
   return r;
 }
@@ -89,7 +91,7 @@ std::array<PairTable, 3> some_kept_tables() {
 }
 
 FrameCounts some_counts() {
-  return {1, 2, 3, 4, 5, 6, 7, 8, 9.5, 10.25};
+  return {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14.5, 15.25};
 }
 
 // Every kind of message, and how it is read.

@@ -256,6 +256,10 @@ int run_study(const StudyArguments& arguments) {
   Results results = arguments.fresh ? Results{edge, stride, {}} : read_results(folder, edge, stride);
   std::optional<OtherPrograms> others;
   if (!arguments.alone) others.emplace(folder / "other-programs");
+  // One scene of a quick study is looked into for what is left out: the first that is somebody's data.
+  const auto from_file = std::ranges::find_if(
+      scenes, [](const SceneDescription& scene) { return !scene.volume.starts_with("synthetic:"); });
+  const std::size_t looked_into = from_file == scenes.end() ? 0 : std::size_t(from_file - scenes.begin());
   Progress progress(scenes.size());
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SceneDescription& scene = scenes[i];
@@ -266,7 +270,7 @@ int run_study(const StudyArguments& arguments) {
     if (found == results.scenes.end())
       found = results.scenes.insert(found, {scene.name, scene.shows, scene.volume});
     progress.begin(i, scene.name);
-    const bool with_savings = !arguments.alone && (i == 0 || !arguments.quick);
+    const bool with_savings = !arguments.alone && (i == looked_into || !arguments.quick);
     study_scene(scene, *found, results, folder, arguments, others ? &*others : nullptr, with_savings, progress);
   }
   for (const SceneResults& scene : results.scenes) {

@@ -59,6 +59,8 @@ class Budget {
   void choose();
   void use(std::size_t of_front);
   void prove(compositor::RenderService& service);
+  void try_halves(compositor::RenderService& service);
+  Setting setting() const;
   bool go_finer();
   bool keep_margin(const volume::VolumeDescription& volume);
   void keep_time();
@@ -68,6 +70,7 @@ class Budget {
   std::optional<MeasuredFor> measured_for_;
   Calibration calibration_;
   std::size_t chosen_ = 0;                         ///< of the front
+  bool as_halves_ = false;                         ///< Setting::as_halves
   std::optional<volume::TransferFunction> table_;  ///< of samples as chosen
   Setting table_for_;
   Meaning meaning_;   ///< of the last request

@@ -86,9 +86,9 @@ TransferFunction stepped(const TransferFunction& whole, double step, std::size_t
 }  // namespace
 
 std::string name_of(const Setting& setting) {
-  return fmt::format("{} of {:.4g} of the application's steps, rays end below {:.1e}",
+  return fmt::format("{} of {:.4g} of the application's steps, rays end below {:.1e}{}",
                      setting.method == volume::Method::pre_integrated ? "pre-integrated segments" : "samples",
-                     setting.step, setting.termination);
+                     setting.step, setting.termination, setting.as_halves ? ", half floats between nodes" : "");
 }
 
 std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, const std::array<int, 3>& size) {
@@ -121,6 +121,7 @@ RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
   request.steps->first = setting.method == volume::Method::pre_integrated ? 0 : 0.5;
   request.method = setting.method;
   request.termination = setting.termination;
+  request.may_travel_as_halves = setting.as_halves;
   return request;
 }
 

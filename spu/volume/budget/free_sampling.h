@@ -15,6 +15,7 @@ struct Setting {
   volume::Method method = volume::Method::post_classified;
   double step = 1;            ///< from one sample to the next, in the application's own
   float termination = 5e-6F;  ///< as of RenderRequest
+  bool as_halves = false;     ///< nodes' parts of the picture travel as half floats
   bool operator==(const Setting&) const = default;
 };
 

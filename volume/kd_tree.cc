@@ -7,31 +7,10 @@
 #include <stdexcept>
 
 #include "volume/brick/brick_store.h"
-#include "volume/matrix.h"
 
 namespace understudy::volume {
 
 namespace {
-
-/// The eye in homogeneous texture space, scaled such that depth grows along -eye; at infinity (w = 0) for a
-/// parallel projection. It is the point whose clip x, y and w vanish.
-Vec4 eye_of(const Matrix4& texture_to_clip) {
-  const auto clip_to_texture = inverse(texture_to_clip);
-  if (!clip_to_texture) throw std::invalid_argument("the matrix from texture to clip space is singular");
-  const Vec4 column = transform(*clip_to_texture, {0, 0, 1, 0});
-  return {-column[0], -column[1], -column[2], -column[3]};
-}
-
-/// The middle of the region, or its deepest corner when the middle lies behind the eye.
-Vec3 seen_point(const RenderRequest& request) {
-  const auto depth = [&](const Vec3& t) { return transform_point(request.texture_to_clip, t)[3]; };
-  const Box& region = request.region;
-  Vec3 point = scale(add(region.low, region.high), 0.5);
-  if (depth(point) > 0) return point;
-  for (int axis = 0; axis < 3; ++axis)
-    point[axis] = request.texture_to_clip[12 + axis] > 0 ? region.high[axis] : region.low[axis];
-  return point;
-}
 
 /// Where to cut `extent` cells (starting `offset` cells into the lattice) for `left` of `ranks`: on the block
 /// face nearest to the fair share, or between any two cells when no block face lies inside.
@@ -83,37 +62,30 @@ int KdTree::divide(const VolumeDescription& volume, const TexelBox& lattice, con
   return index;
 }
 
-void KdTree::walk(int child, const std::array<double, 4>& eye, bool reversed, std::vector<int>& order) const {
+void KdTree::walk(int child, const Sight& sight, std::vector<int>& order) const {
   if (child < 0) {
     order.push_back(~child);
     return;
   }
   const Node& node = nodes_[std::size_t(child)];
-  // A ray crosses the plane towards -(eye - plane * eye.w), whatever the sign of eye.w: no division, so
-  // nearly parallel projections need no care.
-  const bool high_first = (eye[node.axis] - node.plane * eye[3] > 0) != reversed;
-  walk(high_first ? node.high : node.low, eye, reversed, order);
-  walk(high_first ? node.low : node.high, eye, reversed, order);
+  const bool high_first = sight.high_first(node.axis, node.plane);
+  walk(high_first ? node.high : node.low, sight, order);
+  walk(high_first ? node.low : node.high, sight, order);
+}
+
+std::vector<int> KdTree::visibility_order(const Sight& sight) const {
+  std::vector<int> order;
+  order.reserve(boxes_.size());
+  walk(root_, sight, order);
+  return order;
 }
 
 std::vector<int> KdTree::visibility_order(const Matrix4& texture_to_clip) const {
-  std::vector<int> order;
-  order.reserve(boxes_.size());
-  walk(root_, eye_of(texture_to_clip), false, order);
-  return order;
+  return visibility_order(Sight(texture_to_clip));
 }
 
 std::vector<int> KdTree::visibility_order(const RenderRequest& request) const {
-  if (request.steps) return visibility_order(request.texture_to_clip);  // steps are counted along depth
-  const Vec4 eye = eye_of(request.texture_to_clip);
-  // The plane through a point that can be seen says whether plane indices rise with depth or fall.
-  const Vec3& n = request.planes.normal;
-  const double towards_eye =
-      request.planes.spacing * (dot(n, {eye[0], eye[1], eye[2]}) - dot(n, seen_point(request)) * eye[3]);
-  std::vector<int> order;
-  order.reserve(boxes_.size());
-  walk(root_, eye, towards_eye > 0, order);
-  return order;
+  return visibility_order(Sight(request));
 }
 
 }  // namespace understudy::volume

@@ -7,6 +7,7 @@
 
 #include "volume/brick/cell_lattice.h"
 #include "volume/request.h"
+#include "volume/sight.h"
 
 namespace understudy::volume {
 
@@ -44,7 +45,8 @@ class KdTree {
 
   int divide(const VolumeDescription& volume, const TexelBox& lattice, const TexelBox& cells, int first_rank,
              int ranks);
-  void walk(int child, const std::array<double, 4>& eye, bool reversed, std::vector<int>& order) const;
+  std::vector<int> visibility_order(const Sight& sight) const;
+  void walk(int child, const Sight& sight, std::vector<int>& order) const;
 
   std::vector<TexelBox> boxes_;
   std::vector<Node> nodes_;

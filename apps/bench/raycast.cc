@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -47,10 +48,30 @@ struct Settings {
   int stride = 8;      ///< of the pixels whose error is measured
   bool unjudged = false;
   int magnify = 1;
+  std::optional<std::uint64_t> noise;  ///< instead of the file, by this seed
+  glsl::TextureMemoryWish gpu_memory;
 };
+
+/// Bytes without any likeness between neighbours: what is worst for caches.
+std::vector<std::byte> noise(std::size_t count, std::uint64_t seed) {
+  std::vector<std::byte> bytes((count + 7) / 8 * 8);
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    // splitmix64 (Steele, Lea, Flood 2014)
+    std::uint64_t hash = seed + 0x9E3779B97F4A7C15U * (i / 8 + 1);
+    hash = (hash ^ hash >> 30U) * 0xBF58476D1CE4E5B9U;
+    hash = (hash ^ hash >> 27U) * 0x94D049BB133111EBU;
+    hash ^= hash >> 31U;
+    std::memcpy(&bytes[i], &hash, sizeof hash);
+  }
+  bytes.resize(count);
+  return bytes;
+}
 
 /// Every voxel of the file as often as settings.magnify says, along every axis.
 std::vector<std::byte> texels_of(const Settings& settings) {
+  if (settings.noise)
+    return noise(std::size_t(settings.size[0]) * std::size_t(settings.size[1]) * std::size_t(settings.size[2]),
+                 *settings.noise);
   std::ifstream in(settings.file, std::ios::binary);
   const auto factor = std::size_t(settings.magnify);
   const std::array<std::size_t, 3> size{std::size_t(settings.size[0]), std::size_t(settings.size[1]),
@@ -193,7 +214,8 @@ nlohmann::ordered_json measure(const Settings& settings) {
   setenv("LP_NUM_THREADS", fmt::format("{}", settings.threads).c_str(), 0);
   std::optional<glsl::Device> device;
   if (settings.backend != "cpu")
-    device.emplace(settings.backend == "gl" ? glsl::Platform::egl : glsl::Platform::osmesa);
+    device.emplace(settings.backend == "gl" ? glsl::Platform::egl : glsl::Platform::osmesa,
+                   settings.gpu_memory);
   const std::unique_ptr<BrickRenderer> caster =
       device ? std::unique_ptr<BrickRenderer>(std::make_unique<glsl::GlslRayCaster>(store, *device))
              : cpu_renderer(store);
@@ -265,7 +287,9 @@ nlohmann::ordered_json measure(const Settings& settings) {
 int main(int argc, char** argv) {
   Settings settings;
   CLI::App app{"times ray casting on one volume of bytes and measures its error"};
-  app.add_option("volume", settings.file, "raw bytes, x fastest")->required()->check(CLI::ExistingFile);
+  CLI::Option* file = app.add_option("volume", settings.file, "raw bytes, x fastest")->check(CLI::ExistingFile);
+  app.add_option("--noise", settings.noise, "bytes of a hash with this seed, instead of a file")
+      ->excludes(file);
   app.add_option("--size", settings.size, "voxels along x, y and z")->delimiter('x');
   app.add_option("--magnify", settings.magnify, "the file has so many times fewer voxels along every axis")
       ->check(CLI::Range(1, 16));
@@ -290,6 +314,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 10000));
   app.add_option("--backend", settings.backend, "who casts the rays: gl on EGL, gl-osmesa on OSMesa")
       ->check(CLI::IsMember({"cpu", "gl", "gl-osmesa"}));
+  app.add_option("--gpu-memory", settings.gpu_memory.bytes, "bytes of texels that OpenGL may hold at a time");
   app.add_option("--judge", settings.judged,
                  "a file with another renderer's picture, premultiplied RGBA floats, rows bottom up: errors "
                  "are its own")
@@ -297,6 +322,10 @@ int main(int argc, char** argv) {
   app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")
       ->check(CLI::Range(0.0, 1.0));
   CLI11_PARSE(app, argc, argv);
+  if (settings.file.empty() && !settings.noise) {
+    fmt::print(stderr, "understudy-bench-raycast: give a file of voxels, or --noise SEED\n");
+    return 1;
+  }
   try {
     fmt::print("{}\n", measure(settings).dump());
   } catch (const std::exception& error) {

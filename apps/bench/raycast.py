@@ -1,6 +1,7 @@
 """Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
 
-With --sizes 256,512,1024 cubes so large instead (multiples of 256; 1024 takes 4 GiB), by one ray a voxel.
+With --sizes 256,512,1024 cubes so large instead (multiples of 256; 1024 takes 2.7 GiB), by one ray a voxel, of real
+voxels and of noise.
 
 256^3 voxels on 512^2 pixels, one sample a voxel, one thread unless the row says otherwise. Beside each time stands the
 error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which
@@ -45,29 +46,54 @@ CASES = {
     "gl-osmesa/post-classified/sparse": (["--table", "sparse", "--backend", "gl-osmesa"], None),
 }
 YARDSTICK_LINE = re.compile(r"^(\S+)\s+post float4\s+ert1 skip1 .* ([0-9.]+) ns/full\.core", re.MULTILINE)
+YARDSTICK = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick"  # where its script keeps what it makes
+
+
+def compiled(program, source, *options):
+    if not program.exists() or program.stat().st_mtime < source.stat().st_mtime:
+        subprocess.run(["g++", *options, "-o", str(program), str(source), "-lpthread"], check=True)
 
 
 def yardstick():
-    """The prototype's script; None where there is none, or this processor lacks what it was written for."""
-    script = Path(os.environ.get("UNDERSTUDY_YARDSTICK", viewers.ROOT.parent / "shared" / "yardstick")) / "run"
-    if not os.access(script, os.X_OK):
-        print(f"raycast: nothing to compare with, there is no {script}", file=sys.stderr)
+    """The prototype, as a function of table and threads that gives nanoseconds; None where it cannot run.
+
+    Its script asks for AVX-512. Where there is AVX2 alone, a program of ours times the prototype's kernel for that.
+    """
+    folder = Path(os.environ.get("UNDERSTUDY_YARDSTICK", viewers.ROOT.parent / "shared" / "yardstick"))
+    if not os.access(folder / "run", os.X_OK):
+        print(f"raycast: nothing to compare with, there is no {folder / 'run'}", file=sys.stderr)
         return None
-    if "avx512f" not in Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace"):
-        print("raycast: nothing to compare with, the prototype needs AVX-512", file=sys.stderr)
+    processor = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
+    if "avx512f" in processor:
+        def timed(table, threads):
+            return [str(folder / "run"), str(SIDE), "512", "1", table, str(threads), str(FRAMES), "0", str(EPSILON)]
+    elif "avx2" in processor:
+        YARDSTICK.mkdir(parents=True, exist_ok=True)
+        compiled(YARDSTICK / "volume", folder / "volume.cpp", "-O2")
+        compiled(YARDSTICK / "avx2", Path(__file__).with_name("yardstick_avx2.cc"), "-O3", "-march=native", "-w",
+                 f"-I{folder}")
+        volume = YARDSTICK / f"{SIDE}.raw"
+        if not volume.exists():
+            volume.write_bytes(subprocess.run([str(YARDSTICK / "volume"), str(SIDE)], stdout=subprocess.PIPE,
+                                              check=True).stdout)
+
+        def timed(table, threads):
+            return [str(YARDSTICK / "avx2"), str(volume), str(SIDE), "512", table, str(threads), str(FRAMES), str(EPSILON)]
+    else:
+        print("raycast: nothing to compare with, the prototype needs AVX2", file=sys.stderr)
         return None
-    return script
+
+    def nanoseconds(table, threads):
+        text = subprocess.run(timed(table, threads), stdout=subprocess.PIPE, text=True, check=True).stdout
+        return min(float(ns) for _, ns in YARDSTICK_LINE.findall(text))
+    return nanoseconds
 
 
-def yardstick_ns(script, table, threads):
-    text = subprocess.run([str(script), str(SIDE), "512", "1", table, str(threads), str(FRAMES), "0", str(EPSILON)],
-                          stdout=subprocess.PIPE, text=True, check=True).stdout
-    return min(float(ns) for _, ns in YARDSTICK_LINE.findall(text))
-
-
-def measured(volume, size, options, frames=FRAMES):
+def measured(volume, size, options, frames=FRAMES, epsilon=EPSILON):
+    """`volume` is a file, or a list of options instead of one."""
     program = viewers.PROGRAMS / "understudy-bench-raycast"
-    text = subprocess.run([str(program), str(volume), "--size", size, "--frames", str(frames), "--epsilon", str(EPSILON),
+    source = volume if isinstance(volume, list) else [str(volume)]
+    text = subprocess.run([str(program), *source, "--size", size, "--frames", str(frames), "--epsilon", str(epsilon),
                            *options], stdout=subprocess.PIPE, text=True, check=True).stdout
     return json.loads(text)
 
@@ -117,29 +143,43 @@ def vtk_rows(volume, rows_so_far):
     return result
 
 
+def enough_memory(side):
+    """For a cube's bytes, and for bricks that hold 9^3 for every 8^3 of them, and a picture."""
+    needed = 2.5 * side**3 + 16 * side**2
+    free = 1024 * int(re.search(r"MemAvailable:\s+(\d+)", Path("/proc/meminfo").read_text(encoding="ascii")).group(1))
+    if needed > 0.9 * free:
+        print(f"raycast: no rows of {side}^3, which needs {needed / 2**30:.1f} GiB of memory where "
+              f"{free / 2**30:.1f} GiB are available", file=sys.stderr)
+    return needed <= 0.9 * free
+
+
 def size_rows(volume, sizes):
-    """Larger cubes, one ray a voxel, in turn: the time of a sample beside that of the smallest."""
-    tables, times = ("dense", "sparse"), {}
+    """Larger cubes, one ray a voxel, in turn: the time of a sample beside that of the smallest.
+
+    Voxels of the same volume as often as fits, and bytes of a hash, whose blocks are all different; their rays do not
+    end early, so that every one of them is read.
+    """
+    kinds, times = {"dense": ("dense", False), "sparse": ("sparse", False), "dense/noise": ("dense", True)}, {}
+    sizes = [side for side in sizes if enough_memory(side)]
     for number in range(ROUNDS):
-        for table in tables:
+        for kind, (table, noisy) in kinds.items():
             for side in sizes:
-                print(f"  round {number + 1} of {ROUNDS}, {side}^3, {table}", file=sys.stderr, flush=True)
-                figures = measured(volume, f"{side}x{side}x{side}", ["--magnify", str(side // SIDE), "--pixels", str(side),
-                                                                    "--table", table, "--unjudged"], frames=3)
-                times.setdefault((table, side), []).append(figures["ns"])
-    smallest = sizes[0]
-    return [{"name": f"cpu/post-classified/{table}/{side}", "value": statistics.median(times[table, side]), "unit": "ns",
-             "ratio_to": f"cpu/post-classified/{table}/{smallest}", "threads": 1,
-             "ratio": statistics.median(times[table, side]) / statistics.median(times[table, smallest])}
-            for table in tables for side in sizes]
+                print(f"  round {number + 1} of {ROUNDS}, {side}^3, {kind}", file=sys.stderr, flush=True)
+                source = ["--noise", "1"] if noisy else [str(volume), "--magnify", str(side // SIDE)]
+                figures = measured(source, f"{side}x{side}x{side}", ["--pixels", str(side), "--table", table, "--unjudged"],
+                                   frames=3, epsilon=0 if noisy else EPSILON)
+                times.setdefault((kind, side), []).append(figures["ns"])
+    return [{"name": f"cpu/post-classified/{kind}/{side}", "value": statistics.median(times[kind, side]), "unit": "ns",
+             "ratio_to": f"cpu/post-classified/{kind}/{sizes[0]}", "threads": 1,
+             "ratio": statistics.median(times[kind, side]) / statistics.median(times[kind, sizes[0]])}
+            for kind in kinds for side in sizes]
 
 
 def rows(sizes=()):
-    script = yardstick()
-    if script:
-        yardstick_ns(script, "dense", 1)  # builds it, and its volume
-    made = Path(os.environ.get("TMPDIR", "/tmp")) / "yardstick" / f"{SIDE}.raw"
-    volume = made if script else cube()
+    prototype = yardstick()
+    if prototype:
+        prototype("dense", 1)  # builds it, and its volume
+    volume = YARDSTICK / f"{SIDE}.raw" if prototype else cube()
     if sizes:
         return size_rows(volume, sizes)
     brain = next(iter(sorted(Path("/usr/share/doc").glob("tachyon*/examples/scenes/vol/brain.256x256x109"))), None)
@@ -152,8 +192,8 @@ def rows(sizes=()):
             file, size = (brain, "256x256x109") if name.endswith("brain") else (volume, FULL)
             last[name] = measured(file, size, options)
             times.setdefault(name, []).append(last[name]["ns"])
-            if script and rival:
-                theirs.setdefault(name, []).append(yardstick_ns(script, *rival))
+            if prototype and rival:
+                theirs.setdefault(name, []).append(prototype(*rival))
     result = []
     for name, values in times.items():
         figures = {key: value for key, value in last[name].items() if key != "ns"}

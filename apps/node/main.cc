@@ -14,6 +14,7 @@
 #include "compositor/node/node.h"
 #include "compositor/service/backend_line.h"
 #include "volume/glsl/backend.h"
+#include "volume/glsl/brick_size.h"
 
 int main(int argc, char** argv) {
   using namespace understudy;
@@ -39,6 +40,9 @@ int main(int argc, char** argv) {
     if (volume::glsl::backend_of(name)) return {};
     return fmt::format("'{}' is none of {}", name, volume::glsl::backend_names);
   });
+  std::string gpu_memory = "auto";
+  app.add_option("--gpu-memory", gpu_memory, "Bytes of texels in textures")
+      ->check(CLI::IsMember({"auto"}) | CLI::Range(volume::glsl::least_texture_memory, ~std::uint64_t(0)));
   CLI11_PARSE(app, argc, argv);
 
   MpiLink link(argc, argv);
@@ -47,10 +51,16 @@ int main(int argc, char** argv) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
   // Mesa's software renderer would take all cores for each rank.
   setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
-  volume::glsl::BackendChooser chooser(*volume::glsl::backend_of(backend), [&](const std::string& choice) {
-    fmt::print(stderr, "{}node {}: {}\n", backend_line, link.rank(), choice);
-    std::fflush(stderr);
-  });
+  volume::glsl::TextureMemoryWish memory;
+  memory.sharers = link.ranks_on_this_machine();
+  if (gpu_memory != "auto") memory.bytes = std::stoull(gpu_memory);
+  volume::glsl::BackendChooser chooser(
+      *volume::glsl::backend_of(backend),
+      [&](const std::string& choice) {
+        fmt::print(stderr, "{}node {}: {}\n", backend_line, link.rank(), choice);
+        std::fflush(stderr);
+      },
+      memory);
   try {
     return run_node(link, control, limits::stall_patience, exchange, chooser.factory()) ? 0 : 1;
   } catch (const std::exception& error) {

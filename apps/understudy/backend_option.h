@@ -1,4 +1,5 @@
-// `--backend` of `run`, `replay` and `serve`: who casts the nodes' rays.
+// `--backend` of `run`, `replay`, `serve` and `render`: who casts the nodes' rays, and `--gpu-memory`: what
+// that may take.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,5 +8,8 @@
 namespace understudy::launcher {
 
 void add_backend_option(CLI::App& subcommand, std::string& backend);
+
+/// To be added after `--backend`. `gpu_memory` becomes "auto" or a number of bytes.
+void add_gpu_memory_option(CLI::App& subcommand, std::string& gpu_memory);
 
 }  // namespace understudy::launcher

@@ -12,6 +12,7 @@ struct OwnNodes {
   std::string exchange = "auto";
   std::string pixels = "float";
   std::string backend = "cpu";
+  std::string gpu_memory = "auto";
 };
 
 /// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks

@@ -51,6 +51,7 @@ struct RenderArguments {
   std::string exchange = "auto";
   std::string pixels = "float";
   std::string backend = "cpu";
+  std::string gpu_memory = "auto";
   ShadingArguments shading;
   std::string table = "grey";
   std::string camera = "30,20,4";
@@ -266,8 +267,9 @@ int render(const RenderArguments& arguments) {
     if (!arguments.connect.empty())
       with_linked(arguments.connect);
     else if (arguments.nodes > 0)
-      backends = with_own_nodes({arguments.nodes, arguments.exchange, arguments.pixels, arguments.backend},
-                                with_linked);
+      backends = with_own_nodes(
+          {arguments.nodes, arguments.exchange, arguments.pixels, arguments.backend, arguments.gpu_memory},
+          with_linked);
     else
       figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
   } catch (const compositor::ServiceLost& lost) {
@@ -301,6 +303,7 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("SOCKET")
       ->excludes(nodes);
   add_backend_option(*render_command, arguments->backend);
+  add_gpu_memory_option(*render_command, arguments->gpu_memory);
   add_exchange_options(*render_command, arguments->exchange, arguments->pixels);
   render_command->add_option("--out", arguments->out, "the picture, over black")
       ->type_name("P.png")

@@ -61,6 +61,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
       ->excludes(native);
   add_options_of_the_table(*subcommand, arguments, without);
   add_backend_option(*subcommand, arguments->backend);
+  add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

@@ -178,9 +178,9 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   const RunFolder folder;
   std::optional<NodeGroupPlan> plan;
   if (options.nodes > 0 && options.connect.empty() && !options.disable) {
-    plan = NodeGroupPlan{options.nodes,  folder.path() / "nodes.sock",
-                         folder.path(),  options.exchange,
-                         options.pixels, arguments.backend};
+    plan = NodeGroupPlan{
+        options.nodes,     folder.path() / "nodes.sock", folder.path(), options.exchange, options.pixels,
+        arguments.backend, arguments.gpu_memory};
   } else if (arguments.backend != "cpu") {
     say(fmt::format(
         "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
@@ -247,6 +247,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   subcommand->footer("Each option can also be given by the environment variable in brackets.");
   add_options_of_the_table(*subcommand, arguments);
   add_backend_option(*subcommand, arguments->backend);
+  add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   const std::map<std::string, Door> doors{
       {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
   subcommand

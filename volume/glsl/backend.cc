@@ -65,6 +65,7 @@ std::optional<Backend> backend_of(std::string_view name) {
 struct BackendChooser::Shared {
   Backend wish;
   Tell tell;
+  TextureMemoryWish memory;
   std::unique_ptr<Device> device;
   bool device_tried = false;
   std::map<Kind, Speeds> speeds;  ///< of this node
@@ -81,7 +82,7 @@ struct BackendChooser::Shared {
     const auto attempt = [&](Platform platform) {
       if (device) return;
       try {
-        device = std::make_unique<Device>(platform);
+        device = std::make_unique<Device>(platform, memory);
       } catch (const std::runtime_error& absent) {
         reasons += (reasons.empty() ? "" : "; ") + std::string(absent.what());
       }
@@ -135,6 +136,10 @@ class BackendChooser::Renderer final : public BrickRenderer {
     }
     if (shared_.wish != Backend::automatic)
       shared_.tell_once(fmt::format("GL, as asked: {}", device->description()));
+    if (const BrickFigures figures = gl_->brick_figures(); figures.bricks > 0)
+      shared_.tell_once(
+          fmt::format("GL draws volume {} by bricks, of which {} of {} are in its memory at a time",
+                      store_.description().id, figures.slots, figures.bricks));
     return true;
   }
 
@@ -179,8 +184,8 @@ class BackendChooser::Renderer final : public BrickRenderer {
   bool mostly_empty_ = false;  ///< the last picture's blocks
 };
 
-BackendChooser::BackendChooser(Backend wish, Tell tell)
-    : shared_(std::make_unique<Shared>(Shared{wish, std::move(tell), nullptr, false, {}, {}})) {}
+BackendChooser::BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory)
+    : shared_(std::make_unique<Shared>(Shared{wish, std::move(tell), memory, nullptr, false, {}, {}})) {}
 BackendChooser::~BackendChooser() = default;
 
 BrickRendererFactory BackendChooser::factory() {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "volume/glsl/texture_memory.h"
 #include "volume/raycast/brick_renderer.h"
 
 namespace understudy::volume::glsl {
@@ -26,7 +27,7 @@ class BackendChooser {
  public:
   using Tell = std::function<void(const std::string&)>;
 
-  BackendChooser(Backend wish, Tell tell);
+  BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory = {});
   ~BackendChooser();
   BackendChooser(const BackendChooser&) = delete;
   BackendChooser& operator=(const BackendChooser&) = delete;

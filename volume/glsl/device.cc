@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "volume/glsl/brick_size.h"
+
 namespace understudy::volume::glsl {
 
 namespace {
@@ -19,9 +21,16 @@ void find(const OffscreenContext& context, const char* name, Pointer& pointer) {
     throw ContextUnavailable(fmt::format("this OpenGL has no {}: 3.3 core is needed", name));
 }
 
+std::uint64_t automatic_memory(const Functions& gl, int sharers) {
+  const std::optional<std::uint64_t> free = free_texture_memory(gl);
+  if (!free) return default_texture_memory;
+  return std::max(*free / 2 / std::uint64_t(std::max(sharers, 1)), least_texture_memory);
+}
+
 }  // namespace
 
-Device::Device(Platform platform) : context_(platform == Platform::egl ? egl_context() : osmesa_context()) {
+Device::Device(Platform platform, const TextureMemoryWish& memory)
+    : context_(platform == Platform::egl ? egl_context() : osmesa_context()) {
   const Current current(*this);
 #define UNDERSTUDY_GLSL_FIND(name, type) find(*context_, "gl" #name, gl_.name);
   UNDERSTUDY_GLSL_FUNCTIONS(UNDERSTUDY_GLSL_FIND)
@@ -30,6 +39,7 @@ Device::Device(Platform platform) : context_(platform == Platform::egl ? egl_con
                              text(gl_.GetString(GL_VERSION)), platform == Platform::egl ? "EGL" : "OSMesa");
   gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_edge_);
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_volume_edge_);
+  texture_memory_.emplace(memory.bytes ? *memory.bytes : automatic_memory(gl_, memory.sharers));
   // A core context draws nothing without one; it stays bound, and empty.
   GLuint no_arrays = 0;
   gl_.GenVertexArrays(1, &no_arrays);
@@ -52,8 +62,9 @@ void Device::check(const char* what) const {
   if (error == GL_NO_ERROR) return;
   // One call may leave several flags; a lost context reports for ever.
   for (int flags = 0; flags < 16 && gl_.GetError() != GL_NO_ERROR;) ++flags;
-  throw NotSupported(fmt::format("OpenGL error {:#x} while {}{}", error, what,
-                                 error == GL_OUT_OF_MEMORY ? ": out of memory for textures" : ""));
+  const std::string text = fmt::format("OpenGL error {:#x} while {}", error, what);
+  if (error == GL_OUT_OF_MEMORY) throw OutOfMemory(text + ": out of memory for textures");
+  throw NotSupported(text);
 }
 
 }  // namespace understudy::volume::glsl

@@ -4,12 +4,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "volume/glsl/functions.h"
 #include "volume/glsl/march_shader.h"
 #include "volume/glsl/offscreen_context.h"
+#include "volume/glsl/texture_memory.h"
 
 namespace understudy::volume::glsl {
 
@@ -19,12 +21,18 @@ class NotSupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// OpenGL has no memory for this, where it might have for less.
+class OutOfMemory : public NotSupported {
+ public:
+  using NotSupported::NotSupported;
+};
+
 enum class Platform { egl, osmesa };
 
 class Device {
  public:
   /// Throws ContextUnavailable.
-  explicit Device(Platform platform);
+  explicit Device(Platform platform, const TextureMemoryWish& memory = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -34,6 +42,8 @@ class Device {
   const std::string& description() const { return description_; }
   int max_texture_edge() const { return max_texture_edge_; }
   int max_volume_edge() const { return max_volume_edge_; }
+  TextureMemory& texture_memory() { return *texture_memory_; }
+  const TextureMemory& texture_memory() const { return *texture_memory_; }
 
   /// Holds the context on the calling thread; what is current must not be held twice.
   class Current {
@@ -52,7 +62,7 @@ class Device {
   const Functions& gl() const { return gl_; }
   /// Linked and kept. Throws std::runtime_error with the compiler's words.
   const MarchProgram& program(const MarchVariant& variant);
-  /// Throws NotSupported naming `what` when OpenGL has reported an error.
+  /// Throws NotSupported, OutOfMemory where it is that, naming `what` when OpenGL has reported an error.
   void check(const char* what) const;
 
  private:
@@ -61,6 +71,7 @@ class Device {
   std::string description_;
   int max_texture_edge_ = 0;
   int max_volume_edge_ = 0;
+  std::optional<TextureMemory> texture_memory_;
   std::map<MarchVariant, MarchProgram> programs_;
 };
 

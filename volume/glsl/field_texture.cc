@@ -1,11 +1,9 @@
 #include "volume/glsl/field_texture.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <vector>
+
+#include "volume/glsl/texel_format.h"
 
 namespace understudy::volume::glsl {
 
@@ -13,78 +11,40 @@ namespace {
 
 constexpr int cells = BrickStore::block_cells, row = BrickStore::block_row, slice = BrickStore::block_slice;
 
-struct Format {
-  GLint internal = 0;
-  GLenum pixels = 0;
-  GLenum type = 0;
-  int channels = 1;
-  std::size_t bytes = 0;  ///< of a texel
-};
-
-Format format_of(TexelType type) {
-  switch (type) {
-    case TexelType::u8:
-    case TexelType::u16:
-      return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 1, 2};
-    case TexelType::f32:
-      return {GL_R32F, GL_RED, GL_FLOAT, 1, 4};
-    case TexelType::rgba8:
-      return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 4, 8};
-  }
-  return {};
-}
-
-/// `count` texels of a block from texel `from` on, as the texture takes them.
-void convert(TexelType type, const std::byte* block, int from, int count, std::byte* to) {
-  if (type == TexelType::u16 || type == TexelType::f32) {
-    const std::size_t bytes = bytes_per_texel(type);
-    std::memcpy(to, block + std::size_t(from) * bytes, std::size_t(count) * bytes);
-    for (int i = 0; type == TexelType::f32 && i < count; ++i) {
-      float value = 0;
-      std::memcpy(&value, to + sizeof value * std::size_t(i), sizeof value);
-      if (std::isnan(value)) throw NotSupported("the volume has texels that are not numbers");
-    }
-    return;
-  }
-  const int channels = type == TexelType::rgba8 ? 4 : 1;
-  for (int i = 0; i < count * channels; ++i) {
-    // v / 255 is v * 257 / 65535.
-    const auto wide = std::uint16_t(257 * std::to_integer<int>(block[from * channels + i]));
-    std::memcpy(to + 2 * i, &wide, sizeof wide);
-  }
-}
-
 }  // namespace
 
-FieldTexture::FieldTexture(Device& device, const BrickStore& store)
-    : device_(device), store_(store), texture_(device.gl()) {
-  const Format format = format_of(store.description().type);
-  std::uint64_t bytes = format.bytes;
+std::array<int, 3> FieldTexture::size_of(const BrickStore& store) {
+  std::array<int, 3> size{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int first = store.first_block()[axis] * cells;
-    size_[axis] = std::min(store.block_counts()[axis] * cells + 1, store.lattice().cells[axis] + 1 - first);
-    bytes *= std::uint64_t(size_[axis]);
-    if (size_[axis] > device.max_volume_edge())
-      throw NotSupported(
-          fmt::format("{} texels along axis {} of the nodes' share: this OpenGL's 3-D textures take {} "
-                      "(GL_MAX_3D_TEXTURE_SIZE)",
-                      size_[axis], axis, device.max_volume_edge()));
+    size[axis] = std::min(store.block_counts()[axis] * cells + 1, store.lattice().cells[axis] + 1 - first);
   }
-  if (bytes > max_field_bytes)
-    throw NotSupported(
-        fmt::format("a texture of {} MiB is over the GL backend's limit of {} MiB: use more nodes", bytes >> 20,
-                    max_field_bytes >> 20));
+  return size;
+}
 
+bool FieldTexture::fits(const Device& device, const BrickStore& store) {
+  const std::array<int, 3> size = size_of(store);
+  return *std::max_element(size.begin(), size.end()) <= device.max_volume_edge() &&
+         bytes_of(store) <= device.texture_memory().left();
+}
+
+std::uint64_t FieldTexture::bytes_of(const BrickStore& store) {
+  std::uint64_t bytes = format_of(store.description().type).bytes;
+  for (const int edge : size_of(store)) bytes *= std::uint64_t(edge);
+  return bytes;
+}
+
+FieldTexture::FieldTexture(Device& device, const BrickStore& store)
+    : device_(device),
+      store_(store),
+      memory_(device.texture_memory(), bytes_of(store)),
+      texture_(device.gl()),
+      size_(size_of(store)) {
+  const TexelFormat format = format_of(store.description().type);
   const Functions& gl = device.gl();
   gl.BindTexture(GL_TEXTURE_3D, texture_.name());
-  gl.TexImage3D(GL_TEXTURE_3D, 0, format.internal, size_[0], size_[1], size_[2], 0, format.pixels, format.type,
-                nullptr);
+  allocate(gl, format, size_);
   device.check("making the volume's texture");
-  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    gl.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
-  gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
-  for (const GLenum when : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    gl.TexParameteri(GL_TEXTURE_3D, when, GL_LINEAR);  // nearest samples are fetched
 
   // One layer of blocks after the other; faces that two blocks share are the same texels.
   const auto& counts = store.block_counts();
@@ -111,7 +71,7 @@ FieldTexture::FieldTexture(Device& device, const BrickStore& store)
 }
 
 void FieldTexture::upload(const std::array<int, 3>& at, const std::array<int, 3>& size, const void* texels) {
-  const Format format = format_of(store_.description().type);
+  const TexelFormat format = format_of(store_.description().type);
   device_.gl().TexSubImage3D(GL_TEXTURE_3D, 0, at[0], at[1], at[2], size[0], size[1], size[2], format.pixels,
                              format.type, texels);
 }
@@ -135,12 +95,6 @@ void FieldTexture::blocks_changed(std::span<const std::size_t> blocks) {
     upload(at, size, texels.data());
   }
   device_.check("changing the volume's texture");
-}
-
-std::array<float, 3> FieldTexture::origin() const {
-  std::array<float, 3> origin{};
-  for (std::size_t axis = 0; axis < 3; ++axis) origin[axis] = float(store_.first_block()[axis] * cells);
-  return origin;
 }
 
 }  // namespace understudy::volume::glsl

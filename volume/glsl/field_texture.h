@@ -12,29 +12,30 @@
 
 namespace understudy::volume::glsl {
 
-/// Most bytes of texels that one texture takes.
-constexpr std::uint64_t max_field_bytes = std::uint64_t(4) << 30;
-
 class FieldTexture {
  public:
-  /// Bytes are widened to 16 bits: some drivers filter 8-bit textures in 8 bits. Wants the device to be
-  /// current, as all functions do. Throws NotSupported when the texture would be over a limit, and names it,
-  /// or when a texel is not a number: OpenGL's filter need not carry that on.
+  /// Whether one texture may hold all of it: by the longest edge that OpenGL takes, and by what is left of the
+  /// device's memory.
+  static bool fits(const Device& device, const BrickStore& store);
+
+  /// What fits(). Wants the device to be current, as all functions do. Throws OutOfMemory, and NotSupported
+  /// when a texel is not a number.
   FieldTexture(Device& device, const BrickStore& store);
 
   /// Throws NotSupported as well.
   void blocks_changed(std::span<const std::size_t> blocks);
 
   GLuint name() const { return texture_.name(); }
-  /// Lattice position of the first texel.
-  std::array<float, 3> origin() const;
   const std::array<int, 3>& size() const { return size_; }
 
  private:
+  static std::array<int, 3> size_of(const BrickStore& store);
+  static std::uint64_t bytes_of(const BrickStore& store);
   void upload(const std::array<int, 3>& at, const std::array<int, 3>& size, const void* texels);
 
   Device& device_;
   const BrickStore& store_;
+  TextureMemory::Part memory_;
   Texture texture_;
   std::array<int, 3> size_{};
 };

@@ -19,9 +19,10 @@ namespace understudy::volume::glsl {
                   each(FramebufferTexture, PFNGLFRAMEBUFFERTEXTUREPROC) each(                                  \
                       GenFramebuffers, PFNGLGENFRAMEBUFFERSPROC) each(GenTextures, PFNGLGENTEXTURESPROC)       \
                       each(GenVertexArrays, PFNGLGENVERTEXARRAYSPROC) each(GetError, PFNGLGETERRORPROC) each(  \
-                          GetIntegerv, PFNGLGETINTEGERVPROC)                                                   \
-                          each(GetProgramInfoLog, PFNGLGETPROGRAMINFOLOGPROC) each(                            \
-                              GetProgramiv, PFNGLGETPROGRAMIVPROC) each(GetString, PFNGLGETSTRINGPROC)         \
+                          GetIntegerv, PFNGLGETINTEGERVPROC) each(GetProgramInfoLog,                           \
+                                                                  PFNGLGETPROGRAMINFOLOGPROC)                  \
+                          each(GetProgramiv, PFNGLGETPROGRAMIVPROC) each(GetString, PFNGLGETSTRINGPROC) each(  \
+                              GetStringi, PFNGLGETSTRINGIPROC)                                                 \
                               each(GetUniformLocation, PFNGLGETUNIFORMLOCATIONPROC) each(                      \
                                   LinkProgram, PFNGLLINKPROGRAMPROC) each(PixelStorei, PFNGLPIXELSTOREIPROC)   \
                                   each(ReadBuffer, PFNGLREADBUFFERPROC) each(ReadPixels, PFNGLREADPIXELSPROC)  \

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "volume/footprint.h"
+#include "volume/glsl/brick_passes.h"
 #include "volume/glsl/field_texture.h"
 #include "volume/raycast/map_visibility.h"
 #include "volume/raycast/ray_caster.h"
@@ -169,7 +171,9 @@ struct GlslRayCaster::Rays {
 
 /// All that lives in the context.
 struct GlslRayCaster::Resources {
-  FieldTexture field;
+  // One of the two.
+  std::optional<FieldTexture> field;
+  std::optional<BrickPasses> bricks;
   Texture starts, steps, picture, taken;
   GLuint framebuffer = 0;
   int width = 0, height = 0;  ///< of the textures that have a texel per pixel
@@ -178,12 +182,14 @@ struct GlslRayCaster::Resources {
   Rays rays;
   std::vector<float> counted;
 
-  Resources(Device& device, const BrickStore& store)
-      : field(device, store),
-        starts(device.gl()),
-        steps(device.gl()),
-        picture(device.gl()),
-        taken(device.gl()) {
+  Resources(Device& device, const BrickStore& store, int brick_cells)
+      : starts(device.gl()), steps(device.gl()), picture(device.gl()), taken(device.gl()) {
+    if (FieldTexture::fits(device, store)) try {
+        field.emplace(device, store);
+      } catch (const OutOfMemory&) {
+        // As bricks it may have some.
+      }
+    if (!field) bricks.emplace(device, store, brick_cells);
     device.gl().GenFramebuffers(1, &framebuffer);
   }
 
@@ -199,6 +205,7 @@ struct GlslRayCaster::Resources {
     };
     make(starts, GL_RGBA32F, GL_RGBA);
     make(steps, GL_RGBA32F, GL_RGBA);
+    if (bricks) return device.check("making textures for rays");  // they have pictures of their own
     make(picture, GL_RGBA32F, GL_RGBA);
     make(taken, GL_R32F, GL_RED);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
@@ -222,6 +229,13 @@ struct GlslRayCaster::Resources {
     upload(Unit::ray_steps, steps, rays.steps);
   }
 
+  void count_walked(FrameCounts& counts) const {
+    for (const std::array<float, 4>& ray : bricks->progress()) {
+      counts.samples_taken += std::uint64_t(std::abs(ray[1]));
+      counts.rays_terminated += ray[1] < 0 ? 1 : 0;
+    }
+  }
+
   void read_counts(const Functions& gl, FrameCounts& counts) {
     counted.resize(std::size_t(rays.width) * std::size_t(rays.height));
     gl.ReadBuffer(GL_COLOR_ATTACHMENT1);
@@ -233,7 +247,8 @@ struct GlslRayCaster::Resources {
   }
 };
 
-GlslRayCaster::GlslRayCaster(const BrickStore& store, Device& device) : store_(store), device_(device) {}
+GlslRayCaster::GlslRayCaster(const BrickStore& store, Device& device, int brick_cells)
+    : store_(store), device_(device), brick_cells_(brick_cells) {}
 
 GlslRayCaster::~GlslRayCaster() {
   if (!resources_) return;
@@ -263,6 +278,37 @@ std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request)
   return std::nullopt;
 }
 
+BrickFigures GlslRayCaster::brick_figures() const {
+  if (!resources_ || !resources_->bricks) return {};
+  const BrickPasses& passes = *resources_->bricks;
+  const BrickAtlas& atlas = passes.atlas();
+  return {atlas.grid().bricks(), atlas.slots(), passes.passes(), atlas.uploads(), atlas.evictions()};
+}
+
+std::vector<std::size_t> GlslRayCaster::visible_bricks(const RenderRequest& request, const Prepared& prepared,
+                                                       const Rect& pixels) const {
+  const BrickGrid& grid = resources_->bricks->atlas().grid();
+  const auto& counts = store_.block_counts();
+  const int blocks_along = grid.edge / BrickStore::block_cells;
+  std::vector<bool> shows(grid.bricks());
+  std::size_t block = 0;
+  for (int z = 0; z < counts[2]; ++z)
+    for (int y = 0; y < counts[1]; ++y)
+      for (int x = 0; x < counts[0]; ++x, ++block) {
+        if (!prepared.skip.shows(block)) continue;
+        const std::size_t row =
+            std::size_t(z / blocks_along) * std::size_t(grid.counts[1]) + std::size_t(y / blocks_along);
+        shows[row * std::size_t(grid.counts[0]) + std::size_t(x / blocks_along)] = true;
+      }
+  std::vector<std::size_t> visible;
+  for (const std::size_t brick : grid.in_visibility_order(store_.description(), request)) {
+    if (!shows[brick]) continue;
+    if (!intersection(footprint(request, store_.description(), grid.cells(brick)), pixels).empty())
+      visible.push_back(brick);
+  }
+  return visible;
+}
+
 void GlslRayCaster::blocks_changed(std::span<const std::size_t> blocks) {
   if (resources_) changed_.insert(changed_.end(), blocks.begin(), blocks.end());
 }
@@ -273,12 +319,14 @@ void GlslRayCaster::set_uniforms(const MarchProgram& program, const RenderReques
   const Functions& gl = device_.gl();
   const double unit = largest_texel(store_.description().type);
   gl.UseProgram(program.name);
-  std::array<float, 3> scale{}, has_border{};
+  std::array<float, 3> scale{}, origin{}, has_border{};
+  const auto& size = resources_->field ? resources_->field->size() : resources_->bricks->atlas().size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    scale[axis] = 1.0F / float(resources_->field.size()[axis]);
+    scale[axis] = 1.0F / float(size[axis]);
+    origin[axis] = float(store_.first_block()[axis] * BrickStore::block_cells);
     has_border[axis] = store_.description().wrap[axis] == Wrap::border ? 1.0F : 0.0F;
   }
-  gl.Uniform3fv(program.texture_origin, 1, resources_->field.origin().data());
+  gl.Uniform3fv(program.texture_origin, 1, origin.data());
   gl.Uniform3fv(program.texture_scale, 1, scale.data());
   gl.Uniform3iv(program.first_block, 1, store_.first_block().data());
   gl.Uniform3fv(program.top, 1, top.data());
@@ -288,6 +336,7 @@ void GlslRayCaster::set_uniforms(const MarchProgram& program, const RenderReques
   for (float& component : border) component = float(component / unit);
   gl.Uniform4fv(program.border, 1, border.data());
   gl.Uniform1f(program.termination, request.termination);
+  gl.Uniform1f(program.brick_cells, float(brick_cells_));
   if (prepared.function) {
     const TransferTable& table = *prepared.function;
     gl.Uniform1f(program.table_low, float(table.low() / unit));
@@ -315,10 +364,13 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
 
   const Device::Current current(device_);
   const Functions& gl = device_.gl();
-  if (!resources_) resources_ = std::make_unique<Resources>(device_, store_);
+  if (!resources_) resources_ = std::make_unique<Resources>(device_, store_, brick_cells_);
   Resources& here = *resources_;
   if (!changed_.empty()) {
-    here.field.blocks_changed(changed_);
+    if (here.field)
+      here.field->blocks_changed(changed_);
+    else
+      here.bricks->atlas().blocks_changed(changed_);
     for (const auto& prepared : here.prepared)
       if (prepared) {
         prepared->skip = prepared->skip_map(store_);
@@ -350,7 +402,7 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
 
   here.resize(device_, pixels.width, pixels.height);
   here.upload_rays(gl);
-  bind(gl, Unit::field, GL_TEXTURE_3D, here.field.name());
+  if (here.field) bind(gl, Unit::field, GL_TEXTURE_3D, here.field->name());
   bind(gl, Unit::distances, GL_TEXTURE_3D, prepared.distances.name());
   bind(gl, Unit::table, GL_TEXTURE_1D, prepared.table.name());
   const TexelType type = store_.description().type;
@@ -362,7 +414,20 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
   variant.filter = request.filter;
   variant.op = request.op;
   variant.own_filter = prepared.steep;
-  set_uniforms(device_.program(variant), request, prepared, setup.top, setup.rounding);
+  variant.bricked = here.bricks.has_value();
+  const MarchProgram& program = device_.program(variant);
+  set_uniforms(program, request, prepared, setup.top, setup.rounding);
+  if (here.bricks) {
+    std::vector<std::size_t> visible = visible_bricks(request, prepared, pixels);
+    if (!visible.empty()) {
+      here.bricks->draw(program, pixels.width, pixels.height, std::move(visible));
+      here.bricks->read_picture(out.rect.width, out.at(pixels.x, pixels.y));
+      here.count_walked(mine);
+      device_.check("reading the picture");
+    }
+    counts += mine;
+    return;
+  }
   gl.BindFramebuffer(GL_FRAMEBUFFER, here.framebuffer);
   gl.Viewport(0, 0, pixels.width, pixels.height);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);

@@ -1,33 +1,48 @@
 // Ray casting in a fragment shader: what the ray caster on the CPU draws (raycast/ray_caster.h), from one 3-D
-// texture in an OpenGL context of its own. It takes the same samples, at the same float positions; what differs
-// is OpenGL's filter, which is exact to 1e-6 on llvmpipe and has weights of 8 bits on most graphics cards.
-// Where a table is so steep that this would show, the shader interpolates by itself, in float.
+// texture in an OpenGL context of its own, or, where that would be over OpenGL's limits or the device's memory,
+// from as many bricks as fit, in passes (brick_passes.h). It takes the same samples, at the same float
+// positions; what differs is OpenGL's filter, which is exact to 1e-6 on llvmpipe and has weights of 8 bits on
+// most graphics cards. Where a table is so steep that this would show, the shader interpolates by itself, in
+// float.
 //
 // It draws scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
-// every operator. Tables of pairs, fog, segments, surfaces, light, texels that are not numbers, and volumes or
-// pictures over OpenGL's limits are for the CPU.
+// every operator. Tables of pairs, fog, segments, surfaces, light, texels that are not numbers, and pictures
+// over OpenGL's limits are for the CPU.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "volume/glsl/brick_size.h"
 #include "volume/glsl/device.h"
 #include "volume/raycast/brick_renderer.h"
 
 namespace understudy::volume::glsl {
 
+/// What became of a volume's bricks.
+struct BrickFigures {
+  std::size_t bricks = 0;  ///< that the volume has; 0 when one texture holds it all
+  std::size_t slots = 0;   ///< that can be resident at a time
+  int passes = 0;          ///< of the last picture
+  std::uint64_t uploads = 0, evictions = 0;
+};
+
 class GlslRayCaster final : public BrickRenderer {
  public:
-  /// `store` and `device` must outlive it. The texture is made at the first render().
-  GlslRayCaster(const BrickStore& store, Device& device);
+  /// `store` and `device` must outlive it. Textures are made at the first render(). `brick_cells` is a power of
+  /// two, 8 or more.
+  GlslRayCaster(const BrickStore& store, Device& device, int brick_cells = usual_brick_cells);
   ~GlslRayCaster() override;
 
   /// Why requests like this one are not drawn here, in one line; empty when they are.
   std::optional<std::string> obstacle(const RenderRequest& request) const;
+
+  BrickFigures brick_figures() const;
 
   void blocks_changed(std::span<const std::size_t> blocks) override;
   /// Throws as RayCaster::render() does, and NotSupported, after which the CPU can be asked. `samples_taken`
@@ -39,11 +54,15 @@ class GlslRayCaster final : public BrickRenderer {
   struct Rays;
   struct Resources;
 
+  /// The bricks that show something in these pixels, in visibility order.
+  std::vector<std::size_t> visible_bricks(const RenderRequest& request, const Prepared& prepared,
+                                          const Rect& pixels) const;
   void set_uniforms(const MarchProgram& program, const RenderRequest& request, const Prepared& prepared,
                     const std::array<float, 3>& top, const std::array<float, 3>& rounding) const;
 
   const BrickStore& store_;
   Device& device_;
+  int brick_cells_;
   std::unique_ptr<Resources> resources_;
   std::vector<std::size_t> changed_;  ///< blocks, since the last render()
 };

@@ -35,10 +35,38 @@ uniform sampler1D table;
 uniform float table_low, table_scale, table_last;
 #endif
 
+#ifdef BRICKED
+uniform usampler3D pages;      // per brick its slot along each axis, and whether it is there
+uniform sampler2D sums;        // what the passes before composed
+uniform sampler2D progress;    // what they left in `walked`
+uniform float brick_cells;     // a power of two
+uniform int passes_before;
+#endif
+
 layout(location = 0) out vec4 pixel;
+#ifdef BRICKED
+layout(location = 1) out vec4 walked;  // next sample; those taken, as below; the brick waited for, counted from 1
+#else
 layout(location = 1) out float taken;  // samples; negative when the ray became opaque
+#endif
 
 vec3 start, step_;
+
+#ifdef BRICKED
+ivec3 brick;           // the one that is sampled
+vec3 first_of_brick;   // lattice position of its first texel
+vec3 in_atlas;         // where in the atlas that is
+
+ivec3 brick_at(float k) {
+  return ivec3((clamp(k * step_ + start, vec3(0.0), top) - texture_origin) / brick_cells);
+}
+// The first difference is exact, so that what is rounded down is what would be without bricks.
+#define TEXEL_AT(position) (ivec3((position) - first_of_brick) + ivec3(in_atlas))
+#define LAST_CORNER ivec3(2147483646)
+#else
+#define TEXEL_AT(position) ivec3((position) - texture_origin)
+#define LAST_CORNER (textureSize(field, 0) - 2)
+#endif
 
 #ifdef OWN_FILTER
 TEXEL at_corner(ivec3 corner) { return texelFetch(field, corner, 0).SWIZZLE; }
@@ -47,7 +75,7 @@ TEXEL interpolated(vec3 free) {
   vec3 p = clamp(free, vec3(0.0), top);
   vec3 cell = floor(p);
   vec3 share = p - cell;
-  ivec3 a = clamp(ivec3(cell - texture_origin), ivec3(0), textureSize(field, 0) - 2), b = a + 1;
+  ivec3 a = clamp(TEXEL_AT(cell), ivec3(0), LAST_CORNER), b = a + 1;
   TEXEL front = mix(mix(at_corner(a), at_corner(ivec3(b.x, a.yz)), share.x),
                     mix(at_corner(ivec3(a.x, b.y, a.z)), at_corner(ivec3(b.xy, a.z)), share.x), share.y);
   TEXEL back = mix(mix(at_corner(ivec3(a.xy, b.z)), at_corner(ivec3(b.x, a.y, b.z)), share.x),
@@ -57,15 +85,18 @@ TEXEL interpolated(vec3 free) {
 #endif
 
 TEXEL sample_field(float k) {
-#if defined(NEAREST) || defined(BORDERED) || defined(OWN_FILTER)
+#if defined(NEAREST) || defined(BORDERED) || defined(OWN_FILTER) || defined(BRICKED)
   vec3 free = k * step_ + start;
 #endif
 #ifdef NEAREST
   vec3 p = clamp(free, vec3(0.0), top);
-  return texelFetch(field, ivec3(p + 0.5 - texture_origin), 0).SWIZZLE;
+  return texelFetch(field, TEXEL_AT(p + 0.5), 0).SWIZZLE;
 #else
 #ifdef OWN_FILTER
   TEXEL inside = interpolated(free);
+#elif defined(BRICKED)
+  // Beyond a brick's outermost texels lie those of another.
+  TEXEL inside = textureLod(field, (clamp(free, vec3(0.0), top) - first_of_brick + in_atlas + 0.5) * texture_scale, 0.0).SWIZZLE;
 #else
   // Beyond its outermost texels the texture repeats them, as the lattice does.
   TEXEL inside = textureLod(field, k * (step_ * texture_scale) + (start - texture_origin + 0.5) * texture_scale, 0.0).SWIZZLE;
@@ -106,7 +137,17 @@ void main() {
   vec3 speed = max(abs(step_), vec3(1e-20));
   vec4 sum = vec4(NEUTRAL);
   float count = 0.0;
+#ifdef BRICKED
+  float awaited = 0.0;
+  if (passes_before > 0) {
+    vec4 before = texelFetch(progress, ivec2(gl_FragCoord.xy), 0);
+    sum = texelFetch(sums, ivec2(gl_FragCoord.xy), 0);
+    k = before.x;
+    count = before.y;
+  }
+#else
   taken = 0.0;
+#endif
   while (k <= last) {
     // First all rays of a group leap, then all take samples: what one does, the others wait for.
     for (;;) {
@@ -122,23 +163,50 @@ void main() {
       if (k > last) break;
     }
     if (k > last) break;
+    float many = 8.0;
+#ifdef BRICKED
+    brick = brick_at(k);
+    uvec4 page = texelFetch(pages, brick, 0);
+    if (page.a == 0u) {
+      ivec3 counts = textureSize(pages, 0);
+      awaited = float((brick.z * counts.y + brick.y) * counts.x + brick.x) + 1.0;
+      break;
+    }
+    first_of_brick = vec3(brick) * brick_cells + texture_origin;
+    in_atlas = vec3(page.rgb) * (brick_cells + 1.0);
+#endif
     for (int i = 0; i < 8; ++i) {
       float here = k + float(i);
+#ifdef BRICKED
+      if (brick_at(min(here, last)) != brick) {
+        many = float(i);
+        break;
+      }
+#endif
       vec4 colour = classified(sample_field(min(here, last)));
       if (here > last) colour = vec4(NEUTRAL);
       COMPOSE
     }
-    count += min(8.0, last - k + 1.0);
-    k += 8.0;
+    count += min(many, last - k + 1.0);
+    k += many;
 #ifdef ENDS
     if (ENDS) {
+#ifdef BRICKED
+      count = -count;
+      k = last + 1.0;
+#else
       taken = -count;
+#endif
       break;
     }
 #endif
   }
   pixel = sum;
+#ifdef BRICKED
+  walked = vec4(k, count, awaited, 0.0);
+#else
   if (taken == 0.0) taken = count;
+#endif
 }
 )";
 
@@ -173,6 +241,7 @@ std::string defines(const MarchVariant& variant) {
   define(variant.op == Operator::over, "ENDS 1.0 - sum.a < termination");
   define(variant.op == Operator::first_hit, "ENDS sum.a > 0.0");
   define(variant.own_filter, "OWN_FILTER");
+  define(variant.bricked, "BRICKED");
   // The largest float, without a literal that some compilers would round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");
@@ -233,12 +302,17 @@ MarchProgram link_march_program(const Functions& gl, const MarchVariant& variant
   program.multiply_by_alpha = at("multiply_by_alpha");
   program.alpha_above = at("alpha_above");
   program.termination = at("termination");
+  program.brick_cells = at("brick_cells");
+  program.passes_before = at("passes_before");
   gl.UseProgram(program.name);
   gl.Uniform1i(at("ray_starts"), GLint(Unit::ray_starts));
   gl.Uniform1i(at("ray_steps"), GLint(Unit::ray_steps));
   gl.Uniform1i(at("field"), GLint(Unit::field));
   gl.Uniform1i(at("distances"), GLint(Unit::distances));
   gl.Uniform1i(at("table"), GLint(Unit::table));
+  gl.Uniform1i(at("pages"), GLint(Unit::pages));
+  gl.Uniform1i(at("sums"), GLint(Unit::sums));
+  gl.Uniform1i(at("progress"), GLint(Unit::progress));
   return program;
 }
 

@@ -17,17 +17,19 @@ struct MarchVariant {
   /// Samples are interpolated here, in float, as on the CPU: OpenGL's filter has weights of few bits, which a
   /// steep table shows. On llvmpipe it takes 2.6 times as long.
   bool own_filter = false;
+  /// The field is some bricks of it (brick_passes.h), and rays wait where one is absent.
+  bool bricked = false;
 
   auto operator<=>(const MarchVariant&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// Texture units, fixed at link time.
-enum class Unit : GLint { ray_starts, ray_steps, field, distances, table };
+enum class Unit : GLint { ray_starts, ray_steps, field, distances, table, pages, sums, progress };
 
 struct MarchProgram {
   GLuint name = 0;
   // Where uniforms lie; -1 in variants without them.
-  GLint texture_origin = -1;  ///< lattice position of the field texture's first texel
+  GLint texture_origin = -1;  ///< lattice position of the field texture's first texel, or of the first brick's
   GLint texture_scale = -1;   ///< 1 / its size
   GLint first_block = -1;
   GLint top = -1;
@@ -41,6 +43,8 @@ struct MarchProgram {
   GLint multiply_by_alpha = -1;
   GLint alpha_above = -1;
   GLint termination = -1;
+  GLint brick_cells = -1;
+  GLint passes_before = -1;  ///< of this picture
 };
 
 /// Wants a current context. Throws std::runtime_error with the compiler's words.

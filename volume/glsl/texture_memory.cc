@@ -1,0 +1,36 @@
+#include "volume/glsl/texture_memory.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace understudy::volume::glsl {
+
+namespace {
+
+// By extensions that Khronos' header of the core does not list; both count in KiB.
+constexpr GLenum current_available_vidmem_nvx = 0x9049;
+constexpr GLenum texture_free_memory_ati = 0x87FC;
+
+bool has_extension(const Functions& gl, std::string_view name) {
+  GLint count = 0;
+  gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i)
+    if (const GLubyte* found = gl.GetStringi(GL_EXTENSIONS, GLuint(i));
+        found != nullptr && name == reinterpret_cast<const char*>(found))
+      return true;
+  return false;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> free_texture_memory(const Functions& gl) {
+  std::array<GLint, 4> kib{};  // ATI tells more than what is free
+  if (has_extension(gl, "GL_NVX_gpu_memory_info"))
+    gl.GetIntegerv(current_available_vidmem_nvx, kib.data());
+  else if (has_extension(gl, "GL_ATI_meminfo"))
+    gl.GetIntegerv(texture_free_memory_ati, kib.data());
+  if (kib[0] <= 0) return std::nullopt;
+  return std::uint64_t(kib[0]) << 10;
+}
+
+}  // namespace understudy::volume::glsl

@@ -1,0 +1,57 @@
+// How much memory the texels of a node's volumes may take in textures. Other textures (rays, pictures, tables,
+// distances) are small beside them and are not counted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "volume/glsl/functions.h"
+#include "volume/request.h"
+
+namespace understudy::volume::glsl {
+
+/// What is wished; without `bytes`: a half of what the driver says is free (GL_NVX_gpu_memory_info,
+/// GL_ATI_meminfo), divided by `sharers`, or where it does not say, default_texture_memory.
+struct TextureMemoryWish {
+  std::optional<std::uint64_t> bytes;
+  int sharers = 1;  ///< nodes that use the same card
+};
+
+constexpr std::uint64_t default_texture_memory = std::uint64_t(4) << 30;
+
+/// Free memory by the driver's word; none where it does not say. Wants a current context.
+std::optional<std::uint64_t> free_texture_memory(const Functions& gl);
+
+class TextureMemory {
+ public:
+  explicit TextureMemory(std::uint64_t bytes) : bytes_(bytes) {}
+  TextureMemory(const TextureMemory&) = delete;
+  TextureMemory& operator=(const TextureMemory&) = delete;
+
+  std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t left() const { return bytes_ - taken_; }
+
+  /// A part of it, given back at its end.
+  class Part {
+   public:
+    /// Takes no more than what is left().
+    Part(TextureMemory& memory, std::uint64_t bytes) : memory_(memory), bytes_(bytes) {
+      memory.taken_ += bytes;
+    }
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+    ~Part() { memory_.taken_ -= bytes_; }
+
+   private:
+    TextureMemory& memory_;
+    std::uint64_t bytes_;
+  };
+
+ private:
+  std::uint64_t bytes_;
+  std::uint64_t taken_ = 0;
+};
+
+}  // namespace understudy::volume::glsl

@@ -70,19 +70,23 @@ void set_filter(const Functions& gl, GLenum target, GLint filter) {
 
 }  // namespace
 
-/// What depends on the classification alone, and on whether the operator is `min`.
+/// What depends on the classification alone, on whether the operator is `min`, and on whether empty blocks are
+/// left out.
 struct GlslRayCaster::Prepared {
   Classification classification;
   bool keeps_clear_samples;
+  bool skips;
   std::optional<TransferTable> function;
   SkipMap skip;
   bool steep;  ///< too much so for OpenGL's filter
   Texture distances;
   Texture table;
 
-  Prepared(const Functions& gl, const BrickStore& store, const Classification& from, bool keeps_clear)
+  Prepared(const Functions& gl, const BrickStore& store, const Classification& from, bool keeps_clear,
+           bool skips_empty)
       : classification(from),
         keeps_clear_samples(keeps_clear),
+        skips(skips_empty),
         function(make_function(store, from)),
         skip(skip_map(store)),
         steep(is_steep(store)),
@@ -108,6 +112,7 @@ struct GlslRayCaster::Prepared {
   }
 
   SkipMap skip_map(const BrickStore& store) const {
+    if (!skips) return SkipMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) {
       const auto ranges = store.ranges(b);
@@ -180,7 +185,7 @@ struct GlslRayCaster::Resources {
   /// The latest first: a viewer whose framebuffer keeps alpha asks for two pictures of every frame.
   std::array<std::unique_ptr<Prepared>, 2> prepared;
   Rays rays;
-  std::vector<float> counted;
+  std::vector<std::array<float, 2>> counted;  ///< what the shader says in `taken`
 
   Resources(Device& device, const BrickStore& store, int brick_cells)
       : starts(device.gl()), steps(device.gl()), picture(device.gl()), taken(device.gl()) {
@@ -207,7 +212,7 @@ struct GlslRayCaster::Resources {
     make(steps, GL_RGBA32F, GL_RGBA);
     if (bricks) return device.check("making textures for rays");  // they have pictures of their own
     make(picture, GL_RGBA32F, GL_RGBA);
-    make(taken, GL_R32F, GL_RED);
+    make(taken, GL_RG32F, GL_RG);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, picture.name(), 0);
     gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, taken.name(), 0);
@@ -233,16 +238,18 @@ struct GlslRayCaster::Resources {
     for (const std::array<float, 4>& ray : bricks->progress()) {
       counts.samples_taken += std::uint64_t(std::abs(ray[1]));
       counts.rays_terminated += ray[1] < 0 ? 1 : 0;
+      counts.samples_hidden += std::uint64_t(ray[3]);
     }
   }
 
   void read_counts(const Functions& gl, FrameCounts& counts) {
     counted.resize(std::size_t(rays.width) * std::size_t(rays.height));
     gl.ReadBuffer(GL_COLOR_ATTACHMENT1);
-    gl.ReadPixels(0, 0, rays.width, rays.height, GL_RED, GL_FLOAT, counted.data());
-    for (const float samples : counted) {
+    gl.ReadPixels(0, 0, rays.width, rays.height, GL_RG, GL_FLOAT, counted.data());
+    for (const auto& [samples, hidden] : counted) {
       counts.samples_taken += std::uint64_t(std::abs(samples));
       counts.rays_terminated += samples < 0 ? 1 : 0;
+      counts.samples_hidden += std::uint64_t(hidden);
     }
   }
 };
@@ -382,11 +389,13 @@ void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts
   const bool keeps_clear_samples = request.op == Operator::min;
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
     return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
+           prepared->skips == request.leave_out.empty_blocks &&
            prepared->classification == request.classification;
   };
   if (!fits(here.prepared[0])) here.prepared[0].swap(here.prepared[1]);
   if (!fits(here.prepared[0]))
-    here.prepared[0] = std::make_unique<Prepared>(gl, store_, request.classification, keeps_clear_samples);
+    here.prepared[0] = std::make_unique<Prepared>(gl, store_, request.classification, keeps_clear_samples,
+                                                  request.leave_out.empty_blocks);
   const Prepared& prepared = *here.prepared[0];
   FrameCounts mine;  // what fails is not counted: the CPU will count it
   mine.blocks = store_.blocks();

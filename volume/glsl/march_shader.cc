@@ -45,9 +45,10 @@ uniform int passes_before;
 
 layout(location = 0) out vec4 pixel;
 #ifdef BRICKED
-layout(location = 1) out vec4 walked;  // next sample; those taken, as below; the brick waited for, counted from 1
+// Next sample; those taken, as below; the brick waited for, counted from 1; those left behind what is opaque.
+layout(location = 1) out vec4 walked;
 #else
-layout(location = 1) out float taken;  // samples; negative when the ray became opaque
+layout(location = 1) out vec2 taken;  // samples, negative when the ray became opaque; those left behind it
 #endif
 
 vec3 start, step_;
@@ -136,7 +137,7 @@ void main() {
   float k = from.w, last = along.w;
   vec3 speed = max(abs(step_), vec3(1e-20));
   vec4 sum = vec4(NEUTRAL);
-  float count = 0.0;
+  float count = 0.0, hidden = 0.0;
 #ifdef BRICKED
   float awaited = 0.0;
   if (passes_before > 0) {
@@ -144,9 +145,8 @@ void main() {
     sum = texelFetch(sums, ivec2(gl_FragCoord.xy), 0);
     k = before.x;
     count = before.y;
+    hidden = before.w;
   }
-#else
-  taken = 0.0;
 #endif
   while (k <= last) {
     // First all rays of a group leap, then all take samples: what one does, the others wait for.
@@ -191,21 +191,18 @@ void main() {
     k += many;
 #ifdef ENDS
     if (ENDS) {
-#ifdef BRICKED
+      hidden = max(last - k + 1.0, 0.0);
       count = -count;
       k = last + 1.0;
-#else
-      taken = -count;
-#endif
       break;
     }
 #endif
   }
   pixel = sum;
 #ifdef BRICKED
-  walked = vec4(k, count, awaited, 0.0);
+  walked = vec4(k, count, awaited, hidden);
 #else
-  if (taken == 0.0) taken = count;
+  taken = vec2(count, hidden);
 #endif
 }
 )";

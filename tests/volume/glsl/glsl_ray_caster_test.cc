@@ -162,6 +162,44 @@ TEST_P(GlslRayCasterOn, LeavesTexelsThatAreNotNumbersToTheCpu) {
   EXPECT_THROW(on_gl({"", texture, request}), NotSupported);
 }
 
+TEST_P(GlslRayCasterOn, LeavesOutWhatTheCpuLeavesOut) {
+  const Texture texture = sampled(describe({45, 38, 51}, TexelType::u8), sphere_field(0.4));
+  RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 150);
+  request.classification = smooth_table(256, 0.9F);
+  for (int i = 0; i < 20; ++i) std::get<TransferFunction>(request.classification).entries[std::size_t(i)] = {};
+  request.termination = 5e-6F;
+  const BrickStore store = filled(texture);
+  GlslRayCaster caster(store, device());
+  struct Drawn {
+    Image image;
+    FrameCounts counts;
+  };
+  const auto draw = [&](const RenderRequest& asked, bool gl) {
+    Drawn drawn{Image(asked.window), {}};
+    if (gl)
+      caster.render(asked, drawn.image, drawn.counts);
+    else
+      raycast(store, asked, drawn.image, drawn.counts);
+    return drawn;
+  };
+  const Drawn usual = draw(request, true), on_cpu = draw(request, false);
+  EXPECT_GT(usual.counts.blocks_empty, 0U);
+  EXPECT_GT(usual.counts.samples_hidden, usual.counts.samples / 20);
+  // A ray may end eight samples earlier or later.
+  EXPECT_NEAR(double(usual.counts.samples_hidden), double(on_cpu.counts.samples_hidden),
+              8 * double(usual.counts.rays_terminated));
+  EXPECT_LE(usual.counts.samples_taken + usual.counts.samples_hidden, usual.counts.samples);
+  request.termination = 0;
+  const Drawn to_the_end = draw(request, true);
+  EXPECT_EQ(to_the_end.counts.samples_hidden, 0U);
+  EXPECT_LE(difference(usual.image, to_the_end.image).max, 5e-6);
+  request.leave_out.empty_blocks = false;
+  const Drawn all = draw(request, true);
+  EXPECT_EQ(all.counts.samples_taken, all.counts.samples);
+  EXPECT_EQ(all.counts.blocks_empty, 0U);
+  EXPECT_LE(difference(all.image, to_the_end.image).max, 1e-6);
+}
+
 TEST_P(GlslRayCasterOn, SaysWhatItLeavesToTheCpu) {
   const Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 1);
   const BrickStore store = filled(texture);

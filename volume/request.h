@@ -175,10 +175,10 @@ struct RenderRequest {
   // The following are for scalar fields with a transfer function, under `over`, with a linear filter and
   // without fog; those before `light` are for samples on `steps` that end before opaque geometry.
   Method method = Method::post_classified;
-  /// Pre-integrated: segments end where the cells of a node do, as bricks that share no texel but their faces
-  /// would have it (Mueller et al. 2006). It makes pictures depend on the partition, and is here to be compared
-  /// with.
-  bool cut_at_bricks = false;
+  /// Pre-integrated, if not 0: segments end at the faces of bricks with so many blocks of 8^3 cells along each
+  /// edge, and where the cells of a node do, as bricks that share no texel but their faces would have it
+  /// (Mueller et al. 2006). It makes pictures depend on the partition, and is here to be compared with.
+  std::uint8_t cut_at_bricks = 0;
   /// Adaptive: steps are divided until the error of each, in colour and opacity, is estimated to be no more.
   float tolerance = 1e-3F;
   /// Each is composed where the ray passes it. A sample stands for the step behind it: what of that lies in

@@ -1,14 +1,13 @@
-// The prototype of a ray caster (the folder that raycast.py names), on a processor without AVX-512. Its own program
-// begins with its AVX-512 kernels; this one includes it as it is and times its kernel for AVX2 alone, the same way
-// and in the same words. Built by raycast.py, outside of this project's build.
+// The prototype of a ray caster (the folder that raycast.py names), on a processor without AVX-512. Its own
+// program begins with its AVX-512 kernels; this one includes it as it is and times its kernel for AVX2 alone,
+// the same way and in the same words. Built by raycast.py, outside of this project's build.
 //
 // Its kernels are templates, so nothing of those for AVX-512 is compiled unless its program is. That becomes a
 // template, too.
-#define main(...)     \
-  unused_status;      \
-  template <class>    \
-  int unused_program( \
-      __VA_ARGS__)
+#define main(...)  \
+  unused_status;   \
+  template <class> \
+  int unused_program(__VA_ARGS__)
 #include "yardstick.cpp"
 #undef main
 

@@ -143,6 +143,7 @@ Scene scene_of(const RenderArguments& arguments) {
   scene.shading = shading_of(arguments.shading, extent);
   scene.request.method = scene.shading.method;
   scene.request.tolerance = scene.shading.tolerance;
+  scene.request.cut_at_bricks = scene.shading.cut_at_bricks;
   scene.request.op = scene.shading.op;
   scene.request.light = scene.shading.light;
   for (const SurfaceChoice& surface : scene.shading.surfaces)

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "apps/understudy/number_list.h"
+#include "volume/brick/brick_store.h"
 
 namespace understudy::launcher {
 namespace {
@@ -102,6 +103,12 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
       ->check(CLI::IsMember({"post-classified", "pre-integrated", "adaptive"}).description(""))
       ->type_name("post-classified|pre-integrated|adaptive")
       ->capture_default_str();
+  subcommand
+      .add_option("--cut-at-bricks", arguments.cut_at_bricks,
+                  "pre-integrated: end segments at the faces of bricks with EDGE voxels (a multiple of 8), as "
+                  "renderers do whose bricks "
+                  "share no more than these, to be compared with")
+      ->type_name("EDGE");
   subcommand.add_option("--tolerance", arguments.tolerance, "of adaptive steps: the error that each may have")
       ->check(CLI::PositiveNumber.description(""))
       ->type_name("ERROR")
@@ -141,6 +148,14 @@ Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent
   if (arguments.method == "pre-integrated") shading.method = volume::Method::pre_integrated;
   if (arguments.method == "adaptive") shading.method = volume::Method::adaptive;
   shading.tolerance = arguments.tolerance;
+  constexpr int block = volume::BrickStore::block_cells;
+  if (arguments.cut_at_bricks < 0 || arguments.cut_at_bricks % block != 0 ||
+      arguments.cut_at_bricks / block > 255)
+    throw std::invalid_argument(fmt::format("--cut-at-bricks {}: give a multiple of {}, up to {}",
+                                            arguments.cut_at_bricks, block, 255 * block));
+  shading.cut_at_bricks = std::uint8_t(arguments.cut_at_bricks / block);
+  if (shading.cut_at_bricks != 0 && shading.method != volume::Method::pre_integrated)
+    throw std::invalid_argument("--cut-at-bricks is for segments; give --method pre-integrated as well");
   if (arguments.op == "max") shading.op = volume::Operator::max;
   if (arguments.op == "add") shading.op = volume::Operator::add;
   if (arguments.op == "first-hit") shading.op = volume::Operator::first_hit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ namespace understudy::launcher {
 
 struct ShadingArguments {
   std::string method = "post-classified";
+  int cut_at_bricks = 0;  ///< voxels along an edge; 0: nothing is cut
   float tolerance = 1e-3F;
   std::string op = "over";
   std::vector<std::string> surfaces;
@@ -31,7 +33,8 @@ struct SurfaceChoice {
 
 struct Shading {
   volume::Method method = volume::Method::post_classified;
-  float tolerance = 0;  ///< of adaptive steps
+  std::uint8_t cut_at_bricks = 0;  ///< as the request has it
+  float tolerance = 0;             ///< of adaptive steps
   volume::Operator op = volume::Operator::over;
   bool shows_volume = true;  ///< false: surfaces alone
   std::vector<SurfaceChoice> surfaces;

@@ -445,7 +445,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.slab = read_slab(in);
   request.fog = read_fog(in);
   request.method = in.enumerator("method", Method::adaptive);
-  request.cut_at_bricks = in.flag("cut_at_bricks");
+  request.cut_at_bricks = std::uint8_t(in.integer("cut_at_bricks", 0, 255));
   request.tolerance = in.real32("tolerance");
   request.surfaces = read_surfaces(in);
   request.light = read_light(in);

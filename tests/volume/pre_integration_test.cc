@@ -144,7 +144,7 @@ TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
   for (const int ranks : {64, 512}) {
     const double seamless = difference(drawn_in_parts(texture, request, ranks, counts), uncut).max;
     RenderRequest cut = request;
-    cut.cut_at_bricks = true;
+    cut.cut_at_bricks = 8;  // the ranks' own are smaller
     const Difference d = difference(drawn_in_parts(texture, cut, ranks, counts), uncut);
     std::printf("%d bricks: cut at their faces max %.2e, rms %.2e; uncut max %.2e\n", ranks, d.max, d.rms,
                 seamless);
@@ -153,6 +153,38 @@ TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
     EXPECT_LE(d.max, 5e-3);
     last = d.max;
   }
+}
+
+TEST(PreIntegration, CutAtBricksOfOneRankIsCutAsByRanks) {
+  // 64 ranks have the 4 x 4 x 4 bricks of 16 cells that one rank is told to cut at.
+  Texture texture = sampled(describe({65, 65, 65}, TexelType::u16), marschner_lobb_field());
+  RenderRequest request = request_on_steps(texture);
+  request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
+  request.classification = smooth_table(256, 0.1F);
+  request.method = Method::pre_integrated;
+  give_margin(texture, request);
+  FrameCounts counts;
+  const Image uncut = drawn(texture, request, counts);
+  RenderRequest cut = request;
+  cut.cut_at_bricks = 255;
+  EXPECT_EQ(difference(drawn(texture, cut, counts), uncut).max, 0) << "one brick";
+  const Image by_ranks = drawn_in_parts(texture, cut, 64, counts);
+  cut.cut_at_bricks = 2;
+  const Image by_bricks = drawn(texture, cut, counts);
+  std::printf("cut at bricks of 16: %.2e from uncut, %.2e from ranks with such bricks\n",
+              difference(by_bricks, uncut).max, difference(by_bricks, by_ranks).max);
+  EXPECT_LE(difference(by_bricks, by_ranks).max, 1e-6);
+  EXPECT_GT(difference(by_bricks, uncut).max, 1e-5);
+  // More ranks make no more cuts where theirs are among the bricks'.
+  EXPECT_LE(difference(drawn_in_parts(texture, cut, 8, counts), by_bricks).max, 1e-6);
+  VolumeDescription large = texture.description;
+  large.size = {1024, 1024, 1024};
+  large.stored = {{0, 0, 0}, large.size};
+  large.margin = 16;
+  cut.cut_at_bricks = 4;
+  EXPECT_NO_THROW(validate(large, cut));
+  cut.cut_at_bricks = 1;
+  EXPECT_THROW(validate(large, cut), std::invalid_argument) << "two million bricks";
 }
 
 TEST(PreIntegration, LeavesOutWhatIsClear) {

@@ -12,6 +12,9 @@
 #include <stdexcept>
 #include <variant>
 
+#include "volume/brick/texel_box.h"
+#include "volume/brick_grid.h"
+#include "volume/footprint.h"
 #include "volume/matrix.h"
 #include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
@@ -128,6 +131,16 @@ void validate_slab(const VolumeDescription& volume, const RenderRequest& request
   }
 }
 
+void validate_cut(const VolumeDescription& volume, int blocks) {
+  if (blocks == 0) return;
+  constexpr double most = 65536;
+  double bricks = 1;
+  for (const int texels : volume.size) bricks *= std::ceil(double(texels) / (blocks * BrickStore::block_cells));
+  if (!(bricks <= most))
+    refuse("segments are cut at {} bricks of {} cells (at most {} are possible): cut at larger ones", bricks,
+           blocks * BrickStore::block_cells, most);
+}
+
 void validate_fog(const Fog& fog, Operator op) {
   if (op == Operator::min) refuse("there is no fog under the operator min");
   if (fog.entries.size() < 2 || fog.entries.size() > max_table_entries)
@@ -165,6 +178,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
       refuse("slices reach beyond a repeating texture along axis {} ({} to {})", axis, request.region.low[axis],
              request.region.high[axis]);
   }
+  validate_cut(volume, request.cut_at_bricks);
   if (request.clip_planes.size() > max_clip_planes)
     refuse("{} clip planes (at most {} are possible)", request.clip_planes.size(), max_clip_planes);
   for (const HalfSpace& plane : request.clip_planes)
@@ -238,6 +252,38 @@ Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequ
   }
   for (const Level& level : SegmentScene(volume, request).levels) c.levels.push_back(level.value);
   return c;
+}
+
+/// What a picture is drawn of, front to back.
+struct Piece {
+  RaySetup setup;
+  Rect pixels;
+};
+
+/// All cells owned at once, or, where segments are cut, brick by brick.
+std::vector<Piece> pieces_of(const RenderRequest& request, const BrickStore& store) {
+  std::vector<Piece> pieces;
+  const TexelBox& owned = store.owned_cells();
+  if (request.cut_at_bricks != 0 && request.method == Method::pre_integrated) {
+    const std::array<int, 3>& origin = store.lattice().origin;
+    const BrickGrid grid =
+        BrickGrid::covering(origin, owned.high, int(request.cut_at_bricks) * BrickStore::block_cells);
+    for (const std::size_t brick : grid.in_visibility_order(store.description(), request)) {
+      const TexelBox cells = intersection(grid.cells(brick), owned);
+      if (is_empty(cells)) continue;
+      const Rect pixels = footprint(request, store.description(), cells);
+      if (!pixels.empty()) pieces.push_back({RaySetup(request, store, cells), pixels});
+    }
+  }
+  if (pieces.empty()) pieces.push_back({RaySetup(request, store), request.window});
+  return pieces;
+}
+
+void compose_behind(float* front, const float* back, int pixels) {
+  for (int i = 0; i < pixels; ++i, front += 4, back += 4) {
+    const float room = 1 - front[3];
+    for (int k = 0; k < 4; ++k) front[k] += room * back[k];
+  }
 }
 
 /// What stays the same from picture to picture while classification and circumstances do.
@@ -377,7 +423,8 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
   if (pixels.empty() || (!request.steps && request.planes.count == 0)) return;
 
-  const RaySetup setup(request, store);
+  const std::vector<Piece> pieces = pieces_of(request, store);
+  const RaySetup& setup = pieces.front().setup;
   Scene scene;
   scene.store = &store;
   scene.skip = &prepared.skip;
@@ -410,13 +457,13 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 
   tbb::combinable<FrameCounts> partial;
-  const auto render_tile = [&](int x, int y, int width, int height) {
+  const auto render_tile = [&](const Piece& piece, int x, int y, int width, int height) {
     FrameCounts& mine = partial.local();
     RayStrip strip;
     alignas(64) std::array<float, 4 * strip_rays> rgba;
     for (int row = 0; row < height; row += strip_height) {
       const int rows = std::min(strip_height, height - row);
-      if (!set_up_strip(setup, request, x, y + row, width, rows, strip)) continue;
+      if (!set_up_strip(piece.setup, request, x, y + row, width, rows, strip)) continue;
       for (std::size_t r = 0; r < strip_rays; ++r)
         if (strip.first[r] <= strip.last[r]) {
           ++mine.rays;
@@ -427,8 +474,13 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
       mine.samples_taken += done.samples_taken;
       mine.rays_terminated += done.rays_terminated;
       mine.samples_hidden += done.samples_hidden;
-      for (int r = 0; r < rows; ++r)
-        std::copy_n(rgba.data() + 4 * r * tile_width, 4 * width, out.at(x, y + row + r));
+      for (int r = 0; r < rows; ++r) {
+        const float* const from = rgba.data() + 4 * r * tile_width;
+        if (&piece == &pieces.front())
+          std::copy_n(from, 4 * width, out.at(x, y + row + r));
+        else
+          compose_behind(out.at(x, y + row + r), from, width);
+      }
     }
   };
 
@@ -440,8 +492,11 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
                       for (int row = range.rows().begin(); row < range.rows().end(); ++row)
                         for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
                           const int x = column * tile_width, y = row * tile_height;
-                          render_tile(pixels.x + x, pixels.y + y, std::min(tile_width, pixels.width - x),
-                                      std::min(tile_height, pixels.height - y));
+                          const Rect tile{pixels.x + x, pixels.y + y, std::min(tile_width, pixels.width - x),
+                                          std::min(tile_height, pixels.height - y)};
+                          for (const Piece& piece : pieces)
+                            if (!intersection(piece.pixels, tile).empty())
+                              render_tile(piece, tile.x, tile.y, tile.width, tile.height);
                         }
                     });
   partial.combine_each([&](const FrameCounts& c) {

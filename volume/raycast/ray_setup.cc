@@ -295,7 +295,7 @@ void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
 
 }  // namespace
 
-RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
+RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const TexelBox& owned) {
   const Matrix4& m = request.texture_to_clip;
   const auto row = [&](int r) { return Vec3{m[4 * r], m[4 * r + 1], m[4 * r + 2]}; };
   const Vec3 a0 = row(0), a1 = row(1), a3 = row(3);
@@ -332,7 +332,6 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
     texels[axis] = store.description().size[axis];
     position[axis] = at_sample(texels, -0.5 - lattice.origin[axis]);
 
-    const TexelBox& owned = store.owned_cells();
     const int low = owned.low[axis] - lattice.origin[axis], high = owned.high[axis] - lattice.origin[axis];
     owned_low[axis] = float(low);
     owned_high[axis] = float(high);
@@ -360,7 +359,7 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store) {
   first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
   last_plane = planes.count - 1;
   ends = walks_segments(request);
-  cut = request.cut_at_bricks && request.method == Method::pre_integrated;
+  cut = request.cut_at_bricks != 0 && request.method == Method::pre_integrated;
   segments = ends && (request.method != Method::post_classified || !request.surfaces.empty());
   steps = request.steps;
   if (steps) {

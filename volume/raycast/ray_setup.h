@@ -35,7 +35,10 @@ struct IndexBound {
 };
 
 struct RaySetup {
-  RaySetup(const RenderRequest& request, const BrickStore& store);
+  RaySetup(const RenderRequest& request, const BrickStore& store)
+      : RaySetup(request, store, store.owned_cells()) {}
+  /// As if `owned`, a part of them, were all that the store owns.
+  RaySetup(const RenderRequest& request, const BrickStore& store, const TexelBox& owned);
 
   LinearInPixel det;
   double smallest_det = 0;             ///< rays with |det| under this run parallel to the planes

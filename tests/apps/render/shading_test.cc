@@ -175,7 +175,21 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
   EXPECT_THAT(trouble("--light all --material 1,1"), HasSubstr("0.2,0.8,0.3,20"));
   EXPECT_THAT(trouble("--method volumetric"), HasSubstr("pre-integrated"));
   EXPECT_THAT(trouble("--method pre-integrated --step 100"), HasSubstr("smaller"));
+  EXPECT_THAT(trouble("--cut-at-bricks 16"), HasSubstr("--method pre-integrated"));
+  EXPECT_THAT(trouble("--cut-at-bricks 12 --method pre-integrated"), HasSubstr("a multiple of 8"));
   EXPECT_THAT(trouble("--backend gl"), AllOf(HasSubstr("-n N"), HasSubstr("serve")));
+}
+
+TEST_F(Render, CutsSegmentsAtBricksWhereAskedTo) {
+  const std::string common = ball(48) + " --table rainbow --method pre-integrated --size 90x80 --step 2";
+  const Picture seamless = picture(common);
+  EXPECT_EQ(difference(picture(common + " --cut-at-bricks 64"), seamless).max, 0) << "it is one brick";
+  const double few = difference(picture(common + " --cut-at-bricks 24"), seamless).max,
+               many = difference(picture(common + " --cut-at-bricks 8"), seamless).max;
+  std::printf("cut at bricks of 24 and of 8: %.1e and %.1e from uncut\n", few, many);
+  EXPECT_GT(few, 1e-5);
+  EXPECT_GT(many, 1e-5);
+  EXPECT_LT(many, 0.1);
 }
 
 #ifdef UNDERSTUDY_HAS_NODES

@@ -1,5 +1,5 @@
-// understudy-bench-balance: one scene under no balancing, Mueller's and the predicting one. Prints one JSON
-// object a line: for each balancer its sums, and its pictures.
+// understudy-bench-balance: one scene under no balancing, Mueller's twice and the predicting one. Prints one
+// JSON object a line: for each balancer its sums, and its pictures.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,10 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
-#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/bench/balance_trace.h"
@@ -150,10 +151,16 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     bench::TracePlayer player(scene_of(settings));
-    for (const auto& [name, balance] : {std::pair{"static", compositor::Balance::off},
-                                        {"muller", compositor::Balance::muller},
-                                        {"predicted", compositor::Balance::predicted}}) {
-      const auto balancer = compositor::make_balancer(balance);
+    // No one setting of Mueller's suits every scene: one that turns back readily, and one that hardly ever
+    // does.
+    compositor::MullerSettings firm;
+    firm.raised_by = 10;
+    std::vector<std::pair<const char*, std::unique_ptr<compositor::Balancer>>> balancers;
+    balancers.emplace_back("static", nullptr);
+    balancers.emplace_back("muller", compositor::muller_balancer());
+    balancers.emplace_back("muller-firm", compositor::muller_balancer(firm));
+    balancers.emplace_back("predicted", compositor::predicting_balancer());
+    for (const auto& [name, balancer] : balancers) {
       const std::vector<bench::TracePicture> trace = player.play(balancer.get());
       const bench::TraceSums sums = player.sums(trace);
       nlohmann::ordered_json row{{"balance", name},

@@ -210,9 +210,9 @@ std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
       work.push_back({measured_ms(picture, rank, taken), taken});
       now.render_ms = std::max(now.render_ms, work.back().ms);
     }
-    const double ideal = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
+    now.ideal_ms = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
     now.deviation = sum > 0 ? (slowest - fastest) * double(ranks) / sum : 0;
-    now.imbalance = ideal > 0 ? slowest / ideal : 1;
+    now.imbalance = now.ideal_ms > 0 ? slowest / now.ideal_ms : 1;
     for (const Partition::Split& split : partition.splits) now.cuts.push_back(split.cut);
   }
   return trace;
@@ -223,7 +223,7 @@ TraceSums TracePlayer::sums(const std::vector<TracePicture>& trace) const {
   const auto pictures = double(trace.size());
   for (const TracePicture& picture : trace) {
     sums.mean_ms += (picture.render_ms + picture.transfer_ms) / pictures;
-    sums.ideal_ms += picture.render_ms / picture.imbalance / pictures;
+    sums.ideal_ms += picture.ideal_ms / pictures;
     sums.mean_deviation += picture.deviation / pictures;
     sums.bytes += double(picture.bytes);
     sums.planes_moved += picture.planes_moved;

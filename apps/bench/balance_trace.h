@@ -41,8 +41,9 @@ struct TraceScene {
 struct TracePicture {
   double render_ms = 0;    ///< slowest rank, with noise
   double transfer_ms = 0;  ///< before it: busiest rank
+  double ideal_ms = 0;     ///< had all samples been divided by the ranks' speeds, without noise
   double deviation = 0;    ///< (max - min) / mean of the ranks' times, without noise
-  double imbalance = 0;    ///< slowest rank's time over that of an ideal division, without noise
+  double imbalance = 0;    ///< slowest rank's time over the ideal one, without noise
   std::size_t bytes = 0;   ///< that travelled
   std::size_t blocks_from_cache = 0;
   int planes_moved = 0;

@@ -57,13 +57,13 @@ class Slowness {
     double median = sorted[1];
     if (measured_ == 2 && std::abs(sorted[0] - value_) < std::abs(sorted[1] - value_)) median = sorted[0];
     const double off = std::abs(median - value_);
-    constexpr double slowly = 0.15, surprise = 3, at_least = 0.15;
+    constexpr double slowly = 0.15, surprise = 3, at_least = 0.15, outlier = 0.2;
     if (off > value_ * std::max(at_least, surprise * scatter_)) {
       value_ = median;
       return;
     }
     value_ += slowly * (median - value_);
-    scatter_ += slowly * (std::abs(ms_per_sample - value_) / value_ - scatter_);
+    scatter_ += slowly * (std::min(outlier, std::abs(ms_per_sample - value_) / value_) - scatter_);
   }
 
  private:
@@ -91,7 +91,7 @@ class PredictingBalancer : public Balancer {
     for (std::size_t i = 0; i < weights_.size(); ++i) costs.values()[i] *= double(weights_[i]);
     const CostSums sums(costs);
     const std::vector<double> slow = all_slownesses();
-    const Partition fair = fair_partition(input, sums, slow);
+    const Partition fair = refined(fair_partition(input, sums, slow), input, sums, slow);
     const std::vector<TexelBox> then = boxes_of(fair, input.lattice);
 
     const double stay_ms = slowest(sums, now, slow), move_ms = slowest(sums, then, slow);
@@ -177,6 +177,49 @@ class PredictingBalancer : public Balancer {
         if (const auto fair = volume::fair_cut(sums, box, split.axis, low / (low + high))) cut = *fair;
       split.cut = allowed_cut(partition, i, box, input.lattice, edge, cut);
     });
+    return partition;
+  }
+
+  /// Planes a layer further, one by one, while that brings the times closer to each other: sides that are fair
+  /// to each other need not be divisible fairly.
+  static Partition refined(Partition partition, const BalanceInput& input, const CostSums& sums,
+                           const std::vector<double>& slow) {
+    constexpr int most_ranks = 64, rounds = 3;  // it takes the square of the ranks
+    if (partition.ranks > most_ranks) return partition;
+    const int edge = input.costs.edge();
+    const double mean = sums.within(input.lattice) / double(slow.size());
+    // A norm between the largest time and the sum of their squares: the second slowest counts, too.
+    const auto unevenness = [&](const Partition& of) {
+      double sum = 0;
+      const std::vector<TexelBox> boxes = boxes_of(of, input.lattice);
+      for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
+        const double time = sums.within(boxes[rank]) * slow[rank] / (mean * slow[0]);
+        const double square = time * time, fourth = square * square;
+        sum += fourth * fourth;
+      }
+      return sum;
+    };
+    if (mean <= 0) return partition;
+    double least = unevenness(partition);
+    bool better = true;
+    for (int round = 0; better && round < rounds; ++round) {
+      better = false;
+      for (std::size_t i = 0; i < partition.splits.size(); ++i)
+        for (const int step : {-edge, edge}) {
+          Partition candidate = partition;
+          candidate.splits[i].cut += step;
+          walk_splits(candidate, input.lattice, [&](std::size_t k, const TexelBox& box) {
+            candidate.splits[k].cut =
+                allowed_cut(candidate, k, box, input.lattice, edge, candidate.splits[k].cut);
+          });
+          const double sum = unevenness(candidate);
+          constexpr double worth_it = 0.98;
+          if (sum >= least * worth_it) continue;
+          least = sum;
+          partition = candidate;
+          better = true;
+        }
+    }
     return partition;
   }
 

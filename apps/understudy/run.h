@@ -34,6 +34,7 @@ struct RunArguments {
   std::optional<Door> door = Door::audit;       ///< none: the program makes its own chains
   std::filesystem::path trace;                  ///< empty: nothing is recorded
   std::string backend = "cpu";                  ///< who casts the nodes' rays
+  std::string balance = "off";                  ///< who of the nodes gets how much of a volume
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

@@ -1,24 +1,26 @@
-// Static partition of a volume's cells into one convex box per rank, and the order in which the boxes cover
-// each other. Split planes lie on block faces where that is possible. (Bentley 1975; for sort-last volume
-// rendering Ma, Painter, Hansen, Krogh 1994.)
+// A volume's cells in one convex box per rank, as a partition divides them, and the order in which the boxes
+// cover each other. (Bentley 1975; for sort-last volume rendering Ma, Painter, Hansen, Krogh 1994.)
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "volume/brick/cell_lattice.h"
+#include "volume/partition.h"
 #include "volume/request.h"
 #include "volume/sight.h"
 
 namespace understudy::volume {
 
-/// Most ranks that are believed.
-constexpr int max_ranks = 65536;
-
 class KdTree {
  public:
-  /// Divides the cell lattice of `volume` among `ranks` >= 1, in proportion to the ranks on either side of
-  /// every split. With more ranks than cells some boxes are empty. Throws std::invalid_argument.
+  /// Throws std::invalid_argument when `partition` does not divide the cell lattice of `volume`.
+  KdTree(const VolumeDescription& volume, Partition partition);
+  /// By blocks, among `ranks` >= 1. With more ranks than cells some boxes are empty. Throws
+  /// std::invalid_argument.
   KdTree(const VolumeDescription& volume, int ranks);
+
+  const Partition& partition() const { return partition_; }
 
   int ranks() const { return int(boxes_.size()); }
 
@@ -36,21 +38,13 @@ class KdTree {
   std::vector<int> visibility_order(const Matrix4& texture_to_clip) const;
 
  private:
-  struct Node {
-    int axis = 0;
-    double plane = 0;  // in texture space
-    int low = 0;       // child on the low side: a node, or ~rank
-    int high = 0;
-  };
-
-  int divide(const VolumeDescription& volume, const TexelBox& lattice, const TexelBox& cells, int first_rank,
-             int ranks);
   std::vector<int> visibility_order(const Sight& sight) const;
   void walk(int child, const Sight& sight, std::vector<int>& order) const;
+  int root() const { return partition_.splits.empty() ? ~0 : 0; }
 
+  Partition partition_;
   std::vector<TexelBox> boxes_;
-  std::vector<Node> nodes_;
-  int root_ = 0;
+  std::vector<double> planes_;  // of the splits, in texture space
 };
 
 }  // namespace understudy::volume

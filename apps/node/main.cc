@@ -43,6 +43,14 @@ int main(int argc, char** argv) {
   std::string gpu_memory = "auto";
   app.add_option("--gpu-memory", gpu_memory, "Bytes of texels in textures")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(volume::glsl::least_texture_memory, ~std::uint64_t(0)));
+  BalanceSettings balance;
+  app.add_option_function<std::string>(
+      "--balance",
+      [&](const std::string& name) {
+        if (!set_balance(balance.balance, name))
+          throw CLI::ValidationError("--balance", "there is no '" + name + "'");
+      },
+      "Who gets how much of a volume: off, muller or predicted");
   CLI11_PARSE(app, argc, argv);
 
   MpiLink link(argc, argv);
@@ -61,8 +69,18 @@ int main(int argc, char** argv) {
         std::fflush(stderr);
       },
       memory);
+  balance.moved = [&](const MoveFigures& move) {
+    if (link.rank() != 0) return;
+    fmt::print(stderr,
+               "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} "
+               "bytes), {} were "
+               "here from before; {:.1f} ms\n",
+               move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
+               move.blocks_from_cache, move.ms);
+    std::fflush(stderr);
+  };
   try {
-    return run_node(link, control, limits::stall_patience, exchange, chooser.factory()) ? 0 : 1;
+    return run_node(link, control, limits::stall_patience, exchange, chooser.factory(), balance) ? 0 : 1;
   } catch (const std::exception& error) {
     link.abandon(error.what());
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/understudy/backend_option.h"
+#include "apps/understudy/balance_option.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/run.h"
@@ -62,6 +63,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_options_of_the_table(*subcommand, arguments, without);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_balance_option(*subcommand, arguments->balance);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

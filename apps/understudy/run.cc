@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "apps/understudy/backend_option.h"
+#include "apps/understudy/balance_option.h"
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/environment.h"
 #include "apps/understudy/installation.h"
@@ -179,14 +180,17 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   std::optional<NodeGroupPlan> plan;
   if (options.nodes > 0 && options.connect.empty() && !options.disable) {
     plan = NodeGroupPlan{
-        options.nodes,     folder.path() / "nodes.sock", folder.path(), options.exchange, options.pixels,
-        arguments.backend, arguments.gpu_memory};
+        options.nodes,     folder.path() / "nodes.sock", folder.path(),    options.exchange, options.pixels,
+        arguments.backend, arguments.gpu_memory,         arguments.balance};
   } else if (arguments.backend != "cpu") {
     say(fmt::format(
         "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
         "the CPU, as the viewer's own process has OpenGL to itself",
         arguments.backend));
   }
+  if (!plan && arguments.balance != "off")
+    say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
+                    arguments.balance));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
   std::optional<ChildProcess> viewer;
@@ -248,6 +252,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   add_options_of_the_table(*subcommand, arguments);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_balance_option(*subcommand, arguments->balance);
   const std::map<std::string, Door> doors{
       {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
   subcommand

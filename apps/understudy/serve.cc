@@ -12,6 +12,7 @@
 #include <string>
 
 #include "apps/understudy/backend_option.h"
+#include "apps/understudy/balance_option.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
@@ -25,6 +26,7 @@ struct ServeArguments {
   int nodes = 1;
   std::string backend = "cpu";
   std::string gpu_memory = "auto";
+  std::string balance = "off";
   std::string socket;
   std::string folder;  ///< empty: one of its own
   std::string exchange = "auto";
@@ -48,7 +50,7 @@ int serve(const ServeArguments& arguments) {
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
   NodeGroup nodes(installation, {arguments.nodes, socket, folder.path(), arguments.exchange, arguments.pixels,
-                                 arguments.backend, arguments.gpu_memory});
+                                 arguments.backend, arguments.gpu_memory, arguments.balance});
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
@@ -76,6 +78,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->check(CLI::Range(1, spu::max_nodes));
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_balance_option(*subcommand, arguments->balance);
   subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
   subcommand
       ->add_option("--folder", arguments->folder,

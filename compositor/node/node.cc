@@ -16,6 +16,7 @@
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
+#include "compositor/node/rebalancer.h"
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
@@ -58,11 +59,14 @@ struct Outcome {
 
 class Node {
  public:
-  Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer)
+  Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer,
+       const BalanceSettings& balance)
       : link_(link),
         exchange_(exchange),
         renderer_(link.rank(), link.size(), make_renderer),
-        loads_(renderer_, link.rank()) {}
+        loads_(renderer_, link.rank()) {
+    if (balance.balance != Balance::off && link.size() > 1) rebalancer_.emplace(link, renderer_, balance);
+  }
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
   void follow();
@@ -87,12 +91,14 @@ class Node {
   std::optional<LinkCost> link_cost_;  // measured before the first picture that needs a choice
   RankRenderer renderer_;
   Loads loads_;
+  std::optional<Rebalancer> rebalancer_;  // where there is something to balance
   /// By application, and there by place.
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
   std::size_t room_ = 0;                  // that size, known to rank 0 too
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
+  VolumeKey rendered_;
   volume::Operator op_{};
   volume::Rect window_;          // that all samples lie in
   Layout layout_{};              // that its parts travel in
@@ -186,6 +192,7 @@ void Node::follow() {
 
 void Node::forget_client(std::uint64_t client) {
   loads_.forget_client(client);
+  if (rebalancer_) rebalancer_->forget_client(client);
   renderer_.forget_client(client);
   pair_tables_.erase(client);
 }
@@ -236,6 +243,7 @@ std::vector<Outcome> Node::texels(const Order& order, std::span<volume::TexelBox
     } else {
       receive_shares(key, boxes);
     }
+    if (rebalancer_) rebalancer_->texels_changed(key, renderer_.description(key), boxes);
     renderer_.add_texels(key, shares_, payload_room_);
   } catch (const RequestRefused& error) {
     mine.refuse(error.what());
@@ -347,6 +355,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         const volume::VolumeDescription description = decode_volume(payload);
         filling = VolumeKey{order.client, description.id};
         loads_.forget(*filling);
+        if (rebalancer_) rebalancer_->forget(*filling);
         renderer_.begin(order.client, description);
         break;
       }
@@ -366,12 +375,14 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
       case MessageType::forget_volume: {
         const VolumeKey key{order.client, decode_id(payload)};
         loads_.forget(key);
+        if (rebalancer_) rebalancer_->forget(key);
         renderer_.forget(key);
         break;
       }
       case MessageType::load_volume: {
         const LoadRequest load = decode_load_request(payload);
         filling = VolumeKey{order.client, load.volume.id};
+        if (rebalancer_) rebalancer_->forget(*filling);
         loads_.begin(*filling, load);
         mine.load = loads_.figures(*filling);
         break;
@@ -389,7 +400,10 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         break;
       }
       case MessageType::render: {
-        const volume::RenderRequest request = decode_request(payload, pair_tables_[order.client]);
+        const auto decode = [&] { return decode_request(payload, pair_tables_[order.client]); };
+        const volume::RenderRequest request =
+            rebalancer_ ? rebalancer_->before_picture(order.client, decode) : decode();
+        rendered_ = {order.client, request.volume};
         op_ = request.op;
         window_ = intersection(request.window, request.viewport);
         layout_ = request.may_travel_as_halves && exchange_.layout == Layout::rgba32f ? Layout::rgba16f
@@ -415,6 +429,12 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
     mine.refuse(error.what());
   }
   std::vector<Outcome> outcomes = agree(mine, filling);
+  if (rebalancer_ && order.type == MessageType::render && !first_refusal(outcomes)) {
+    std::vector<RankWork> work;
+    for (const Outcome& outcome : outcomes)
+      work.push_back({outcome.counts.render_ms, outcome.counts.samples_taken});
+    rebalancer_->after_picture(rendered_, work);
+  }
   const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
   if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*filling);
   return outcomes;
@@ -487,8 +507,9 @@ std::vector<volume::PixelIntegral> Node::compose_integrals() {
 }  // namespace
 
 bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience,
-              const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer) {
-  Node node(link, exchange, make_renderer);
+              const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer,
+              const BalanceSettings& balance) {
+  Node node(link, exchange, make_renderer, balance);
   if (link.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

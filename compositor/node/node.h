@@ -8,6 +8,7 @@
 
 #include "compositor/exchange/link.h"
 #include "compositor/exchange/settings.h"
+#include "compositor/node/rebalancer.h"
 #include "compositor/service/limits.h"
 #include "volume/raycast/brick_renderer.h"
 
@@ -17,7 +18,8 @@ namespace understudy::compositor {
 /// launcher behind `control_path` has closed its connection; false, on rank 0, when it could not be reached:
 /// that has been said on stderr, and the other ranks return as well.
 ///
-/// Each rank draws its bricks with what `make_renderer` makes.
+/// Each rank draws its bricks with what `make_renderer` makes; who gets which bricks is balanced as `balance`
+/// says.
 ///
 /// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
 /// application gets a refusal. Applications that pause for longer than
@@ -27,6 +29,7 @@ namespace understudy::compositor {
 bool run_node(Link& link, const std::string& control_path,
               std::chrono::milliseconds stall_patience = limits::stall_patience,
               const ExchangeSettings& exchange = {},
-              const volume::BrickRendererFactory& make_renderer = volume::cpu_renderer);
+              const volume::BrickRendererFactory& make_renderer = volume::cpu_renderer,
+              const BalanceSettings& balance = {});
 
 }  // namespace understudy::compositor

@@ -40,8 +40,13 @@ struct RankRenderer::Volume {
         bricks(description, tree.box(rank)),
         renderer(make_renderer(bricks)),
         version(description.version) {
-    for (int other = 0; other < ranks; ++other)
-      shown.push_back(BrickStore::texels_shown(description, tree.box(other)));
+    find_shown();
+  }
+
+  void find_shown() {
+    shown.clear();
+    for (int other = 0; other < tree.ranks(); ++other)
+      shown.push_back(BrickStore::texels_shown(bricks.description(), tree.box(other)));
   }
 };
 
@@ -180,6 +185,10 @@ std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
   return volume::bytes_per_texel(find(key).bricks.description().type);
 }
 
+const VolumeDescription& RankRenderer::description(VolumeKey key) const {
+  return find(key).bricks.description();
+}
+
 std::size_t RankRenderer::bytes(VolumeKey key) const {
   return find(key).bricks.bytes();
 }
@@ -250,6 +259,29 @@ std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const Re
     parts.resize(done);
     return parts;
   });
+}
+
+const Partition& RankRenderer::partition(std::uint64_t client, const RenderRequest& request) const {
+  return find_complete(client, request).tree.partition();
+}
+
+const BrickStore& RankRenderer::bricks(std::uint64_t client, const RenderRequest& request) const {
+  const BrickStore& bricks = find_complete(client, request).bricks;
+  refusing([&] { validate(bricks.description(), request); });
+  return bricks;
+}
+
+void RankRenderer::divide(
+    VolumeKey key, const Partition& partition,
+    const std::function<std::vector<std::byte>(const std::array<int, 3>& place)>& packed_block) {
+  Volume& volume = find(key);
+  KdTree tree(volume.bricks.description(), partition);
+  // What it keeps is of blocks that are about to move; it goes first, so that there is room.
+  volume.renderer.reset();
+  volume.bricks.reshape(tree.box(rank_), packed_block);
+  volume.renderer = make_renderer_(volume.bricks);
+  volume.tree = std::move(tree);
+  volume.find_shown();
 }
 
 std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const RenderRequest& request) const {

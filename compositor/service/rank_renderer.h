@@ -2,15 +2,19 @@
 // volume's kd-tree. The embedded service is the only rank of one.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "compositor/service/integral_parts.h"
+#include "volume/brick/brick_store.h"
 #include "volume/image.h"
+#include "volume/partition.h"
 #include "volume/raycast/brick_renderer.h"
 #include "volume/request.h"
 
@@ -41,6 +45,7 @@ class RankRenderer {
   /// Texels of this rank's share, one box after the other.
   void add_texels(VolumeKey key, std::span<const volume::TexelBox> shares, std::span<const std::byte> texels);
   std::size_t bytes_per_texel(VolumeKey key) const;
+  const volume::VolumeDescription& description(VolumeKey key) const;
   /// What the bricks of this rank take.
   std::size_t bytes(VolumeKey key) const;
   void end(VolumeKey key);
@@ -53,6 +58,13 @@ class RankRenderer {
   /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals()).
   std::vector<IntegralPart> integrals(std::uint64_t client, const volume::RenderRequest& request,
                                       std::span<const volume::Pixel> pixels, double most_ms) const;
+  /// How a complete volume is divided, and what this rank holds of it. Both refuse what render() would.
+  const volume::Partition& partition(std::uint64_t client, const volume::RenderRequest& request) const;
+  const volume::BrickStore& bricks(std::uint64_t client, const volume::RenderRequest& request) const;
+  /// Divides a complete volume otherwise. Blocks that this rank comes to hold are asked of `packed_block`, as
+  /// BrickStore::reshape() does.
+  void divide(VolumeKey key, const volume::Partition& partition,
+              const std::function<std::vector<std::byte>(const std::array<int, 3>& place)>& packed_block);
   /// All ranks, front first.
   std::vector<int> visibility_order(std::uint64_t client, const volume::RenderRequest& request) const;
 

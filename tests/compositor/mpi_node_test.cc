@@ -108,6 +108,34 @@ TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
   }
 }
 
+TEST(MpiNode, PicturesStayTheSameWhileRanksAreBalanced) {
+  // All there is to see lies in one corner: by blocks, one rank would have it all.
+  const auto embedded = embedded_service();
+  Texture texture = some_texture();
+  const auto corner = [](const volume::Vec3& t) {
+    return t[0] < 0.4 && t[1] < 0.5 && t[2] < 0.5 ? t[0] + 0.5 : 0;
+  };
+  texture = volume::testing::sampled(texture.description, corner);
+  upload(*embedded, texture);
+  for (const char* balance : {"muller", "predicted"}) {
+    const ScratchFolder folder;
+    const std::string path = folder / "control";
+    Launcher launcher(path);
+    MpiGroup group(4, path, {"--balance", balance});
+    const auto linked = linked_service(path, 60'000);
+    upload(*linked, texture);
+    double worst = 0;
+    for (int picture = 0; picture < 15; ++picture) {
+      volume::RenderRequest request = some_request(texture);
+      auto& entries = std::get<volume::TransferFunction>(request.classification).entries;
+      if (picture % 5 == 4) std::ranges::reverse(entries);  // now the rest of it shows
+      worst = std::max(worst, largest_difference(picture_of(*linked, request), picture_of(*embedded, request)));
+    }
+    std::printf("%s: at most %.2g apart\n", balance, worst);
+    EXPECT_LE(worst, 1e-5) << balance;
+  }
+}
+
 TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
   const auto embedded = embedded_service();
   const Texture texture = some_texture();

@@ -28,9 +28,8 @@ inline Whole render_whole(const Texture& texture, const RenderRequest& request,
 }
 
 /// Every rank renders its footprint alone; the pictures are composed in visibility order.
-inline Whole render_parts(const Texture& texture, const RenderRequest& request, int ranks,
+inline Whole render_parts(const Texture& texture, const RenderRequest& request, const KdTree& tree,
                           const DrawBricks& draw = raycast) {
-  const KdTree tree(texture.description, ranks);
   Whole whole{Image(request.window), {}};
   std::fill(whole.image.rgba.begin(), whole.image.rgba.end(), neutral_value(request.op));
   for (const int rank : tree.visibility_order(request)) {
@@ -60,6 +59,11 @@ inline Whole render_parts(const Texture& texture, const RenderRequest& request, 
       }
   }
   return whole;
+}
+
+inline Whole render_parts(const Texture& texture, const RenderRequest& request, int ranks,
+                          const DrawBricks& draw = raycast) {
+  return render_parts(texture, request, KdTree(texture.description, ranks), draw);
 }
 
 }  // namespace understudy::volume::testing

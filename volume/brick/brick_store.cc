@@ -317,6 +317,59 @@ void BrickStore::change(const TexelBox& box, std::span<const std::byte> texels,
       }
 }
 
+template <class Call>
+void BrickStore::with_texel(Call call) const {
+  switch (volume_.type) {
+    case TexelType::u8:
+      return call(std::uint8_t{});
+    case TexelType::u16:
+      return call(std::uint16_t{});
+    case TexelType::f32:
+      return call(float{});
+    case TexelType::rgba8:
+      return call(std::uint32_t{});
+  }
+}
+
+template <typename Texel>
+void BrickStore::give_up_block(std::size_t block) {
+  auto* place = const_cast<std::byte*>(blocks_[block]);  // of a chunk of this store
+  if (constant_[block]) {
+    Texel value;
+    std::memcpy(&value, place, sizeof value);
+    const auto shared = constant_blocks_.find(bits(value));
+    if (--shared->second.users == 0) {
+      constant_blocks_.erase(shared);
+      free_blocks_.push_back(place);
+    }
+  } else {
+    free_blocks_.push_back(place);
+  }
+}
+
+void BrickStore::give_up_block(std::size_t block) {
+  with_texel([&](auto texel) { give_up_block<decltype(texel)>(block); });
+}
+
+template <typename Texel>
+void BrickStore::unpack(std::size_t block, std::span<const std::byte> packed) {
+  std::array<Texel, block_texels> texels;
+  if (packed.size() == sizeof texels) {
+    std::memcpy(texels.data(), packed.data(), sizeof texels);
+  } else if (packed.size() == sizeof(Texel)) {
+    Texel texel;
+    std::memcpy(&texel, packed.data(), sizeof texel);
+    texels.fill(texel);
+  } else {
+    throw std::logic_error("a block of texels has the wrong size");
+  }
+  store_block(block, texels.data());
+}
+
+void BrickStore::unpack(std::size_t block, std::span<const std::byte> packed) {
+  with_texel([&](auto texel) { unpack<decltype(texel)>(block, packed); });
+}
+
 template <typename Texel>
 void BrickStore::change_block(std::size_t block, const std::array<std::span<const Point>, 3>& points,
                               const TexelBox& box, const std::byte* texels) {
@@ -337,18 +390,7 @@ void BrickStore::change_block(std::size_t block, const std::array<std::span<cons
       }
     }
 
-  auto* place = const_cast<std::byte*>(blocks_[block]);  // of a chunk of this store
-  if (constant_[block]) {
-    Texel value;
-    std::memcpy(&value, place, sizeof value);
-    const auto shared = constant_blocks_.find(bits(value));
-    if (--shared->second.users == 0) {
-      constant_blocks_.erase(shared);
-      free_blocks_.push_back(place);
-    }
-  } else {
-    free_blocks_.push_back(place);
-  }
+  give_up_block<Texel>(block);
   store_block(block, here.data());
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -49,6 +50,17 @@ class BrickStore {
   /// that show one of them to `changed`.
   void change(const TexelBox& box, std::span<const std::byte> texels, std::vector<std::size_t>& changed);
   bool finished() const { return finished_; }
+
+  /// A block's place, counted in blocks from the lattice's low corner.
+  using BlockPlace = std::array<int, 3>;
+  /// Block `place`, which this finished store holds, as it travels between stores of one volume: its texels, or
+  /// the one that all of them are.
+  std::vector<std::byte> packed(const BlockPlace& place) const;
+  /// Other cells from now on, of a finished store. Blocks that meet them or the margin around them stay where
+  /// they are held already; the others come from `packed_block`. Throws std::invalid_argument, with the store
+  /// as it was, for cells outside the lattice.
+  void reshape(const TexelBox& owned_cells,
+               const std::function<std::vector<std::byte>(const BlockPlace&)>& packed_block);
 
   const VolumeDescription& description() const { return volume_; }
   const CellLattice& lattice() const { return lattice_; }
@@ -114,6 +126,16 @@ class BrickStore {
   /// Makes `block` show these texels, its own or those of an equal block. What it had is given up before.
   template <typename Texel>
   void store_block(std::size_t block, const Texel* texels);
+  /// What it had may be overwritten.
+  template <typename Texel>
+  void give_up_block(std::size_t block);
+  void give_up_block(std::size_t block);
+  template <typename Texel>
+  void unpack(std::size_t block, std::span<const std::byte> packed);
+  void unpack(std::size_t block, std::span<const std::byte> packed);
+  /// Calls a generic lambda with one texel of the volume's type.
+  template <class Call>
+  void with_texel(Call call) const;
   std::byte* allocate_block();
 
   VolumeDescription volume_;

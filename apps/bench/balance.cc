@@ -1,0 +1,188 @@
+// understudy-bench-balance: one scene under no balancing, Mueller's twice and the predicting one. Prints one
+// JSON object a line: for each balancer its sums, and its pictures.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/bench/balance_trace.h"
+#include "volume/file/texel_stream.h"
+#include "volume/file/volume_file.h"
+#include "volume/orbit_camera.h"
+#include "volume/raycast/segment_scene.h"
+#include "volume/transfer_knots.h"
+
+namespace {
+
+using namespace understudy;
+
+struct Settings {
+  std::string scene;
+  std::vector<std::string> volumes;
+  std::string table = "engine";
+  int ranks = 4;
+  int pixels = 256;
+  int pictures = 160;
+  unsigned seed = 1;
+};
+
+const std::vector<std::string> scenes{"turning",  "slowed-surface", "slowed-volume", "slowed-lit",
+                                      "switched", "zooming",        "changing"};
+
+/// Of volumes in files, all of one size: their texels, in bytes of the common range.
+struct Loaded {
+  volume::VolumeDescription description;
+  volume::Vec3 spacing{1, 1, 1};
+  std::vector<std::vector<std::byte>> texels;
+};
+
+Loaded load(const std::vector<std::string>& names) {
+  Loaded loaded;
+  for (const std::string& name : names) {
+    auto file = volume::open_volume(name);
+    const volume::FileDescription description = file->description();
+    const volume::TexelBox all{{0, 0, 0}, description.size};
+    volume::TexelStream stream(std::move(file), {}, all);
+    if (!loaded.texels.empty() &&
+        (loaded.description.size != description.size || loaded.description.type != stream.mapping().type))
+      throw std::invalid_argument(fmt::format("{} differs from the first volume in size or type", name));
+    loaded.description.size = description.size;
+    loaded.description.type = stream.mapping().type;
+    loaded.description.stored = all;
+    loaded.spacing = description.spacing;
+    std::vector<std::byte>& texels = loaded.texels.emplace_back();
+    while (!stream.done()) {
+      const auto slab = stream.next(std::size_t(16) << 20);
+      texels.insert(texels.end(), slab.texels.begin(), slab.texels.end());
+    }
+  }
+  return loaded;
+}
+
+double largest_value(const Loaded& loaded) {
+  if (loaded.description.type != volume::TexelType::f32) return 1;
+  float largest = 0;
+  for (const std::vector<std::byte>& texels : loaded.texels)
+    for (std::size_t at = 0; at + sizeof(float) <= texels.size(); at += sizeof(float)) {
+      float value = 0;
+      std::memcpy(&value, texels.data() + at, sizeof value);
+      if (std::isfinite(value)) largest = std::max(largest, value);
+    }
+  return double(largest);
+}
+
+bench::TraceScene scene_of(const Settings& settings) {
+  auto loaded = std::make_shared<Loaded>(load(settings.volumes));
+  const double step = 1, top = largest_value(*loaded);
+  const volume::TransferFunction table = volume::sampled(volume::knots_named(settings.table), 0, top, step);
+  // What the second table shows is what is densest.
+  volume::TransferKnots dense = volume::knots_named("grey");
+  dense.knots = {{0, {1, 1, 1}, 0}, {0.7, {1, 1, 1}, 0}, {0.75, {1, 1, 1}, 0.3}, {1, {1, 1, 1}, 0.6}};
+  const volume::TransferFunction second = volume::sampled(dense, 0, top, step);
+
+  bench::TraceScene scene;
+  scene.ranks = settings.ranks;
+  scene.seed = settings.seed;
+  scene.pictures = settings.pictures;
+  const std::string& name = settings.scene;
+  const bool slowed = name.starts_with("slowed"), changing = name == "changing";
+  const int pictures = scene.pictures, volumes = int(loaded->texels.size());
+  const auto make_request = [=, spacing = loaded->spacing](const volume::VolumeDescription& description,
+                                                           int picture) {
+    volume::OrbitCamera camera;
+    camera.azimuth = 30 + (slowed ? 0.2 : 1.0) * picture;
+    if (name == "zooming") {
+      camera.distance = 2.5 + 1.7 * std::cos(2 * std::numbers::pi * 3 * picture / pictures);
+      camera.azimuth = 30;
+    }
+    volume::RenderRequest request =
+        volume::orbit_request(description, spacing, camera, settings.pixels, settings.pixels, step);
+    request.classification = name == "switched" && picture / 50 % 2 == 1 ? second : table;
+    if (name == "slowed-surface") {
+      volume::TransferFunction nothing = table;
+      std::ranges::fill(nothing.entries, volume::Rgba{});
+      request.classification = nothing;
+      request.surfaces = {{0.4, {0.9F, 0.9F, 0.9F, 1}}};
+    }
+    if (name == "slowed-lit") request.light.emplace();
+    if (changing) request.version = std::uint64_t(picture * volumes / pictures);
+    return request;
+  };
+  scene.description = loaded->description;
+  scene.description.id = 1;
+  scene.description.margin = volume::margin_needed(scene.description, make_request(scene.description, 0));
+  scene.request = [make_request, description = scene.description](int picture) {
+    return make_request(description, picture);
+  };
+  scene.texels = [loaded](std::uint64_t version) { return loaded->texels[version]; };
+  if (slowed) {
+    const int from = pictures / 4;
+    scene.slowness = [from](int picture, int rank) { return rank == 1 && picture >= from ? 4.0 : 1.0; };
+    scene.events = {0, from};
+  }
+  if (name == "switched") {
+    scene.events.clear();
+    for (int picture = 0; picture < pictures; picture += 50) scene.events.push_back(picture);
+  }
+  return scene;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"plays one scene under each way to balance its ranks"};
+  app.add_option("scene", settings.scene, "what happens")->required()->check(CLI::IsMember(scenes));
+  app.add_option("volumes", settings.volumes, "files; several: one after the other")->required();
+  app.add_option("--table", settings.table, "transfer function: " + volume::built_in_knots());
+  app.add_option("--ranks", settings.ranks)->check(CLI::Range(1, 64));
+  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 4096));
+  app.add_option("--pictures", settings.pictures)->check(CLI::Range(10, 10000));
+  app.add_option("--seed", settings.seed, "of the noise in times");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    bench::TracePlayer player(scene_of(settings));
+    // No one setting of Mueller's suits every scene: one that turns back readily, and one that hardly ever
+    // does.
+    compositor::MullerSettings firm;
+    firm.raised_by = 10;
+    std::vector<std::pair<const char*, std::unique_ptr<compositor::Balancer>>> balancers;
+    balancers.emplace_back("static", nullptr);
+    balancers.emplace_back("muller", compositor::muller_balancer());
+    balancers.emplace_back("muller-firm", compositor::muller_balancer(firm));
+    balancers.emplace_back("predicted", compositor::predicting_balancer());
+    for (const auto& [name, balancer] : balancers) {
+      const std::vector<bench::TracePicture> trace = player.play(balancer.get());
+      const bench::TraceSums sums = player.sums(trace);
+      nlohmann::ordered_json row{{"balance", name},
+                                 {"mean_ms", sums.mean_ms},
+                                 {"ideal_ms", sums.ideal_ms},
+                                 {"mean_deviation", sums.mean_deviation},
+                                 {"end_deviation", sums.end_deviation},
+                                 {"settling", sums.settling},
+                                 {"bytes", sums.bytes},
+                                 {"planes_moved", sums.planes_moved},
+                                 {"reversals", sums.reversals}};
+      for (const bench::TracePicture& picture : trace) {
+        row["render_ms"].push_back(picture.render_ms);
+        row["transfer_ms"].push_back(picture.transfer_ms);
+        row["deviation"].push_back(picture.deviation);
+        row["picture_bytes"].push_back(picture.bytes);
+        row["cuts"].push_back(picture.cuts);
+      }
+      fmt::print("{}\n", row.dump());
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy-bench-balance: {}\n", error.what());
+    return 1;
+  }
+}

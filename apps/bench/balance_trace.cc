@@ -1,0 +1,248 @@
+#include "apps/bench/balance_trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+#include <random>
+#include <utility>
+
+#include "compositor/balance/block_cache.h"
+#include "compositor/balance/moves.h"
+#include "volume/brick/brick_store.h"
+#include "volume/brick/cell_lattice.h"
+#include "volume/brick/texel_box.h"
+#include "volume/footprint.h"
+#include "volume/raycast/expected_samples.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::bench {
+
+using compositor::BlockCache;
+using compositor::BlockMove;
+using compositor::BlockPlace;
+using compositor::RankWork;
+using volume::BrickStore;
+using volume::Partition;
+using volume::TexelBox;
+
+namespace {
+
+BrickStore filled(const volume::VolumeDescription& description, const TexelBox& box,
+                  const std::vector<std::byte>& texels) {
+  BrickStore store(description, box);
+  store.add_slices(description.stored, texels);
+  store.finish();
+  return store;
+}
+
+template <class Visit>
+void for_each_block(const TexelBox& blocks, const Visit& visit) {
+  for (int z = blocks.low[2]; z < blocks.high[2]; ++z)
+    for (int y = blocks.low[1]; y < blocks.high[1]; ++y)
+      for (int x = blocks.low[0]; x < blocks.high[0]; ++x) visit(BlockPlace{x, y, z});
+}
+
+int direction(int from, int to) {
+  return to > from ? 1 : to < from ? -1 : 0;
+}
+
+}  // namespace
+
+/// The bricks of boxes that were drawn of late, with what draws them.
+class TracePlayer::Stores {
+ public:
+  struct Entry {
+    std::uint64_t version = 0;
+    TexelBox box;
+    BrickStore store;
+    volume::RayCaster caster;
+    Entry(std::uint64_t number, const TexelBox& of, BrickStore filled)
+        : version(number), box(of), store(std::move(filled)), caster(store) {}
+  };
+
+  template <class Make>
+  Entry& find(std::uint64_t version, const TexelBox& box, const Make& make) {
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+      if (entry->version == version && entry->box == box) {
+        entries_.splice(entries_.begin(), entries_, entry);
+        return entries_.front();
+      }
+    constexpr std::size_t most = 24;
+    if (entries_.size() >= most) entries_.pop_back();
+    return entries_.emplace_front(version, box, make());
+  }
+
+ private:
+  std::list<Entry> entries_;
+};
+
+TracePlayer::TracePlayer(TraceScene scene)
+    : scene_(std::move(scene)),
+      lattice_(volume::cell_lattice(scene_.description).box()),
+      stores_(std::make_shared<Stores>()) {}
+
+const TracePlayer::Version& TracePlayer::version(std::uint64_t number) {
+  const auto found = versions_.find(number);
+  if (found != versions_.end()) return found->second;
+  Version made{number, scene_.texels(number), {}};
+  const BrickStore whole = filled(scene_.description, lattice_, made.texels);
+  const std::size_t texel = bytes_per_texel(scene_.description.type);
+  for (std::size_t b = 0; b < whole.blocks(); ++b) {
+    const auto ranges = whole.ranges(b);
+    const bool constant =
+        std::ranges::all_of(ranges, [](const auto& range) { return range.low == range.high; });
+    made.packed.push_back(1 + texel * (constant ? 1 : BrickStore::block_texels));
+  }
+  return versions_.emplace(number, std::move(made)).first->second;
+}
+
+const volume::BlockCosts& TracePlayer::expected(int picture) {
+  const auto found = expected_.find(picture);
+  if (found != expected_.end()) return found->second;
+  const volume::RenderRequest request = scene_.request(picture);
+  const Version& texels = version(request.version);
+  Stores::Entry& whole = stores_->find(request.version, lattice_,
+                                       [&] { return filled(scene_.description, lattice_, texels.texels); });
+  volume::BlockCosts costs(lattice_, BrickStore::block_cells);
+  volume::add_expected_samples(whole.store, request, costs);
+  return expected_.emplace(picture, std::move(costs)).first->second;
+}
+
+std::uint64_t TracePlayer::samples(int picture, const TexelBox& box) {
+  if (volume::is_empty(box)) return 0;
+  std::vector<int> key(box.low.begin(), box.low.end());
+  key.insert(key.end(), box.high.begin(), box.high.end());
+  const auto found = samples_.find({picture, key});
+  if (found != samples_.end()) return found->second;
+  const volume::RenderRequest request = scene_.request(picture);
+  const Version& texels = version(request.version);
+  Stores::Entry& entry =
+      stores_->find(request.version, box, [&] { return filled(scene_.description, box, texels.texels); });
+  volume::Image image(volume::footprint(request, scene_.description, box));
+  volume::FrameCounts counts;
+  entry.caster.render(request, image, counts);
+  samples_[{picture, key}] = counts.samples_taken;
+  return counts.samples_taken;
+}
+
+double TracePlayer::measured_ms(int picture, int rank, std::uint64_t samples) const {
+  std::seed_seq seed{scene_.seed, unsigned(picture), unsigned(rank)};
+  std::mt19937 random(seed);
+  const double unit = double(random()) / double(std::mt19937::max());
+  const bool interrupted = random() % 100 == 0;
+  const double ms = 1e-6 * scene_.ns_per_sample * double(samples) * scene_.slowness(picture, rank);
+  return ms * (1 + scene_.noise * (2 * unit - 1)) * (interrupted && scene_.noise > 0 ? 3 : 1);
+}
+
+std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
+  Partition partition = volume::by_blocks(scene_.description, scene_.ranks);
+  const auto ranks = std::size_t(scene_.ranks);
+  const TexelBox blocks = compositor::blocks_owned(lattice_, lattice_);
+  std::vector<RankWork> work;
+  std::vector<BlockCache> caches(ranks, BlockCache(scene_.cache_bytes));
+  std::vector<int> last_direction(partition.splits.size());
+  const double per_ms = 1e6 * scene_.gigabytes_per_second;
+  double ms_per_block = double(bytes_per_texel(scene_.description.type) * BrickStore::block_texels) / per_ms;
+  std::vector<TracePicture> trace;
+  std::uint64_t drawn_version = scene_.request(0).version;
+  for (int picture = 0; picture < scene_.pictures; ++picture) {
+    TracePicture& now = trace.emplace_back();
+    const volume::RenderRequest request = scene_.request(picture);
+    const Version& texels = version(request.version);
+    const auto packed_bytes = [&](const BlockPlace& place) {
+      const std::size_t row = std::size_t(place[2]) * std::size_t(blocks.high[1]) + std::size_t(place[1]);
+      return texels.packed[row * std::size_t(blocks.high[0]) + std::size_t(place[0])];
+    };
+    if (request.version != drawn_version)
+      for (BlockCache& cache : caches) cache.clear();
+    drawn_version = request.version;
+    if (balancer != nullptr) {
+      const Partition next = balancer->decide({partition, lattice_, work, expected(picture), ms_per_block});
+      for (std::size_t i = 0; i < next.splits.size(); ++i) {
+        const int way = direction(partition.splits[i].cut, next.splits[i].cut);
+        if (way == 0) continue;
+        ++now.planes_moved;
+        now.reversals += way == -last_direction[i];
+        last_direction[i] = way;
+      }
+      if (now.planes_moved > 0) {
+        const auto before = volume::boxes(partition, scene_.description),
+                   after = volume::boxes(next, scene_.description);
+        std::vector<std::size_t> sent(ranks), received(ranks);
+        for (const BlockMove& move : compositor::moves(scene_.description, before, after))
+          for_each_block(move.blocks, [&](const BlockPlace& place) {
+            const std::size_t bytes = packed_bytes(place);
+            if (caches[std::size_t(move.to)].take(place)) {
+              ++now.blocks_from_cache;
+              return;
+            }
+            now.bytes += bytes;
+            sent[std::size_t(move.from)] += bytes;
+            received[std::size_t(move.to)] += bytes;
+          });
+        for (std::size_t rank = 0; rank < ranks; ++rank)
+          for (const TexelBox& given :
+               compositor::difference(compositor::blocks_kept(scene_.description, before[rank]),
+                                      compositor::blocks_kept(scene_.description, after[rank])))
+            for_each_block(given, [&](const BlockPlace& place) {
+              caches[rank].put(place, std::vector<std::byte>(packed_bytes(place)));
+            });
+        const double busiest =
+            double(std::max(*std::ranges::max_element(sent), *std::ranges::max_element(received)));
+        now.transfer_ms = scene_.transfer_latency_ms + busiest / per_ms;
+        const std::size_t moved = compositor::most_blocks_moved(lattice_, before, after);
+        if (moved > 0) ms_per_block = (ms_per_block + now.transfer_ms / double(moved)) / 2;
+        partition = next;
+      }
+    }
+    const auto parts = volume::boxes(partition, scene_.description);
+    work.clear();
+    double slowest = 0, fastest = 0, sum = 0, all_samples = 0, all_speed = 0;
+    for (int rank = 0; rank < scene_.ranks; ++rank) {
+      const std::uint64_t taken = samples(picture, parts[std::size_t(rank)]);
+      const double slowness = scene_.slowness(picture, rank);
+      const double ms = 1e-6 * scene_.ns_per_sample * double(taken) * slowness;
+      slowest = std::max(slowest, ms);
+      fastest = rank == 0 ? ms : std::min(fastest, ms);
+      sum += ms;
+      all_samples += double(taken);
+      all_speed += 1 / slowness;
+      work.push_back({measured_ms(picture, rank, taken), taken});
+      now.render_ms = std::max(now.render_ms, work.back().ms);
+    }
+    now.ideal_ms = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
+    now.deviation = sum > 0 ? (slowest - fastest) * double(ranks) / sum : 0;
+    now.imbalance = now.ideal_ms > 0 ? slowest / now.ideal_ms : 1;
+    for (const Partition::Split& split : partition.splits) now.cuts.push_back(split.cut);
+  }
+  return trace;
+}
+
+TraceSums TracePlayer::sums(const std::vector<TracePicture>& trace) const {
+  TraceSums sums;
+  const auto pictures = double(trace.size());
+  for (const TracePicture& picture : trace) {
+    sums.mean_ms += (picture.render_ms + picture.transfer_ms) / pictures;
+    sums.ideal_ms += picture.ideal_ms / pictures;
+    sums.mean_deviation += picture.deviation / pictures;
+    sums.bytes += double(picture.bytes);
+    sums.planes_moved += picture.planes_moved;
+    sums.reversals += picture.reversals;
+  }
+  for (std::size_t e = 0; e < scene_.events.size(); ++e) {
+    const auto begin = std::size_t(scene_.events[e]);
+    const auto end = e + 1 < scene_.events.size() ? std::size_t(scene_.events[e + 1]) : trace.size();
+    const std::size_t tail = std::max<std::size_t>(1, (end - begin) / 10);
+    double level = 0;
+    for (std::size_t i = end - tail; i < end; ++i) {
+      level += trace[i].imbalance / double(tail);
+      sums.end_deviation += trace[i].deviation / double(tail) / double(scene_.events.size());
+    }
+    std::size_t settled = end;
+    while (settled > begin && trace[settled - 1].imbalance <= 1.1 * level) --settled;
+    sums.settling += double(settled - begin) / double(scene_.events.size());
+  }
+  return sums;
+}
+
+}  // namespace understudy::bench

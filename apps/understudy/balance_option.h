@@ -1,0 +1,11 @@
+// `--balance` of `run`, `replay` and `serve`: who of the nodes gets how much of a volume.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace understudy::launcher {
+
+void add_balance_option(CLI::App& subcommand, std::string& balance);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,90 @@
+// Moves the split planes of a volume's partition, such that all ranks draw equally long. A decision is a pure
+// function of what is handed in and of the decisions before: ranks that are told the same decide the same, bit
+// for bit (there is no call of the mathematical library in it but square roots).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "volume/block_costs.h"
+#include "volume/partition.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// What one rank did for a picture.
+struct RankWork {
+  double ms = 0;
+  std::uint64_t samples = 0;  ///< that it took
+};
+
+/// What there is to know before a picture is drawn.
+struct BalanceInput {
+  const volume::Partition& partition;  ///< as it is
+  const volume::TexelBox& lattice;
+  /// Of the last picture, which this partition drew; empty: there was none.
+  std::span<const RankWork> work;
+  /// Samples to be expected in the picture to come; all must be finite and not negative.
+  const volume::BlockCosts& costs;
+  double ms_per_block = 0;  ///< that travels
+};
+
+class Balancer {
+ public:
+  virtual ~Balancer() = default;
+
+  /// The partition for the picture to come: the same tree, some of its planes elsewhere. To be called before
+  /// every picture of the volume, in their order.
+  virtual volume::Partition decide(const BalanceInput& input) = 0;
+
+ protected:
+  Balancer() = default;
+  Balancer(const Balancer&) = default;
+  Balancer(Balancer&&) = default;
+  Balancer& operator=(const Balancer&) = default;
+  Balancer& operator=(Balancer&&) = default;
+};
+
+enum class Balance : std::uint8_t { off, muller, predicted };
+
+/// "off", "muller" or "predicted". False, with `balance` unchanged, for any other.
+bool set_balance(Balance& balance, std::string_view name);
+
+/// After Mueller, Strengert, Ertl 2006. At every split, the root's first, a slice of s blocks goes from the
+/// slower to the faster side when that is worth more than what it costs:
+///
+///     s t + s f c < |t_low - t_high|
+///
+/// t is the mean time per block, c the time to send one, t_low and t_high the mean times of either side's
+/// ranks. f is one number per direction: raised for the way back whenever a slice has moved, lowered for more
+/// of the same.
+struct MullerSettings {
+  double hysteresis = 1;  ///< f to begin with
+  double raised_by = 1;
+  double lowered_by = 0.5;
+};
+std::unique_ptr<Balancer> muller_balancer(const MullerSettings& settings = {});
+
+/// Predicts every rank's time and puts all planes where these are equal, at once.
+///
+/// A rank's time is its slowness, in ms per sample, times the expected samples of its blocks, each times a
+/// weight. Slowness follows the median of its last three measurements, at once when that is far off and slowly
+/// otherwise. Weights say how far expectation was off where (opaque things in front, say): those of a rank's
+/// blocks are multiplied until their sum is what the rank really took, and stay with the blocks when the rank
+/// does not.
+///
+/// Planes move when that pays: what staying has cost up to now, and will in the next `horizon` pictures, must
+/// be more than what the blocks take to travel. Gains that are within what measured times scatter do not count.
+struct PredictingSettings {
+  double horizon = 8;
+  double least_gain = 0.03;  ///< as a part of the picture's time
+};
+std::unique_ptr<Balancer> predicting_balancer(const PredictingSettings& settings = {});
+
+/// None for `off`.
+std::unique_ptr<Balancer> make_balancer(Balance balance);
+
+}  // namespace understudy::compositor

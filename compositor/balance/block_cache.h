@@ -1,0 +1,48 @@
+// Blocks that a rank gave away, as they travel: when one comes back, it need not be sent. The least recently
+// given ones go when there are too many bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <list>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// A block's place, counted in blocks from the lattice's low corner.
+using BlockPlace = std::array<int, 3>;
+
+class BlockCache {
+ public:
+  explicit BlockCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
+
+  void put(const BlockPlace& place, std::vector<std::byte> packed);
+  bool holds(const BlockPlace& place) const { return entries_.contains(place); }
+  /// Taken out of the cache.
+  std::optional<std::vector<std::byte>> take(const BlockPlace& place);
+  /// Their texels have changed.
+  void drop(const volume::TexelBox& blocks);
+  void clear();
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  struct Entry {
+    BlockPlace place{};
+    std::vector<std::byte> packed;
+  };
+  using Entries = std::list<Entry>;
+
+  void erase(std::map<BlockPlace, Entries::iterator>::iterator entry);
+
+  std::size_t most_bytes_;
+  std::size_t bytes_ = 0;
+  Entries latest_first_;
+  std::map<BlockPlace, Entries::iterator> entries_;
+};
+
+}  // namespace understudy::compositor

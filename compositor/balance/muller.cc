@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "compositor/balance/balancer.h"
+#include "compositor/balance/tree.h"
+#include "volume/brick/brick_store.h"
+
+namespace understudy::compositor {
+
+using volume::Partition;
+using volume::TexelBox;
+
+namespace {
+
+constexpr int block = volume::BrickStore::block_cells;
+
+double layers(int cells) {
+  return double((cells + block - 1) / block);
+}
+
+double blocks_in(const TexelBox& box) {
+  return layers(box.high[0] - box.low[0]) * layers(box.high[1] - box.low[1]) * layers(box.high[2] - box.low[2]);
+}
+
+class MullerBalancer : public Balancer {
+ public:
+  explicit MullerBalancer(const MullerSettings& settings) : settings_(settings) {}
+
+  Partition decide(const BalanceInput& input) override {
+    Partition partition = input.partition;
+    if (input.work.empty()) return partition;
+    factors_.resize(partition.splits.size(), {settings_.hysteresis, settings_.hysteresis});
+    walk_splits(partition, input.lattice, [&](std::size_t i, const TexelBox& box) {
+      Partition::Split& split = partition.splits[i];
+      const auto axis = std::size_t(split.axis);
+      // Planes further up may have moved this box away from its plane.
+      split.cut = allowed_cut(partition, i, box, input.lattice, block, split.cut);
+      const auto mean_ms = [&](int child) {
+        const std::vector<int> ranks = ranks_under(partition, child);
+        double sum = 0;
+        for (const int rank : ranks) sum += input.work[std::size_t(rank)].ms;
+        return std::array{sum / double(ranks.size()), sum};
+      };
+      const auto [low_ms, low_sum] = mean_ms(split.low);
+      const auto [high_ms, high_sum] = mean_ms(split.high);
+      const std::size_t towards = low_ms > high_ms ? 0 : 1;  // which side gets smaller, and gives a slice
+      TexelBox slice = box;
+      slice.high[axis] = std::min(box.high[axis], box.low[axis] + block);
+      const double blocks = blocks_in(slice);
+      const double ms_per_block = (low_sum + high_sum) / blocks_in(box);
+      std::array<double, 2>& factor = factors_[i];
+      const double cost = blocks * ms_per_block + blocks * factor[towards] * input.ms_per_block;
+      if (!(cost < std::abs(low_ms - high_ms))) return;
+      const int cut =
+          allowed_cut(partition, i, box, input.lattice, block, split.cut + (towards == 0 ? -block : block));
+      if (cut == split.cut) return;
+      split.cut = cut;
+      factor[1 - towards] += settings_.raised_by;
+      factor[towards] = std::max(0.0, factor[towards] - settings_.lowered_by);
+    });
+    return partition;
+  }
+
+ private:
+  MullerSettings settings_;
+  std::vector<std::array<double, 2>> factors_;  // of each split: for its plane's way down, and up
+};
+
+}  // namespace
+
+std::unique_ptr<Balancer> muller_balancer(const MullerSettings& settings) {
+  return std::make_unique<MullerBalancer>(settings);
+}
+
+}  // namespace understudy::compositor

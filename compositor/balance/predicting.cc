@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "compositor/balance/balancer.h"
+#include "compositor/balance/moves.h"
+#include "compositor/balance/tree.h"
+
+namespace understudy::compositor {
+
+using volume::BlockCosts;
+using volume::CostSums;
+using volume::Partition;
+using volume::TexelBox;
+
+namespace {
+
+std::vector<TexelBox> boxes_of(const Partition& partition, const TexelBox& lattice) {
+  std::vector<TexelBox> boxes(std::size_t(partition.ranks), lattice);
+  Partition walked = partition;
+  walk_splits(walked, lattice, [&](std::size_t i, const TexelBox& box) {
+    const Partition::Split& split = walked.splits[i];
+    const auto axis = std::size_t(split.axis);
+    if (split.low < 0) {
+      boxes[std::size_t(~split.low)] = box;
+      boxes[std::size_t(~split.low)].high[axis] = split.cut;
+    }
+    if (split.high < 0) {
+      boxes[std::size_t(~split.high)] = box;
+      boxes[std::size_t(~split.high)].low[axis] = split.cut;
+    }
+  });
+  return boxes;
+}
+
+/// How many ms a sample takes on one rank.
+class Slowness {
+ public:
+  bool known() const { return measured_ > 0; }
+  double value() const { return value_; }
+  /// How far single measurements lie from what was expected of them, as a part of it.
+  double scatter() const { return scatter_; }
+
+  void measure(double ms_per_sample) {
+    recent_[measured_ % recent_.size()] = ms_per_sample;
+    ++measured_;
+    if (measured_ == 1) {
+      value_ = ms_per_sample;
+      return;
+    }
+    std::array<double, 3> sorted = recent_;
+    const auto end = sorted.begin() + std::ptrdiff_t(std::min(measured_, sorted.size()));
+    std::sort(sorted.begin(), end);
+    // Of two the one nearer to what was: a single outlier moves nothing.
+    double median = sorted[1];
+    if (measured_ == 2 && std::abs(sorted[0] - value_) < std::abs(sorted[1] - value_)) median = sorted[0];
+    const double off = std::abs(median - value_);
+    constexpr double slowly = 0.15, surprise = 3, at_least = 0.15, outlier = 0.2;
+    if (off > value_ * std::max(at_least, surprise * scatter_)) {
+      value_ = median;
+      return;
+    }
+    value_ += slowly * (median - value_);
+    scatter_ += slowly * (std::min(outlier, std::abs(ms_per_sample - value_) / value_) - scatter_);
+  }
+
+ private:
+  std::array<double, 3> recent_{};
+  std::size_t measured_ = 0;
+  double value_ = 0;
+  double scatter_ = 0;
+};
+
+class PredictingBalancer : public Balancer {
+ public:
+  explicit PredictingBalancer(const PredictingSettings& settings) : settings_(settings) {}
+
+  Partition decide(const BalanceInput& input) override {
+    const auto ranks = std::size_t(input.partition.ranks);
+    slowness_.resize(ranks);
+    if (weights_.size() != input.costs.values().size()) {
+      weights_.assign(input.costs.values().size(), 1.0F);
+      predicted_.clear();
+    }
+    const std::vector<TexelBox> now = boxes_of(input.partition, input.lattice);
+    if (!input.work.empty()) learn(input.work, input.costs, now);
+
+    BlockCosts costs = input.costs;
+    for (std::size_t i = 0; i < weights_.size(); ++i) costs.values()[i] *= double(weights_[i]);
+    const CostSums sums(costs);
+    const std::vector<double> slow = all_slownesses();
+    const Partition fair = refined(fair_partition(input, sums, slow), input, sums, slow);
+    const std::vector<TexelBox> then = boxes_of(fair, input.lattice);
+
+    const double stay_ms = slowest(sums, now, slow), move_ms = slowest(sums, then, slow);
+    double scatter = 0;
+    for (const Slowness& slowness : slowness_) scatter += slowness.scatter() / double(ranks);
+    const double gain = stay_ms - move_ms;
+    const double cost = double(most_blocks_moved(input.lattice, now, then)) * input.ms_per_block;
+    bool moves = false;
+    if (gain > stay_ms * std::max(settings_.least_gain, scatter)) {
+      lost_ms_ += gain;
+      moves = lost_ms_ + settings_.horizon * gain > cost;
+    } else {
+      lost_ms_ = 0;
+    }
+    if (moves) lost_ms_ = 0;
+    expect(sums, moves ? then : now);
+    return moves ? fair : input.partition;
+  }
+
+ private:
+  /// What the last picture's measurements tell.
+  void learn(std::span<const RankWork> work, const BlockCosts& costs, const std::vector<TexelBox>& boxes) {
+    double samples = 0, ms = 0;
+    for (const RankWork& rank : work) {
+      samples += double(rank.samples);
+      ms += rank.ms;
+    }
+    if (samples <= 0) return;
+    // A rank that took next to no samples tells little of its speed: some samples of usual speed are added.
+    constexpr double of_mean = 0.02;
+    const double few = of_mean * samples / double(work.size());
+    for (std::size_t rank = 0; rank < work.size(); ++rank) {
+      Slowness& slowness = slowness_[rank];
+      const double usual = slowness.known() ? slowness.value() : ms / samples;
+      if (double(work[rank].samples) > few || !slowness.known())
+        slowness.measure((work[rank].ms + few * usual) / (double(work[rank].samples) + few));
+    }
+    if (predicted_.size() != work.size()) return;
+    for (std::size_t rank = 0; rank < work.size(); ++rank) {
+      const double expected = predicted_[rank];
+      if (expected <= 0) continue;
+      // Half of the way, as a factor.
+      const double right = std::clamp(double(work[rank].samples) / expected, 1.0 / 16, 16.0);
+      const auto factor = float(std::sqrt(right));
+      const TexelBox cubes = costs.cubes_of(boxes[rank]);
+      for (int z = cubes.low[2]; z < cubes.high[2]; ++z)
+        for (int y = cubes.low[1]; y < cubes.high[1]; ++y)
+          for (int x = cubes.low[0]; x < cubes.high[0]; ++x) {
+            float& weight = weights_[costs.index({x, y, z})];
+            weight = std::clamp(weight * factor, least_weight, most_weight);
+          }
+    }
+  }
+
+  std::vector<double> all_slownesses() const {
+    double sum = 0, known = 0;
+    for (const Slowness& slowness : slowness_)
+      if (slowness.known()) {
+        sum += slowness.value();
+        known += 1;
+      }
+    const double usual = known > 0 && sum > 0 ? sum / known : 1;
+    std::vector<double> result;
+    for (const Slowness& slowness : slowness_)
+      result.push_back(slowness.known() && slowness.value() > 0 ? slowness.value() : usual);
+    return result;
+  }
+
+  static Partition fair_partition(const BalanceInput& input, const CostSums& sums,
+                                  const std::vector<double>& slow) {
+    Partition partition = input.partition;
+    const int edge = input.costs.edge();
+    walk_splits(partition, input.lattice, [&](std::size_t i, const TexelBox& box) {
+      Partition::Split& split = partition.splits[i];
+      const auto speed = [&](int child) {
+        double sum = 0;
+        for (const int rank : ranks_under(partition, child)) sum += 1 / slow[std::size_t(rank)];
+        return sum;
+      };
+      const double low = speed(split.low), high = speed(split.high);
+      int cut = split.cut;
+      if (sums.within(box) > 0)
+        if (const auto fair = volume::fair_cut(sums, box, split.axis, low / (low + high))) cut = *fair;
+      split.cut = allowed_cut(partition, i, box, input.lattice, edge, cut);
+    });
+    return partition;
+  }
+
+  /// Planes a layer further, one by one, while that brings the times closer to each other: sides that are fair
+  /// to each other need not be divisible fairly.
+  static Partition refined(Partition partition, const BalanceInput& input, const CostSums& sums,
+                           const std::vector<double>& slow) {
+    constexpr int most_ranks = 64, rounds = 3;  // it takes the square of the ranks
+    if (partition.ranks > most_ranks) return partition;
+    const int edge = input.costs.edge();
+    const double mean = sums.within(input.lattice) / double(slow.size());
+    // A norm between the largest time and the sum of their squares: the second slowest counts, too.
+    const auto unevenness = [&](const Partition& of) {
+      double sum = 0;
+      const std::vector<TexelBox> boxes = boxes_of(of, input.lattice);
+      for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
+        const double time = sums.within(boxes[rank]) * slow[rank] / (mean * slow[0]);
+        const double square = time * time, fourth = square * square;
+        sum += fourth * fourth;
+      }
+      return sum;
+    };
+    if (mean <= 0) return partition;
+    double least = unevenness(partition);
+    bool better = true;
+    for (int round = 0; better && round < rounds; ++round) {
+      better = false;
+      for (std::size_t i = 0; i < partition.splits.size(); ++i)
+        for (const int step : {-edge, edge}) {
+          Partition candidate = partition;
+          candidate.splits[i].cut += step;
+          walk_splits(candidate, input.lattice, [&](std::size_t k, const TexelBox& box) {
+            candidate.splits[k].cut =
+                allowed_cut(candidate, k, box, input.lattice, edge, candidate.splits[k].cut);
+          });
+          const double sum = unevenness(candidate);
+          constexpr double worth_it = 0.98;
+          if (sum >= least * worth_it) continue;
+          least = sum;
+          partition = candidate;
+          better = true;
+        }
+    }
+    return partition;
+  }
+
+  static double slowest(const CostSums& sums, const std::vector<TexelBox>& boxes,
+                        const std::vector<double>& slow) {
+    double most = 0;
+    for (std::size_t rank = 0; rank < boxes.size(); ++rank)
+      most = std::max(most, sums.within(boxes[rank]) * slow[rank]);
+    return most;
+  }
+
+  void expect(const CostSums& sums, const std::vector<TexelBox>& boxes) {
+    predicted_.clear();
+    for (const TexelBox& box : boxes) predicted_.push_back(sums.within(box));
+  }
+
+  static constexpr float least_weight = 1.0F / 64, most_weight = 64;
+
+  PredictingSettings settings_;
+  std::vector<Slowness> slowness_;
+  std::vector<float> weights_;     // of the cubes
+  std::vector<double> predicted_;  // samples of each rank in the picture that was decided on last
+  double lost_ms_ = 0;             // by staying, since planes should have moved
+};
+
+}  // namespace
+
+std::unique_ptr<Balancer> predicting_balancer(const PredictingSettings& settings) {
+  return std::make_unique<PredictingBalancer>(settings);
+}
+
+}  // namespace understudy::compositor

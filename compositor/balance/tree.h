@@ -1,0 +1,42 @@
+// What the balancers ask of a partition's tree.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "volume/partition.h"
+
+namespace understudy::compositor {
+
+/// The ranks under a child of a split: another split, or ~rank.
+std::vector<int> ranks_under(const volume::Partition& partition, int child);
+
+/// How many layers of blocks the ranks under a child need at least across each axis, so that each has some.
+std::array<int, 3> layers_needed(const volume::Partition& partition, int child);
+
+/// The nearest place to `cut` at which both sides of split `split`, which cuts `box`, have the layers they
+/// need.
+int allowed_cut(const volume::Partition& partition, std::size_t split, const volume::TexelBox& box,
+                const volume::TexelBox& lattice, int edge, int cut);
+
+/// Calls visit(split, box) for every split, with the box that it cuts; planes may be moved on the way, and
+/// boxes further down follow.
+template <class Visit>
+void walk_splits(volume::Partition& partition, const volume::TexelBox& lattice, const Visit& visit) {
+  std::vector<volume::TexelBox> cut(partition.splits.size(), lattice);
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    visit(i, cut[i]);
+    const volume::Partition::Split& split = partition.splits[i];
+    const auto axis = std::size_t(split.axis);
+    if (split.low >= 0) {
+      cut[std::size_t(split.low)] = cut[i];
+      cut[std::size_t(split.low)].high[axis] = split.cut;
+    }
+    if (split.high >= 0) {
+      cut[std::size_t(split.high)] = cut[i];
+      cut[std::size_t(split.high)].low[axis] = split.cut;
+    }
+  }
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,77 @@
+// Keeps the ranks of a node group equally busy: before a picture all ranks decide, each for itself and all
+// alike, where the planes of its volume go, and send each other the blocks that change hands.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "compositor/balance/balancer.h"
+#include "compositor/balance/block_cache.h"
+#include "compositor/exchange/link.h"
+#include "compositor/service/rank_renderer.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// What a move of planes was, on this rank.
+struct MoveFigures {
+  volume::VolumeId volume = 0;
+  int planes = 0;
+  std::size_t blocks_received = 0;
+  std::size_t blocks_from_cache = 0;  ///< that had been given away and came back
+  std::size_t bytes_received = 0;
+  double ms = 0;
+  double deviation = 0;  ///< (max - min) / mean of the ranks' times, in the picture before
+};
+
+struct BalanceSettings {
+  Balance balance = Balance::off;
+  /// Called on every rank after each of its moves.
+  std::function<void(const MoveFigures&)> moved = [](const MoveFigures&) {};
+  /// Of blocks that were given away, kept by each rank for each volume.
+  std::size_t cache_bytes = std::size_t(64) << 20;
+};
+
+class Rebalancer {
+ public:
+  Rebalancer(Link& link, RankRenderer& renderer, BalanceSettings settings);
+
+  /// Collective, before a picture is rendered. Returns what `decode` does; what it throws, or what is wrong
+  /// with the request here, is thrown once all ranks have been told, and then nothing has moved anywhere. What
+  /// fails later, on a rank that others wait for (memory), ends the group.
+  volume::RenderRequest before_picture(std::uint64_t client,
+                                       const std::function<volume::RenderRequest()>& decode);
+  /// What all ranks did for it.
+  void after_picture(VolumeKey key, std::span<const RankWork> work);
+
+  /// Other texels have come for these boxes of a volume that is complete.
+  void texels_changed(VolumeKey key, const volume::VolumeDescription& description,
+                      std::span<const volume::TexelBox> boxes);
+  void forget(VolumeKey key) { volumes_.erase(key); }
+  void forget_client(std::uint64_t client);
+
+ private:
+  struct Volume {
+    std::unique_ptr<Balancer> balancer;
+    BlockCache given_away;
+    std::vector<RankWork> work;
+    double ms_per_block = 0;
+  };
+
+  void move(VolumeKey key, Volume& volume, const volume::RenderRequest& request, const volume::Partition& next);
+  void send_blocks(Volume& volume, const volume::BrickStore& bricks, std::span<const volume::TexelBox> before,
+                   std::span<const volume::TexelBox> after,
+                   std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures);
+  bool all_agree(bool mine);
+
+  Link& link_;
+  RankRenderer& renderer_;
+  BalanceSettings settings_;
+  std::map<VolumeKey, Volume> volumes_;
+};
+
+}  // namespace understudy::compositor

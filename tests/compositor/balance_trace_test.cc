@@ -109,9 +109,11 @@ TEST(BalanceTrace, RankSlowedToAQuarterUnderSurfacesVolumesAndLight) {
                                   },
                                   true));
   EXPECT_LT(surface.predicted.mean_ms, 0.8 * surface.still.mean_ms);
-  const Sums bare =
-      play("slowed, volume", scene_of(
-                                 ball, [](int, volume::OrbitCamera&, volume::RenderRequest&) {}, true));
+  // Of fourteen layers one is a fourteenth of the work: creeping by one is as good here as knowing where to go.
+  const Sums bare = play("slowed, volume",
+                         scene_of(
+                             ball, [](int, volume::OrbitCamera&, volume::RenderRequest&) {}, true),
+                         1.03);
   EXPECT_LT(bare.predicted.mean_ms, 0.7 * bare.still.mean_ms);
   const Sums lit =
       play("slowed, lit",

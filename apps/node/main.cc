@@ -71,12 +71,12 @@ int main(int argc, char** argv) {
       memory);
   balance.moved = [&](const MoveFigures& move) {
     if (link.rank() != 0) return;
-    fmt::print(stderr,
-               "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} "
-               "bytes), {} were "
-               "here from before; {:.1f} ms\n",
-               move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
-               move.blocks_from_cache, move.ms);
+    fmt::print(
+        stderr,
+        "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} bytes), "
+        "{} were here from before; {:.1f} ms\n",
+        move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
+        move.blocks_from_cache, move.ms);
     std::fflush(stderr);
   };
   try {

@@ -4,9 +4,21 @@
 
 namespace understudy::compositor {
 
+namespace {
+
+/// What an entry takes beside its texels, in a list, a map and an allocation: much, where blocks are of one
+/// value.
+constexpr std::size_t entry_bytes = 192;
+
+std::size_t cost(const std::vector<std::byte>& packed) {
+  return entry_bytes + packed.size();
+}
+
+}  // namespace
+
 void BlockCache::put(const BlockPlace& place, std::vector<std::byte> packed) {
   if (const auto old = entries_.find(place); old != entries_.end()) erase(old);
-  bytes_ += packed.size();
+  bytes_ += cost(packed);
   latest_first_.push_front({place, std::move(packed)});
   entries_[place] = latest_first_.begin();
   while (bytes_ > most_bytes_) erase(entries_.find(latest_first_.back().place));
@@ -16,7 +28,7 @@ std::optional<std::vector<std::byte>> BlockCache::take(const BlockPlace& place) 
   const auto found = entries_.find(place);
   if (found == entries_.end()) return std::nullopt;
   std::vector<std::byte> packed = std::move(found->second->packed);
-  bytes_ -= packed.size();
+  bytes_ -= cost(packed);
   latest_first_.erase(found->second);
   entries_.erase(found);
   return packed;
@@ -40,7 +52,7 @@ void BlockCache::clear() {
 }
 
 void BlockCache::erase(std::map<BlockPlace, Entries::iterator>::iterator entry) {
-  bytes_ -= entry->second->packed.size();
+  bytes_ -= cost(entry->second->packed);
   latest_first_.erase(entry->second);
   entries_.erase(entry);
 }

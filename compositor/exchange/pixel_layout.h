@@ -56,7 +56,6 @@ class PixelMessage {
 PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect, volume::Operator op,
                            Layout layout, bool clear_too = false);
 
-
 /// Room for the longest message about this rectangle.
 PixelMessage room_for_pixels(const volume::Rect& rect, Layout layout);
 

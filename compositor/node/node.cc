@@ -447,6 +447,7 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
   link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
   if (filling && first_refusal(outcomes)) {
     loads_.forget(*filling);
+    if (rebalancer_) rebalancer_->forget(*filling);
     renderer_.forget(*filling);
   }
   return outcomes;

@@ -130,6 +130,7 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
     const Partition now = renderer_.partition(client, *request);
     const Partition next =
         volume->balancer->decide({now, costs->lattice(), volume->work, *costs, volume->ms_per_block});
+    volume->work.clear();  // learned from
     if (next != now) move({client, request->volume}, *volume, *request, next);
   } catch (const LinkLost&) {
     throw;

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <mutex>
 #include <new>
 #include <utility>
 
@@ -189,6 +190,8 @@ void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t
 }
 
 void count_done(Omission omission, std::string_view reason) {
+  static constinit std::mutex mutex;  // contexts of several threads count at once
+  const std::scoped_lock lock(mutex);
   add_reason(process_counters().done_because[std::size_t(omission)], reason, 1);
 }
 

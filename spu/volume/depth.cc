@@ -90,7 +90,7 @@ std::optional<volume::DepthImage> read_depth(const GlContext& context, const Tar
   return image;
 }
 
-bool is_absent(const volume::DepthImage& image) {
+bool hides_nothing(const volume::DepthImage& image) {
   return std::all_of(image.depth.begin(), image.depth.end(), [](float d) { return d >= 1.0F; });
 }
 

@@ -15,7 +15,7 @@ namespace understudy::spu {
 std::optional<volume::DepthImage> read_depth(const GlContext& context, const Target& target,
                                              const volume::Rect& rect, bool or_equal);
 
-/// Whether it hides nothing: all of it is at the far end.
-bool is_absent(const volume::DepthImage& image);
+/// All of it is at the far end.
+bool hides_nothing(const volume::DepthImage& image);
 
 }  // namespace understudy::spu

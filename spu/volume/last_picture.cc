@@ -1,5 +1,7 @@
 #include "spu/volume/last_picture.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -13,7 +15,7 @@ using volume::RenderRequest;
 constexpr std::size_t remembered = 4;
 
 /// What of a request is another than it was.
-std::string_view difference_between(const RenderRequest& now, const RenderRequest& then) {
+std::string_view changed_part(const RenderRequest& now, const RenderRequest& then) {
   if (now.version != then.version) return "texels changed";
   if (now.viewport != then.viewport || now.window != then.window) return "the window changed";
   if (now.texture_to_clip != then.texture_to_clip) return "the camera moved";
@@ -55,7 +57,7 @@ class LastPicture final : public compositor::RenderService {
     const auto same =
         std::find_if(answers_.begin(), answers_.end(), [&](const Answer& a) { return a.request == request; });
     const bool known = same != answers_.end();
-    if (known && same->there && keeps_) {
+    if (known && same->there && keeps_ && getpid() == process_) {
       news_("");
       return {same->shown, {}, true};
     }
@@ -101,7 +103,7 @@ class LastPicture final : public compositor::RenderService {
     for (const Answer& answer : answers_)
       if (answer.request.volume == request.volume && (last == nullptr || answer.asked > last->asked))
         last = &answer;
-    return last == nullptr ? "the first of its volume" : difference_between(request, last->request);
+    return last == nullptr ? "the first of its volume" : changed_part(request, last->request);
   }
 
   Answer& place_for_another() {
@@ -112,6 +114,7 @@ class LastPicture final : public compositor::RenderService {
 
   std::unique_ptr<compositor::RenderService> service_;
   bool keeps_;
+  pid_t process_ = getpid();  ///< after a fork() pictures belong to the parent, whose nodes draw over them
   PictureNews news_;
   std::vector<Answer> answers_;  ///< never moves: pictures are looked at where they are
   std::uint64_t asked_ = 0;

@@ -65,7 +65,8 @@ bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitu
   {
     const TimedShare timed(clock_, &FrameShares::budget);
     if (!s.volume.budget)
-      s.volume.budget = std::make_unique<Budget>(BudgetAsked{options.error, options.time_ms});
+      s.volume.budget =
+          std::make_unique<Budget>(BudgetAsked{options.error, options.time_ms, options.pixels == "float"});
     const std::string obstacle = is_finished_here(s)   ? "what rays find is shown by the ray caster's own rules"
                                  : !s.ray_ends.empty() ? "planes cut the ray caster's box"
                                                        : "";

@@ -454,7 +454,7 @@ void VolumeUnit::hide_behind_geometry(Substitution& s) {
   if (!s.request.depth) return;
   // A scene without opaque geometry sends none.
   const std::uint64_t bytes = sizeof(float) * s.request.depth->depth.size();
-  const bool absent = is_absent(*s.request.depth) && !session_->never_left_out(Omission::absent_depth);
+  const bool absent = hides_nothing(*s.request.depth) && !session_->never_left_out(Omission::absent_depth);
   if (absent) s.request.depth.reset();
   note([&](FrameRecord& frame) {
     Amount& depth = frame.amount(Omission::absent_depth);
@@ -573,7 +573,8 @@ void VolumeUnit::settle_depth(const Substitution& s) {
 }
 
 void VolumeUnit::depth_looked_at() {
-  known(depth_watched_).depth_looked_at = true;
+  if (const auto watched = known_.find(depth_watched_); watched != known_.end())
+    watched->second.depth_looked_at = true;
   depth_cleared();
 }
 

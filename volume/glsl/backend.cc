@@ -41,7 +41,7 @@ struct Kind {
 
 std::string text_of(const Kind& kind) {
   constexpr std::array types{"u8", "u16", "f32", "rgba8"};
-  constexpr std::array operators{"over", "max", "min", "add"};
+  constexpr std::array operators{"over", "max", "min", "add", "first hit"};
   return fmt::format("{}, {}, {} filter, {}", types.at(std::size_t(kind.type)),
                      operators.at(std::size_t(kind.op)), kind.filter == Filter::linear ? "linear" : "nearest",
                      kind.mostly_empty ? "most blocks empty" : "most blocks visible");
@@ -121,6 +121,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
     if (shared_.wish == Backend::automatic && !wanted(kind_of(request))) return false;
     Device* device = shared_.open_device();
     if (device == nullptr) return false;
+    if (!gl_ && too_little_ && device->texture_memory().left() <= *too_little_) return false;
     if (!gl_) gl_ = std::make_unique<GlslRayCaster>(store_, *device);
     if (const auto reason = gl_->obstacle(request)) {
       shared_.tell_once(fmt::format("CPU: the GL backend does not draw {}", *reason));
@@ -128,6 +129,12 @@ class BackendChooser::Renderer final : public BrickRenderer {
     }
     try {
       measured(request, counts, &Speeds::gl, &Speeds::gl_pictures, [&] { gl_->render(request, out, counts); });
+    } catch (const NoTextureMemory& error) {
+      // Other volumes have it: tried again once there is more.
+      too_little_ = device->texture_memory().left();
+      gl_.reset();
+      shared_.tell_once(fmt::format("CPU for volume {}: {}", store_.description().id, error.what()));
+      return false;
     } catch (const std::runtime_error& error) {
       failed_ = true;
       gl_.reset();
@@ -180,8 +187,9 @@ class BackendChooser::Renderer final : public BrickRenderer {
   const BrickStore& store_;
   std::unique_ptr<BrickRenderer> cpu_;
   std::unique_ptr<GlslRayCaster> gl_;
-  bool failed_ = false;        ///< OpenGL, on this volume
-  bool mostly_empty_ = false;  ///< the last picture's blocks
+  bool failed_ = false;                      ///< OpenGL, on this volume
+  std::optional<std::uint64_t> too_little_;  ///< memory for textures that was left for it
+  bool mostly_empty_ = false;                ///< the last picture's blocks
 };
 
 BackendChooser::BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory)

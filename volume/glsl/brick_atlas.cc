@@ -71,7 +71,7 @@ void BrickAtlas::allocate_slots() {
   const TextureMemory& memory = device_.texture_memory();
   std::uint64_t most = std::min(memory.left() / brick_bytes, std::uint64_t(grid_.bricks()));
   if (most == 0 || longest == 0)
-    throw NotSupported(
+    throw NoTextureMemory(
         fmt::format("{} of {} bytes of the GPU's memory are left, and one brick of the volume takes {}: give "
                     "more with --gpu-memory",
                     memory.left(), memory.bytes(), brick_bytes));
@@ -112,7 +112,8 @@ void BrickAtlas::make_resident(std::span<const std::size_t> bricks) {
     else
       asked_[slot_of_[brick]] = clock_;
   }
-  if (missing.empty()) return;
+  if (missing.empty() && !pages_changed_) return;
+  pages_changed_ = true;
   std::vector<std::size_t> free;
   for (std::size_t slot = 0; slot < slots(); ++slot)
     if (asked_[slot] != clock_) free.push_back(slot);
@@ -136,6 +137,7 @@ void BrickAtlas::make_resident(std::span<const std::size_t> bricks) {
     asked_[slot] = clock_;
   }
   upload_pages();
+  pages_changed_ = false;
   device_.check("bringing bricks in");
 }
 

@@ -50,7 +50,7 @@ void BrickPasses::resize(int width, int height) {
 std::size_t BrickPasses::first_wanted(std::vector<std::size_t>& order) const {
   std::vector<bool> wanted(atlas_.grid().bricks());
   for (const std::array<float, 4>& ray : progress_)
-    if (ray[2] > 0) wanted[std::size_t(ray[2]) - 1] = true;
+    if (ray[2] > 0 && std::size_t(ray[2]) <= wanted.size()) wanted[std::size_t(ray[2]) - 1] = true;
   std::size_t first = order.size();
   for (std::size_t i = order.size(); i-- > 0;)
     if (wanted[order[i]]) {

@@ -21,6 +21,12 @@ class NotSupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Other volumes have all the memory that textures may take; it may come back.
+class NoTextureMemory : public NotSupported {
+ public:
+  using NotSupported::NotSupported;
+};
+
 /// OpenGL has no memory for this, where it might have for less.
 class OutOfMemory : public NotSupported {
  public:

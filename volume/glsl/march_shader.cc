@@ -59,7 +59,9 @@ vec3 first_of_brick;   // lattice position of its first texel
 vec3 in_atlas;         // where in the atlas that is
 
 ivec3 brick_at(float k) {
-  return ivec3((clamp(k * step_ + start, vec3(0.0), top) - texture_origin) / brick_cells);
+  // A driver may fuse the product and the sum, and a ray's last sample lie on the face of what is held.
+  ivec3 brick = ivec3((clamp(k * step_ + start, vec3(0.0), top) - texture_origin) / brick_cells);
+  return clamp(brick, ivec3(0), textureSize(pages, 0) - 1);
 }
 // The first difference is exact, so that what is rounded down is what would be without bricks.
 #define TEXEL_AT(position) (ivec3((position) - first_of_brick) + ivec3(in_atlas))

@@ -137,7 +137,7 @@ HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source sour
 }
 
 /// The sum of components of what every ray has seen of a maximum, added up as block_bounds() does.
-HWY_INLINE Floats largest_seen(const std::array<Floats, 4>& pixels) {
+HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   const FloatTag f;
   const hn::Repartition<double, FloatTag> wide;
   std::array<Floats, 4> sums;
@@ -171,7 +171,7 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
       while (!done) {
         if (constants.bounds != nullptr) {
           std::array<Floats, group> shown;
-          for (std::size_t g = 0; g < group; ++g) shown[g] = largest_seen(pixels[g]);
+          for (std::size_t g = 0; g < group; ++g) shown[g] = sum_seen(pixels[g]);
           skip_exhausted(packets, shown, constants);
         } else if (constants.skips) {
           skip_empty(packets, constants);

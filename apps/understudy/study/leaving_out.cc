@@ -101,14 +101,17 @@ Shown show(const Scene& scene, const Show& how, const fs::path& folder, bool nev
 
 double largest_difference(const fs::path& a, const fs::path& b) {
   double most = 0;
+  int compared = 0;
   for (const auto& entry : fs::directory_iterator(a)) {
     const std::string name = entry.path().filename().string();
     if (name.find("_alpha") != std::string::npos) continue;
     const Picture one = read_picture(entry.path()), other = read_picture(b / name);
+    ++compared;
     if (one.rgba.size() != other.rgba.size()) throw std::runtime_error("pictures differ in size");
     for (std::size_t i = 0; i < one.rgba.size(); ++i)
       most = std::max(most, std::abs(double(one.rgba[i]) - double(other.rgba[i])));
   }
+  if (compared != frames) throw std::runtime_error(fmt::format("{} pictures instead of {}", compared, frames));
   return most;
 }
 

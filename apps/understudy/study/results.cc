@@ -100,7 +100,7 @@ SceneResults scene_of(const Json& json) {
   scene.error_maps = json.at("error_maps");
   scene.absent = json.at("absent");
   for (const Json& point : json.at("points")) scene.points.push_back(point_of(point));
-  for (const Json& saving : json.at("savings")) scene.savings.push_back(saving_of(saving));
+  for (const Json& saving : json.value("savings", Json::array())) scene.savings.push_back(saving_of(saving));
   return scene;
 }
 

@@ -142,7 +142,10 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     else
       missing.push_back(setting);
   }
-  const bool to_leave_out = with_savings && results.savings.empty();
+  const bool to_leave_out =
+      with_savings &&
+      (results.savings.empty() ||
+       std::ranges::any_of(results.savings, [](const Saving& saving) { return !saving.absent.empty(); }));
   if (missing.empty() && !to_leave_out) return;
   progress.show(0, "reading");
   Scene scene(description, all.edge, all.stride);

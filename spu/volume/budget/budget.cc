@@ -63,7 +63,7 @@ std::optional<volume::RenderRequest> Budget::request(
     choose();
     if (asked_.error > 0) {
       prove(service);
-      if (service.nodes() > 1) try_halves(service);
+      if (asked_.may_halve && service.nodes() > 1) try_halves(service);
     }
     looked_at_ = Clock::now();
   }
@@ -88,12 +88,19 @@ bool Budget::keep_margin(const volume::VolumeDescription& volume) {
   const auto fits = [&](std::size_t i) {
     return volume::margin_needed(volume, placed_as(meaning_, front[i].setting)) <= volume.margin;
   };
-  const std::size_t before = chosen_;
-  while (!fits(chosen_) && go_finer()) {
-  }
-  for (std::size_t i = before; !fits(chosen_) && i-- > 0;)
-    if (fits(i)) use(i);
-  return fits(chosen_);
+  if (fits(chosen_)) return true;
+  const auto finer = chosen_ + 1;
+  for (std::size_t i = finer; i < front.size(); ++i)
+    if (fits(i)) {
+      use(i);
+      return true;
+    }
+  for (std::size_t i = chosen_; i-- > 0;)
+    if (fits(i)) {
+      use(i);
+      return true;
+    }
+  return false;
 }
 
 void Budget::choose() {

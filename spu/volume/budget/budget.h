@@ -20,6 +20,7 @@ namespace understudy::spu {
 struct BudgetAsked {
   double error = 0;  ///< greatest difference of a channel from the integral, in (0, 1]; 0: none named
   double ms = 0;     ///< to render and composite a picture; 0: none named. An error that is named goes first.
+  bool may_halve = false;  ///< nodes send each other floats, which may become half floats
 
   bool any() const { return error > 0 || ms > 0; }
 };

@@ -120,7 +120,7 @@ RenderRequest placed_as(const Meaning& meaning, const Setting& setting) {
   // Segments cover the way from the entry on; samples stand for the half step on either side.
   request.steps->first = setting.method == volume::Method::pre_integrated ? 0 : 0.5;
   request.method = setting.method;
-  request.termination = setting.termination;
+  if (request.termination > 0) request.termination = setting.termination;  // else rays go to their end
   request.may_travel_as_halves = setting.as_halves;
   return request;
 }

@@ -406,7 +406,12 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
       if (!volume::is_empty(box)) changed.push_back(box);
     }
   }
-  if (kept && changed.empty()) {
+  const bool everything = session_->never_left_out(Omission::unchanged_texels);
+  if (kept && changed.empty() && !everything) {
+    note([&](FrameRecord& frame) {
+      frame.amount(Omission::unchanged_texels).left_out +=
+          volume::texels_in(whole.description.stored) * volume::bytes_per_texel(whole.description.type);
+    });
     merged.versions = std::move(versions);
     return;
   }
@@ -426,7 +431,7 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
     const SampledTexture& sampled = held.front().s.pipeline.volume;
     saved.borrow_texture(GL_TEXTURE_3D, sampled.unit);
     const auto source = merged_source(context(), merged.tiling, merged.textures, merged.descriptions);
-    if (kept) {
+    if (kept && !everything) {
       transferred = send_changes(service, wanted, changed, *source, whole.hashes);
     } else {
       ++wanted.version;
@@ -442,7 +447,9 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
   whole.generation = session_->generation();
   merged.versions = std::move(versions);
   count_transferred(*whole.counters, transferred,
-                    kept ? "a texture was written to" : "the nodes do not have them");
+                    everything ? "asked to"
+                    : kept     ? "a texture was written to"
+                               : "the nodes do not have them");
 }
 
 void VolumeUnit::forget_single_bricks(const MergedVolume& merged) {

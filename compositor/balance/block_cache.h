@@ -19,6 +19,10 @@ using BlockPlace = std::array<int, 3>;
 
 class BlockCache {
  public:
+  /// What an entry takes beside its texels, in a list, a map and an allocation: much, where blocks are of one
+  /// value.
+  static constexpr std::size_t entry_bytes = 192;
+
   explicit BlockCache(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   void put(const BlockPlace& place, std::vector<std::byte> packed);
@@ -28,6 +32,7 @@ class BlockCache {
   /// Their texels have changed.
   void drop(const volume::TexelBox& blocks);
   void clear();
+  /// With what entries take.
   std::size_t bytes() const { return bytes_; }
 
  private:

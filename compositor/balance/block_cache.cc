@@ -6,12 +6,8 @@ namespace understudy::compositor {
 
 namespace {
 
-/// What an entry takes beside its texels, in a list, a map and an allocation: much, where blocks are of one
-/// value.
-constexpr std::size_t entry_bytes = 192;
-
 std::size_t cost(const std::vector<std::byte>& packed) {
-  return entry_bytes + packed.size();
+  return BlockCache::entry_bytes + packed.size();
 }
 
 }  // namespace

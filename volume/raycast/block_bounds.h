@@ -8,9 +8,9 @@
 
 namespace understudy::volume {
 
-/// Per block the largest sum of components that a sample of it can have. Empty when a component of `table` falls
-/// anywhere, or is negative: only of colours that rise together is the maximum one of them, and the one whose
-/// components have the largest sum.
+/// Per block the largest sum of components that a sample of it can have. Empty when a component of `table`
+/// falls anywhere, or is negative: only of colours that rise together is the maximum one of them, and the one
+/// whose components have the largest sum.
 std::vector<float> block_bounds(const BrickStore& store, const TransferTable& table);
 
 /// The same for one block, under a table that rises.

@@ -10,7 +10,7 @@ namespace {
 
 /// What one rank does in one round.
 struct Work {
-  std::uint64_t messages_out = 0, messages_in = 0, pixels_out = 0, pixels_in = 0, blended = 0;
+  std::uint64_t messages_out = 0, messages_in = 0, pixels_out = 0, pixels_in = 0, blended = 0, written = 0;
   int contributions = 0;
 };
 
@@ -23,15 +23,22 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
     std::vector<Work> work(schedule.position.size());
     for (const Piece& piece : round.pieces) {
       Work& to = work[std::size_t(piece.to)];
+      Work& from = work[std::size_t(piece.from)];
+      if (piece.from != piece.to) {
+        ++from.messages_out;
+        ++to.messages_in;
+        ++result.messages;
+      }
+      if (piece.written) {
+        from.written += piece.rect.pixels();
+        if (piece.from != piece.to) result.bytes_sent += head_bytes;
+        continue;
+      }
       to.blended += piece.rect.pixels();
       ++to.contributions;
       if (piece.from == piece.to) continue;
-      Work& from = work[std::size_t(piece.from)];
-      ++from.messages_out;
-      ++to.messages_in;
       from.pixels_out += piece.rect.pixels();
       to.pixels_in += piece.rect.pixels();
-      ++result.messages;
       result.pixels_sent += piece.rect.pixels();
       result.bytes_sent += bytes_of_all_pixels(piece.rect, layout);
       sent[std::size_t(piece.from)] += piece.rect.pixels();
@@ -42,7 +49,7 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
       slowest = std::max(slowest, link.latency * double(std::max(mine.messages_out, mine.messages_in)) +
                                       link.per_byte * double(bytes_per_pixel(layout)) *
                                           double(std::max(mine.pixels_out, mine.pixels_in)) +
-                                      link.per_pixel * blended);
+                                      link.per_pixel * (blended + double(mine.written)));
     }
     result.seconds += slowest;
   }
@@ -51,11 +58,12 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
 }
 
 Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
-                  const LinkCost& link) {
+                  const LinkCost& link, const std::vector<bool>& reached_by) {
   Schedule best;
   double least = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < algorithm_count; ++i) {
     Schedule candidate = schedule(Algorithm(i), order, footprints);
+    write_home(candidate, reached_by);
     const double seconds = cost(candidate, layout, link).seconds;
     if (seconds >= least) continue;
     least = seconds;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "compositor/exchange/pixel_layout.h"
 #include "compositor/exchange/schedule.h"
@@ -10,7 +11,7 @@
 namespace understudy::compositor {
 
 /// A LogP-like model: a rank spends `latency` on each message, `per_byte` on each byte in the busier direction,
-/// and `per_pixel` on each pixel that it blends, in seconds.
+/// and `per_pixel` on each pixel that it blends or writes into the picture's memory, in seconds.
 struct LinkCost {
   double latency = 20e-6;
   double per_byte = 0.2e-9;
@@ -27,8 +28,8 @@ struct ExchangeCost {
 
 ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link);
 
-/// The schedule that costs least; among equals the first in the order of Algorithm.
+/// The schedule that costs least, after write_home(); among equals the first in the order of Algorithm.
 Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
-                  const LinkCost& link);
+                  const LinkCost& link, const std::vector<bool>& reached_by = {});
 
 }  // namespace understudy::compositor

@@ -55,7 +55,7 @@ class Rounds {
   void give(Rank from, Rank to, const Rect& region) {
     const Rect rect = intersection(held(from), region);
     if (rect.empty()) return;
-    round_.pieces.push_back({from, to, rect});
+    round_.pieces.push_back({from, to, rect, false});
     Rect& after = round_.afterwards[std::size_t(to)];
     after = bounding(after, rect);
   }
@@ -229,6 +229,15 @@ Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<co
     }
   }
   return rounds.finish();
+}
+
+void write_home(Schedule& schedule, const std::vector<bool>& reached_by) {
+  if (schedule.rounds.empty() || reached_by.empty()) return;
+  std::vector<Piece>& pieces = schedule.rounds.back().pieces;
+  for (auto piece = pieces.begin(); piece != pieces.end(); ++piece)
+    for (auto other = pieces.begin(); other != piece; ++other)
+      if (!intersection(piece->rect, other->rect).empty()) return;
+  for (Piece& piece : pieces) piece.written = reached_by[std::size_t(piece.from)];
 }
 
 }  // namespace understudy::compositor

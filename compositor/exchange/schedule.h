@@ -24,7 +24,8 @@ std::string_view name_of(Algorithm algorithm);
 struct Piece {
   Rank from = 0;
   Rank to = 0;
-  volume::Rect rect;  ///< not empty; all inside the sender's image
+  volume::Rect rect;     ///< not empty; all inside the sender's image
+  bool written = false;  ///< by the sender into the picture's memory: only a note travels; in the last round
   bool operator==(const Piece&) const = default;
 };
 
@@ -52,6 +53,11 @@ struct Schedule {
 /// those of radix_factors().
 Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<const volume::Rect> footprints,
                   std::span<const int> factors = {});
+
+/// Marks the last round's pieces whose senders reach the picture's memory (`reached_by`, by rank; empty: none does) as written
+/// there, if all of them lie apart: strips then go home directly from each rank, instead of being gathered by
+/// rank 0 (Mueller, Strengert, Ertl 2006 have both ways).
+void write_home(Schedule& schedule, const std::vector<bool>& reached_by);
 
 /// Prime factors of `count`, pairs of twos made fours: rounds of four cost a quarter of the latency of two
 /// rounds of two, and no more bytes.

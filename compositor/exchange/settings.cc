@@ -29,4 +29,10 @@ bool set_layout(ExchangeSettings& settings, std::string_view name) {
   return false;
 }
 
+bool set_home(ExchangeSettings& settings, std::string_view name) {
+  if (name != "direct" && name != "gathered") return false;
+  settings.home = name == "direct" ? Home::direct : Home::gathered;
+  return true;
+}
+
 }  // namespace understudy::compositor

@@ -13,9 +13,14 @@ namespace understudy::compositor {
 /// 65504; rgba8 to 1/510, in [0, 1].
 enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
 
+/// How the parts of a composited picture come to the application: each rank that reaches the application's
+/// memory writes its own there, or all send theirs to rank 0.
+enum class Home : std::uint8_t { direct, gathered };
+
 struct ExchangeSettings {
   std::optional<Algorithm> algorithm;  ///< none: for each picture the one that costs least
   Layout layout = Layout::rgba32f;
+  Home home = Home::direct;
 };
 
 /// "auto", or an algorithm's name as in name_of(): "direct-send". False, with `settings` unchanged, for any
@@ -23,5 +28,7 @@ struct ExchangeSettings {
 bool set_algorithm(ExchangeSettings& settings, std::string_view name);
 /// "float", "half" or "byte". False, with `settings` unchanged, for any other.
 bool set_layout(ExchangeSettings& settings, std::string_view name);
+/// "direct" or "gathered". False, with `settings` unchanged, for any other.
+bool set_home(ExchangeSettings& settings, std::string_view name);
 
 }  // namespace understudy::compositor

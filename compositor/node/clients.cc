@@ -29,9 +29,9 @@ Clients::Event Clients::next() {
     // In turn, beginning behind the application that was heard last.
     const auto add = [&](auto first, auto last) {
       for (; first != last; ++first) {
-        fds.push_back({first->second.connection.fd(), POLLIN, 0});
+        fds.push_back({first->second.fd(), POLLIN, 0});
         numbers.push_back(first->first);
-        unfinished |= first->second.connection.unfinished();
+        unfinished |= first->second.unfinished();
       }
     };
     const auto behind = clients_.upper_bound(last_heard_);
@@ -42,13 +42,13 @@ Clients::Event Clients::next() {
     ::poll(fds.data(), fds.size(), unfinished ? int(stall_patience_.count()) : -1);
     if (fds.front().revents != 0 && !hear_launcher()) return Ended{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      Client& client = clients_.at(numbers[i]);
+      Connection& connection = clients_.at(numbers[i]);
       if (fds[i + 1].revents != 0) {
-        if (std::optional<Message> message = hear(numbers[i], client)) {
+        if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
-          return Request{numbers[i], std::move(*message)};
+          return std::move(*event);
         }
-      } else if (client.connection.stalled(stall_patience_)) {
+      } else if (connection.stalled(stall_patience_)) {
         drop(numbers[i], "stopped in the middle of a message");
       }
     }
@@ -67,10 +67,9 @@ bool Clients::hear_launcher() {
         continue;
       }
       const std::uint64_t number = ++last_number_;
-      Client& client =
-          clients_.try_emplace(number, Client{Connection(std::move(message->attached)), {}}).first->second;
+      Connection& connection = clients_.try_emplace(number, std::move(message->attached)).first->second;
       try {
-        client.connection.send(MessageType::welcome, 0, encode(Hello{ranks_}), Connection::now_or_never());
+        connection.send(MessageType::welcome, 0, encode(Hello{ranks_}), Connection::now_or_never());
       } catch (const ConnectionLost&) {
         clients_.erase(number);  // gone while it waited
       }
@@ -84,14 +83,13 @@ bool Clients::hear_launcher() {
 }
 
 // A message for the ranks, if one is complete.
-std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
+std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& connection) {
   try {
-    std::optional<Message> message = client.connection.receive_some();
+    std::optional<Message> message = connection.receive_some();
     if (!message) return std::nullopt;
     switch (message->type) {
       case MessageType::image_memory:
-        take_image_memory(client, std::move(*message));
-        return std::nullopt;
+        return MemoryGiven{number, take_image_memory(connection, std::move(*message))};
       case MessageType::begin_volume:
       case MessageType::begin_change:
       case MessageType::add_texels:
@@ -102,46 +100,41 @@ std::optional<Message> Clients::hear(std::uint64_t number, Client& client) {
       case MessageType::load_volume:
       case MessageType::continue_load:
       case MessageType::integrals:
-        return message;
+        return Request{number, std::move(*message)};
       default:
         throw MalformedMessage("an application does not send this type of message");
     }
   } catch (const ConnectionLost& lost) {
     // An application that ends between two messages has done nothing wrong.
-    drop(number, client.connection.unfinished() ? lost.what() : "");
+    drop(number, connection.unfinished() ? lost.what() : "");
   } catch (const std::exception& error) {
     drop(number, error.what());
   }
   return std::nullopt;
 }
 
-void Clients::take_image_memory(Client& client, Message message) {
+ImageMemory Clients::take_image_memory(Connection& connection, Message message) {
   MessageType answer = MessageType::done;
   std::vector<std::byte> payload;
+  ImageMemory memory;
   try {
-    client.memory = {};
-    client.memory = ImageMemory::map(std::move(message.attached), decode_size(message.payload));
-    client.memory.close_descriptor();
+    memory = ImageMemory::map(std::move(message.attached), decode_size(message.payload));
   } catch (const std::runtime_error& error) {
     answer = MessageType::refused;
     payload = encode_text(error.what());
   }
-  client.connection.send(answer, message.sequence, payload, Connection::now_or_never());
+  connection.send(answer, message.sequence, payload, Connection::now_or_never());
+  return memory;
 }
 
 void Clients::reply(const Request& request, MessageType type, Bytes payload) {
   const auto client = clients_.find(request.client);
   if (client == clients_.end()) return;
   try {
-    client->second.connection.send(type, request.message.sequence, payload, Connection::now_or_never());
+    client->second.send(type, request.message.sequence, payload, Connection::now_or_never());
   } catch (const ConnectionLost& lost) {
     drop(request.client, lost.what());
   }
-}
-
-std::span<float> Clients::image_memory(std::uint64_t client) const {
-  const auto found = clients_.find(client);
-  return found == clients_.end() ? std::span<float>() : found->second.memory.floats();
 }
 
 void Clients::drop(std::uint64_t number, const std::string& why) {

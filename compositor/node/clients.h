@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <span>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -26,9 +26,14 @@ class Clients {
   struct Departed {
     std::uint64_t client = 0;
   };
+  /// An application has given other memory for its pictures; without bytes: it was of no use.
+  struct MemoryGiven {
+    std::uint64_t client = 0;
+    ImageMemory memory;
+  };
   /// The launcher closed its connection: time to end.
   struct Ended {};
-  using Event = std::variant<Request, Departed, Ended>;
+  using Event = std::variant<Request, Departed, MemoryGiven, Ended>;
 
   /// Connects to the launcher at `control_path` and says hello for `ranks` ranks. Throws std::runtime_error.
   /// An application may pause for `stall_patience` in the middle of a message.
@@ -40,24 +45,16 @@ class Clients {
   /// Answers `request`; an application that does not take the answer at once is dropped.
   void reply(const Request& request, MessageType type, Bytes payload);
 
-  /// Where the pictures of this application go; empty before it has said so.
-  std::span<float> image_memory(std::uint64_t client) const;
-
  private:
-  struct Client {
-    Connection connection;
-    ImageMemory memory;
-  };
-
   bool hear_launcher();
-  std::optional<Message> hear(std::uint64_t number, Client& client);
-  void take_image_memory(Client& client, Message message);
+  std::optional<Event> hear(std::uint64_t number, Connection& connection);
+  static ImageMemory take_image_memory(Connection& connection, Message message);
   void drop(std::uint64_t number, const std::string& why);
 
   Connection launcher_;
   int ranks_;
   std::chrono::milliseconds stall_patience_;
-  std::map<std::uint64_t, Client> clients_;
+  std::map<std::uint64_t, Connection> clients_;
   std::uint64_t last_number_ = 0;  // numbers are never used twice
   std::uint64_t last_heard_ = 0;   // the next turn begins behind this one
   std::deque<std::uint64_t> departed_;

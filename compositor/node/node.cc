@@ -16,6 +16,7 @@
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
+#include "compositor/node/picture_memory.h"
 #include "compositor/node/rebalancer.h"
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
@@ -30,7 +31,7 @@ namespace understudy::compositor {
 
 namespace {
 
-enum class Step : std::uint32_t { end, forget_client, request, texels };
+enum class Step : std::uint32_t { end, forget_client, share_memory, request, texels };
 
 // What rank 0 broadcasts before anything else. A request's payload follows as the application sent it; of
 // texels their boxes follow, and then to each rank what it shows of them.
@@ -64,7 +65,8 @@ class Node {
       : link_(link),
         exchange_(exchange),
         renderer_(link.rank(), link.size(), make_renderer),
-        loads_(renderer_, link.rank()) {
+        loads_(renderer_, link.rank()),
+        memories_(link, exchange.home) {
     if (balance.balance != Balance::off && link.size() > 1) rebalancer_.emplace(link, renderer_, balance);
   }
 
@@ -81,9 +83,9 @@ class Node {
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
   std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
-  Schedule schedule_of(std::span<const volume::Rect> footprints);
+  Schedule schedule_of(std::span<const volume::Rect> footprints, const std::vector<bool>& reached_by);
   const ExchangeCost& cost_of_whole_windows();
-  Exchanged composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
+  std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
 
   Link& link_;
@@ -92,6 +94,7 @@ class Node {
   RankRenderer renderer_;
   Loads loads_;
   std::optional<Rebalancer> rebalancer_;  // where there is something to balance
+  PictureMemories memories_;
   /// By application, and there by place.
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
@@ -108,6 +111,7 @@ class Node {
   // What pictures of a window cost without footprints.
   volume::Rect priced_window_;
   Layout priced_layout_{};
+  std::uint64_t priced_client_ = 0;
   ExchangeCost price_;
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
@@ -154,6 +158,10 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
     if (std::holds_alternative<Clients::Ended>(event)) break;
     if (auto* asked = std::get_if<Clients::Request>(&event)) {
       request(*clients, std::move(*asked));
+    } else if (auto* given = std::get_if<Clients::MemoryGiven>(&event)) {
+      Order order{Step::share_memory, {}, given->client, 0, 0, 0};
+      link_.broadcast(0, bytes_of(order));
+      memories_.share(order.client, std::move(given->memory));
     } else {
       Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0, 0, 0};
       link_.broadcast(0, bytes_of(order));
@@ -172,6 +180,10 @@ void Node::follow() {
     if (order.step == Step::end) return;
     if (order.step == Step::forget_client) {
       forget_client(order.client);
+      continue;
+    }
+    if (order.step == Step::share_memory) {
+      memories_.share(order.client, {});
       continue;
     }
     if (order.step == Step::texels) {
@@ -194,6 +206,7 @@ void Node::forget_client(std::uint64_t client) {
   loads_.forget_client(client);
   if (rebalancer_) rebalancer_->forget_client(client);
   renderer_.forget_client(client);
+  memories_.forget_client(client);
   pair_tables_.erase(client);
 }
 
@@ -332,16 +345,13 @@ void Node::request(Clients& clients, Clients::Request request) {
   RenderedReply rendered;
   rendered.counts = sum(outcomes);
   const auto start = std::chrono::steady_clock::now();
-  const Exchanged exchanged = composite(outcomes, rendered.counts);
+  const std::optional<volume::Rect> rect = composite(outcomes, rendered.counts);
   rendered.counts.composite_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  rendered.rect = exchanged.picture.rect;
-
-  const std::span<float> memory = clients.image_memory(request.client);
-  if (memory.size() < exchanged.picture.rgba.size())
+  if (!rect)
     return clients.reply(request, MessageType::refused,
                          encode_text("there is no image memory for this picture"));
-  std::ranges::copy(exchanged.picture.rgba, memory.begin());
+  rendered.rect = *rect;
   clients.reply(request, MessageType::rendered, encode(rendered));
 }
 
@@ -453,31 +463,37 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
   return outcomes;
 }
 
-Schedule Node::schedule_of(std::span<const volume::Rect> footprints) {
-  if (exchange_.algorithm) return schedule(*exchange_.algorithm, visible_order_, footprints);
-  return cheapest(visible_order_, footprints, layout_, *link_cost_);
+Schedule Node::schedule_of(std::span<const volume::Rect> footprints, const std::vector<bool>& reached_by) {
+  if (!exchange_.algorithm) return cheapest(visible_order_, footprints, layout_, *link_cost_, reached_by);
+  Schedule chosen = schedule(*exchange_.algorithm, visible_order_, footprints);
+  write_home(chosen, reached_by);
+  return chosen;
 }
 
 // What the picture in hand would cost if every rank sent the window whole.
 const ExchangeCost& Node::cost_of_whole_windows() {
-  if (window_ != priced_window_ || layout_ != priced_layout_) {
+  if (window_ != priced_window_ || layout_ != priced_layout_ || rendered_.client != priced_client_) {
     const std::vector<volume::Rect> windows(std::size_t(link_.size()), window_);
-    price_ = cost(schedule_of(windows), layout_, LinkCost());
+    price_ = cost(schedule_of(windows, memories_.of(rendered_.client).reached_by), layout_, LinkCost());
     priced_window_ = window_;
     priced_layout_ = layout_;
+    priced_client_ = rendered_.client;
   }
   return price_;
 }
 
-// Adds to the counts, on rank 0, what travelled.
-Exchanged Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts) {
+// The picture goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
+// ranks, when there is no room for them. Adds to the counts, on rank 0, what travelled.
+std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts) {
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
+  const PictureMemories::Memory& memory = memories_.of(rendered_.client);
   if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
-  Schedule chosen = schedule_of(footprints);
+  Schedule chosen = schedule_of(footprints, memory.reached_by);
+  if (4 * chosen.whole.pixels() > memory.floats) return std::nullopt;
   chosen.clear_pixels_travel = !only_footprints_;
-  Exchanged exchanged = exchange(std::move(image_), chosen, op_, layout_, link_);
+  const Exchanged exchanged = exchange(std::move(image_), chosen, op_, layout_, link_, memory.here);
   if (link_.rank() == 0) {
     const ExchangeCost& whole = cost_of_whole_windows();
     counts.bytes_exchanged += exchanged.bytes;
@@ -485,7 +501,7 @@ Exchanged Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCou
     counts.messages += cost(chosen, layout_, LinkCost()).messages;
     counts.messages_of_whole_windows += whole.messages;
   }
-  return exchanged;
+  return chosen.whole;
 }
 
 // The whole integrals, from the parts of all ranks.

@@ -341,6 +341,62 @@ TEST(Exchange, MinimumLeavesUntouchedPixelsAloneInAnyLayout) {
   }
 }
 
+TEST(Exchange, PartsGoHomeDirectlyFromRanksThatReachThePicture) {
+  std::uint64_t travelled = 0, gathered = 0;
+  for (std::size_t a = 0; a < algorithm_count; ++a)
+    for (const int ranks : {1, 2, 3, 5, 8})
+      for (const Operator op : all_operators)
+        for (unsigned trial = 0; trial < 4; ++trial) {
+          const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
+          SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
+          Scene scene = random_scene(op, ranks, seed);
+          if (trial == 0)  // no pixel is untouched, so that all of every rectangle travels
+            for (Image& image : scene.images)
+              for (float& value : image.rgba) value = 0.5F + value / 4;
+          Schedule plan = schedule_of(scene, Algorithm(a));
+          const Result usual = exchanged(scene, plan);
+          std::vector<bool> reached_by;
+          for (int rank = 0; rank < ranks; ++rank)
+            reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
+          write_home(plan, reached_by);
+          // What was there before must not shine through.
+          std::vector<float> memory(4 * plan.whole.pixels(), -7);
+          std::atomic<std::uint64_t> bytes = 0;
+          std::atomic<int> messages = 0;
+          std::uint64_t told = 0;
+          run_ranks(ranks, [&](Link& link) {
+            CountingLink counting(link, bytes, messages);
+            const auto me = std::size_t(link.rank());
+            const Exchanged done = exchange(scene.images[me], plan, op, Layout::rgba32f, counting,
+                                            me == 0 || reached_by[me] ? std::span(memory) : std::span<float>());
+            EXPECT_TRUE(done.picture.rgba.empty());
+            if (me == 0) told = done.bytes;
+          });
+          ASSERT_EQ(memory, usual.picture.rgba);
+          ASSERT_EQ(told, bytes);
+          ASSERT_EQ(std::uint64_t(messages), cost(plan, Layout::rgba32f, {}).messages);
+          if (Algorithm(a) == Algorithm::direct_send && trial < 2) {
+            travelled += bytes;
+            gathered += usual.bytes_counted;
+          }
+        }
+  std::printf("direct-send: %llu bytes travel instead of %llu\n", static_cast<unsigned long long>(travelled),
+              static_cast<unsigned long long>(gathered));
+  EXPECT_LT(double(travelled), 0.8 * double(gathered));
+}
+
+TEST(Exchange, PartsThatOverlapAreNotWrittenHome) {
+  const Scene scene = random_scene(Operator::over, 4, 12);
+  Schedule plan = schedule_of(scene, Algorithm::serial);
+  const ExchangeCost before = cost(plan, Layout::rgba32f, {});
+  write_home(plan, std::vector<bool>(4, true));
+  EXPECT_EQ(cost(plan, Layout::rgba32f, {}).bytes_sent, before.bytes_sent);
+  plan = schedule_of(scene, Algorithm::direct_send);
+  const std::uint64_t gathered = cost(plan, Layout::rgba32f, {}).bytes_sent;
+  write_home(plan, std::vector<bool>(4, true));
+  EXPECT_LT(cost(plan, Layout::rgba32f, {}).bytes_sent, gathered);
+}
+
 TEST(Exchange, AutoTakesFewMessagesWhereLatencyRulesAndFewBytesWhereBandwidthDoes) {
   Scene scene;
   for (int rank = 0; rank < 16; ++rank) {

@@ -43,11 +43,11 @@ class Group {
   using Wrap = std::function<void(Link&, const std::function<void(Link&)>&)>;
 
   Group(int ranks, const std::string& path, milliseconds stall_patience = limits::stall_patience,
-        Wrap wrap = {})
+        Wrap wrap = {}, ExchangeSettings exchange = {})
       : thread_([=, this] {
           try {
             run_ranks(ranks, [&](Link& link) {
-              const auto run = [&](Link& l) { run_node(l, path, stall_patience); };
+              const auto run = [&](Link& l) { run_node(l, path, stall_patience, exchange); };
               wrap ? wrap(link, run) : run(link);
             });
           } catch (const std::exception& error) {
@@ -70,8 +70,9 @@ class NodeGroupTest : public ::testing::Test {
     groups_.clear();
   }
 
-  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {}) {
-    groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap));
+  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {},
+               const ExchangeSettings& exchange = {}) {
+    groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap, exchange));
     EXPECT_TRUE(launcher_->wait_for_group());
     return *groups_.back();
   }
@@ -194,6 +195,42 @@ TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
   EXPECT_LT(counts.bytes_exchanged, counts.bytes_of_whole_windows);
   EXPECT_LE(counts.messages, counts.messages_of_whole_windows);
   EXPECT_GT(counts.messages, 0U);
+}
+
+TEST_F(NodeGroupTest, PartsGoHomeDirectlyOrGathered) {
+  const Texture texture = some_texture();
+  const volume::RenderRequest request = some_request(texture);
+  const auto rendered_by = [&](const ExchangeSettings& settings, std::uint64_t& bytes) {
+    const Group& group = start(3, limits::stall_patience, {}, settings);
+    const auto linked = connect();
+    upload(*linked, texture);
+    const Rendered rendered = linked->render(request);
+    bytes = rendered.counts.bytes_exchanged;
+    EXPECT_GT(rendered.counts.bytes_of_whole_windows, bytes);
+    volume::Image picture = whole_picture(rendered, request);
+    // Larger pictures need other memory, which the ranks must see too.
+    volume::RenderRequest larger = request;
+    larger.viewport = larger.window = {0, 0, 480, 360};
+    EXPECT_GT(linked->render(larger).image.rect.pixels(), 4 * rendered.image.rect.pixels());
+    EXPECT_EQ(whole_picture(linked->render(request), request).rgba, picture.rgba);
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group.ended(); }));
+    return picture;
+  };
+  for (const Algorithm algorithm : {Algorithm::serial, Algorithm::tree, Algorithm::direct_send,
+                                    Algorithm::binary_swap, Algorithm::radix_k}) {
+    std::uint64_t direct = 0, gathered = 0;
+    EXPECT_EQ(rendered_by({algorithm, Layout::rgba32f, Home::direct}, direct).rgba,
+              rendered_by({algorithm, Layout::rgba32f, Home::gathered}, gathered).rgba);
+    std::printf("%s: %llu bytes directly, %llu gathered\n", std::string(name_of(algorithm)).c_str(),
+                static_cast<unsigned long long>(direct), static_cast<unsigned long long>(gathered));
+    // One rank has all of a tree's picture in the end, and it may be rank 0.
+    if (algorithm == Algorithm::serial || algorithm == Algorithm::tree) {
+      EXPECT_LE(direct, gathered);
+    } else {
+      EXPECT_LT(direct, gathered);
+    }
+  }
 }
 
 TEST_F(NodeGroupTest, PartsMayTravelAsHalves) {

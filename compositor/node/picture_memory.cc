@@ -1,0 +1,90 @@
+#include "compositor/node/picture_memory.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace understudy::compositor {
+
+namespace {
+
+/// Where rank 0 has the file behind a memory open.
+struct Place {
+  std::array<char, 40> machine{};  ///< the running kernel's own name
+  std::int64_t process = 0;
+  std::int64_t descriptor = -1;
+  std::uint64_t device = 0;
+  std::uint64_t file = 0;
+  std::uint64_t bytes = 0;
+};
+
+std::array<char, 40> this_machine() {
+  std::array<char, 40> name{};
+  const FileDescriptor file(::open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC));
+  if (!file || ::read(file.get(), name.data(), name.size() - 1) <= 0) name = {};
+  return name;
+}
+
+Place place_of(const ImageMemory& memory) {
+  Place place{.machine = this_machine(),
+              .process = ::getpid(),
+              .descriptor = memory.fd(),
+              .device = 0,
+              .file = 0,
+              .bytes = memory.bytes()};
+  struct stat status {};
+  if (::fstat(memory.fd(), &status) != 0) return place;
+  place.device = status.st_dev;
+  place.file = status.st_ino;
+  return place;
+}
+
+/// Empty where this rank does not reach it: on another machine, in another container, as another user.
+ImageMemory reached(const Place& place) {
+  if (place.machine != this_machine() || place.machine.front() == 0) return {};
+  const std::string path = fmt::format("/proc/{}/fd/{}", place.process, place.descriptor);
+  FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  struct stat status {};
+  // Another container has other processes under the same numbers.
+  if (!file || ::fstat(file.get(), &status) != 0 || status.st_dev != place.device ||
+      status.st_ino != place.file)
+    return {};
+  try {
+    return ImageMemory::map(std::move(file), place.bytes);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+void PictureMemories::share(std::uint64_t client, ImageMemory given) {
+  const bool holds_it = link_.rank() == 0;
+  Place place = holds_it ? place_of(given) : Place();
+  link_.broadcast(0, bytes_of(place));
+  Kept kept;
+  kept.mapped = holds_it ? std::move(given) : home_ == Home::direct ? reached(place) : ImageMemory();
+  kept.memory.floats = std::size_t(place.bytes / sizeof(float));
+  kept.memory.here = kept.mapped.floats();
+  std::uint8_t reaches = home_ == Home::direct && !kept.memory.here.empty() ? 1 : 0;
+  std::vector<std::uint8_t> all(std::size_t(link_.size()));
+  link_.gather_to_all(bytes_of(reaches), std::as_writable_bytes(std::span(all)));
+  kept.memory.reached_by.assign(all.begin(), all.end());
+  kept.mapped.close_descriptor();
+  memories_.insert_or_assign(client, std::move(kept));
+}
+
+const PictureMemories::Memory& PictureMemories::of(std::uint64_t client) const {
+  static const Memory none;
+  const auto found = memories_.find(client);
+  return found == memories_.end() ? none : found->second.memory;
+}
+
+}  // namespace understudy::compositor

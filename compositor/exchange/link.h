@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace understudy::compositor {
 
@@ -31,7 +33,15 @@ struct Incoming {
   std::size_t* received = nullptr;
 };
 
-/// All functions but rank() and size() may block until the other ranks take part, and throw LinkLost.
+/// A message that nobody waits for.
+struct Note {
+  Rank from = 0;
+  std::vector<std::byte> bytes;
+};
+constexpr std::size_t most_note_bytes = 16384;
+
+/// All functions but rank(), size(), post() and take_note() may block until the other ranks take part, and
+/// throw LinkLost.
 class Link {
  public:
   virtual ~Link() = default;
@@ -49,6 +59,12 @@ class Link {
 
   /// Collective: `all` holds size() times as many bytes as `mine`, in rank order.
   virtual void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) = 0;
+
+  /// Sends a note of at most most_note_bytes to another rank, without waiting for anybody.
+  virtual void post(Rank to, std::span<const std::byte> note) = 0;
+  /// A note that has come here; those of one sender in their order.
+  virtual std::optional<Note> take_note() = 0;
+  virtual Note wait_for_note() = 0;
 
   /// Ends the whole group because this rank cannot go on: no rank is left waiting for it.
   [[noreturn]] virtual void abandon(const std::string& why) = 0;

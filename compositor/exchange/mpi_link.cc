@@ -19,24 +19,31 @@ using Clock = std::chrono::steady_clock;
 // MPI counts in int.
 constexpr std::size_t max_bytes_per_message = std::size_t(1) << 30;
 constexpr int picture_tag = 1;
+constexpr int note_tag = 2;
 
 // OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
 // ranks that still work: first it only yields, then it sleeps for a sixteenth of the time it has waited so far
 // (so the wait grows by a sixteenth at most), a millisecond at most.
-void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE) {
+template <class Done>
+void wait_until(Done done) {
   constexpr auto only_yield = std::chrono::microseconds(100);
   constexpr auto longest_sleep = std::chrono::microseconds(1000);
   const auto start = Clock::now();
-  for (;;) {
-    int done = 0;
-    MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
-    if (done) return;
+  while (!done()) {
     const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
     if (waited < only_yield)
       sched_yield();
     else
       std::this_thread::sleep_for(std::min<std::chrono::microseconds>(waited / 16, longest_sleep));
   }
+}
+
+void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE) {
+  wait_until([&] {
+    int done = 0;
+    MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
+    return done != 0;
+  });
 }
 
 template <class Span, class Call>
@@ -46,6 +53,11 @@ void in_pieces(Span bytes, Call call) {
 }
 
 }  // namespace
+
+struct MpiLink::Posted {
+  std::vector<std::byte> bytes;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
 
 MpiLink::MpiLink(int& argc, char**& argv) {
   int provided = 0;
@@ -103,6 +115,41 @@ void MpiLink::gather_to_all(std::span<const std::byte> mine, std::span<std::byte
   MPI_Iallgather(mine.data(), int(mine.size()), MPI_BYTE, all.data(), int(mine.size()), MPI_BYTE,
                  MPI_COMM_WORLD, request.data());
   complete(request);
+}
+
+void MpiLink::forget_posted() {
+  std::erase_if(posted_, [](Posted& note) {
+    int gone = 0;
+    MPI_Test(&note.request, &gone, MPI_STATUS_IGNORE);
+    return gone != 0;
+  });
+}
+
+void MpiLink::post(Rank to, std::span<const std::byte> note) {
+  forget_posted();
+  Posted& posted = posted_.emplace_back();
+  posted.bytes.assign(note.begin(), note.end());
+  MPI_Isend(posted.bytes.data(), int(posted.bytes.size()), MPI_BYTE, to, note_tag, MPI_COMM_WORLD,
+            &posted.request);
+}
+
+std::optional<Note> MpiLink::take_note() {
+  int has_come = 0;
+  MPI_Message message = MPI_MESSAGE_NULL;
+  MPI_Status status;
+  MPI_Improbe(MPI_ANY_SOURCE, note_tag, MPI_COMM_WORLD, &has_come, &message, &status);
+  if (has_come == 0) return std::nullopt;
+  int bytes = 0;
+  MPI_Get_count(&status, MPI_BYTE, &bytes);
+  Note note{status.MPI_SOURCE, std::vector<std::byte>(std::size_t(bytes))};
+  MPI_Mrecv(note.bytes.data(), bytes, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+  return note;
+}
+
+Note MpiLink::wait_for_note() {
+  std::optional<Note> note;
+  wait_until([&] { return (note = take_note()).has_value(); });
+  return std::move(*note);
 }
 
 void MpiLink::abandon(const std::string& why) {

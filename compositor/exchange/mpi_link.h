@@ -1,7 +1,7 @@
 // The ranks of an MPI job. The source of this header is the one file that says MPI.
 #pragma once
 
-#include <memory>
+#include <list>
 
 #include "compositor/exchange/link.h"
 
@@ -23,9 +23,16 @@ class MpiLink : public Link {
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override;
   void broadcast(Rank root, std::span<std::byte> bytes) override;
   void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override;
+  void post(Rank to, std::span<const std::byte> note) override;
+  std::optional<Note> take_note() override;
+  Note wait_for_note() override;
   [[noreturn]] void abandon(const std::string& why) override;
 
  private:
+  struct Posted;
+  void forget_posted();
+
+  std::list<Posted> posted_;  // not yet known to have left
   Rank rank_ = 0;
   int size_ = 1;
   int local_size_ = 1;

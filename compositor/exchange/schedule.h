@@ -54,9 +54,9 @@ struct Schedule {
 Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<const volume::Rect> footprints,
                   std::span<const int> factors = {});
 
-/// Marks the last round's pieces whose senders reach the picture's memory (`reached_by`, by rank; empty: none does) as written
-/// there, if all of them lie apart: strips then go home directly from each rank, instead of being gathered by
-/// rank 0 (Mueller, Strengert, Ertl 2006 have both ways).
+/// Marks the last round's pieces whose senders reach the picture's memory (`reached_by`, by rank; empty: none
+/// does) as written there, if all of them lie apart: strips then go home directly from each rank, instead of
+/// being gathered by rank 0 (Mueller, Strengert, Ertl 2006 have both ways).
 void write_home(Schedule& schedule, const std::vector<bool>& reached_by);
 
 /// Prime factors of `count`, pairs of twos made fours: rounds of four cost a quarter of the latency of two

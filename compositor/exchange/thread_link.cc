@@ -16,7 +16,8 @@ namespace {
 // keep their order, so the two never mix.
 class Group {
  public:
-  explicit Group(int ranks) : ranks_(ranks), queues_(std::size_t(ranks) * std::size_t(ranks)) {}
+  explicit Group(int ranks)
+      : ranks_(ranks), queues_(std::size_t(ranks) * std::size_t(ranks)), notes_(std::size_t(ranks)) {}
 
   int ranks() const { return ranks_; }
 
@@ -38,6 +39,24 @@ class Group {
     return message.size();
   }
 
+  void leave_note(Rank to, Note note) {
+    const std::lock_guard lock(mutex_);
+    notes_[std::size_t(to)].push_back(std::move(note));
+    arrived_.notify_all();
+  }
+
+  std::optional<Note> take_note(Rank to) {
+    const std::lock_guard lock(mutex_);
+    return first_note(to);
+  }
+
+  Note wait_for_note(Rank to) {
+    std::unique_lock lock(mutex_);
+    arrived_.wait(lock, [&] { return !broken_.empty() || !notes_[std::size_t(to)].empty(); });
+    if (std::optional<Note> note = first_note(to)) return std::move(*note);
+    throw LinkLost(broken_);
+  }
+
   void break_off(const std::string& why) {
     const std::lock_guard lock(mutex_);
     if (broken_.empty()) broken_ = why;
@@ -49,10 +68,19 @@ class Group {
     return queues_[std::size_t(from) * std::size_t(ranks_) + std::size_t(to)];
   }
 
+  std::optional<Note> first_note(Rank to) {
+    std::deque<Note>& notes = notes_[std::size_t(to)];
+    if (notes.empty()) return std::nullopt;
+    Note note = std::move(notes.front());
+    notes.pop_front();
+    return note;
+  }
+
   int ranks_;
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::vector<std::deque<std::vector<std::byte>>> queues_;
+  std::vector<std::deque<Note>> notes_;  // by receiver
   std::string broken_;
 };
 
@@ -85,6 +113,12 @@ class ThreadLink : public Link {
     for (Rank other = 0; other < size(); ++other)
       group_.take(other, rank_, all.subspan(std::size_t(other) * mine.size(), mine.size()));
   }
+
+  void post(Rank to, std::span<const std::byte> note) override {
+    group_.leave_note(to, {rank_, {note.begin(), note.end()}});
+  }
+  std::optional<Note> take_note() override { return group_.take_note(rank_); }
+  Note wait_for_note() override { return group_.wait_for_note(rank_); }
 
   [[noreturn]] void abandon(const std::string& why) override {
     group_.break_off(why);

@@ -16,6 +16,7 @@
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
+#include "compositor/node/opaque_tiles.h"
 #include "compositor/node/picture_memory.h"
 #include "compositor/node/rebalancer.h"
 #include "compositor/service.h"
@@ -50,6 +51,7 @@ struct Outcome {
   std::array<char, limits::max_text_bytes> reason{};  ///< ends with a zero
   volume::Rect footprint;
   volume::FrameCounts counts;
+  std::uint32_t notes = 0;  ///< of opaque tiles, to every rank behind
   RankLoad load;
 
   void refuse(const char* why) {
@@ -108,6 +110,8 @@ class Node {
   bool only_footprints_ = true;  // travel
   std::vector<Rank> visible_order_;
   volume::Image image_;
+  std::uint32_t pictures_ = 0;  // that were asked for, this one too
+  std::optional<OpaqueTiles> opaque_tiles_;
   // What pictures of a window cost without footprints.
   volume::Rect priced_window_;
   Layout priced_layout_{};
@@ -410,6 +414,8 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         break;
       }
       case MessageType::render: {
+        ++pictures_;
+        opaque_tiles_.reset();
         const auto decode = [&] { return decode_request(payload, pair_tables_[order.client]); };
         const volume::RenderRequest request =
             rebalancer_ ? rebalancer_->before_picture(order.client, decode) : decode();
@@ -420,8 +426,13 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
                                                                                       : exchange_.layout;
         only_footprints_ = request.leave_out.footprints;
         visible_order_ = renderer_.visibility_order(order.client, request);
-        image_ = renderer_.render(order.client, request, mine.counts);
+        if (link_.size() > 1 && only_footprints_ && volume::can_occlude(request))
+          opaque_tiles_.emplace(link_, pictures_, request, visible_order_,
+                                renderer_.footprints(order.client, request));
+        image_ =
+            renderer_.render(order.client, request, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
         mine.footprint = image_.rect;
+        if (opaque_tiles_) mine.notes = opaque_tiles_->tell_rest();
         break;
       }
       case MessageType::integrals: {
@@ -488,6 +499,11 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
+  if (opaque_tiles_) {
+    std::vector<std::uint32_t> notes;
+    for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
+    opaque_tiles_->clear_hidden(image_, notes);
+  }
   const PictureMemories::Memory& memory = memories_.of(rendered_.client);
   if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
   Schedule chosen = schedule_of(footprints, memory.reached_by);

@@ -209,7 +209,8 @@ void RankRenderer::forget_client(std::uint64_t client) {
   std::erase_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
 }
 
-Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts) {
+Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts,
+                           Occlusion* occlusion) {
   const auto start = std::chrono::steady_clock::now();
   Volume& volume = find_complete(client, request);
   Image image = refusing([&] {
@@ -220,7 +221,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
                                        request.window.pixels(), limits::max_window_pixels));
     Image result(request.leave_out.footprints ? footprint(request, description, volume.tree.box(rank_))
                                               : intersection(request.window, request.viewport));
-    volume.renderer->render(request, result, counts);
+    volume.renderer->render(request, result, counts, occlusion);
     return result;
   });
   if (request.leave_out.footprints) crop_to_content(image, request.op);
@@ -258,6 +259,17 @@ std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const Re
     }
     parts.resize(done);
     return parts;
+  });
+}
+
+std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderRequest& request) const {
+  const Volume& volume = find_complete(client, request);
+  return refusing([&] {
+    validate(volume.bricks.description(), request);
+    std::vector<Rect> result;
+    for (int rank = 0; rank < ranks_; ++rank)
+      result.push_back(footprint(request, volume.bricks.description(), volume.tree.box(rank)));
+    return result;
   });
 }
 

@@ -53,8 +53,12 @@ class RankRenderer {
   void forget_client(std::uint64_t client);
   std::size_t volumes() const { return volumes_.size(); }
 
-  /// This rank's image, cropped to what shows; adds to `counts`, time included.
-  volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts);
+  /// This rank's image, cropped to what shows; adds to `counts`, time included. Of what `occlusion` hides,
+  /// nothing need be there.
+  volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts,
+                       volume::Occlusion* occlusion = nullptr);
+  /// By rank: outside it a rank's image is clear whatever its texels.
+  std::vector<volume::Rect> footprints(std::uint64_t client, const volume::RenderRequest& request) const;
   /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals()).
   std::vector<IntegralPart> integrals(std::uint64_t client, const volume::RenderRequest& request,
                                       std::span<const volume::Pixel> pixels, double most_ms) const;

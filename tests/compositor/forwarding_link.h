@@ -17,6 +17,9 @@ class ForwardingLink : public Link {
   void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override {
     link_.gather_to_all(mine, all);
   }
+  void post(Rank to, std::span<const std::byte> note) override { link_.post(to, note); }
+  std::optional<Note> take_note() override { return link_.take_note(); }
+  Note wait_for_note() override { return link_.wait_for_note(); }
   [[noreturn]] void abandon(const std::string& why) override {
     link_.abandon(why);
     throw LinkLost(why);  // never reached; gcc does not believe a virtual function that it will not return

@@ -232,15 +232,17 @@ class Laborious : public volume::BrickRenderer {
   Laborious(const volume::BrickStore& store, int times)
       : renderer_(volume::cpu_renderer(store)), times_(times) {}
   void blocks_changed(std::span<const std::size_t> blocks) override { renderer_->blocks_changed(blocks); }
-  void render(const volume::RenderRequest& request, volume::Image& out, volume::FrameCounts& counts) override {
+
+ private:
+  void draw(const volume::RenderRequest& request, volume::Image& out, volume::FrameCounts& counts,
+            volume::Occlusion* occlusion) override {
     for (int i = 1; i < times_; ++i) {
       volume::FrameCounts ignored;
       renderer_->render(request, out, ignored);
     }
-    renderer_->render(request, out, counts);
+    renderer_->render(request, out, counts, occlusion);
   }
 
- private:
   std::unique_ptr<volume::BrickRenderer> renderer_;
   int times_;
 };

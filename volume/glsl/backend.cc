@@ -104,19 +104,19 @@ class BackendChooser::Renderer final : public BrickRenderer {
     if (gl_) gl_->blocks_changed(blocks);
   }
 
-  void render(const RenderRequest& request, Image& out, FrameCounts& counts) override {
+ private:
+  void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) override {
     FrameCounts mine;
-    if (!draw_with_opengl(request, out, mine)) draw_on_cpu(request, out, mine);
+    if (!draw_with_opengl(request, out, mine, occlusion)) draw_on_cpu(request, out, mine, occlusion);
     mostly_empty_ = 2 * mine.blocks_empty > mine.blocks;
     counts += mine;
   }
 
- private:
   Kind kind_of(const RenderRequest& request) const {
     return {store_.description().type, request.op, request.filter, mostly_empty_};
   }
 
-  bool draw_with_opengl(const RenderRequest& request, Image& out, FrameCounts& counts) {
+  bool draw_with_opengl(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
     if (shared_.wish == Backend::cpu || failed_ || store_.empty()) return false;
     if (shared_.wish == Backend::automatic && !wanted(kind_of(request))) return false;
     Device* device = shared_.open_device();
@@ -128,7 +128,8 @@ class BackendChooser::Renderer final : public BrickRenderer {
       return false;
     }
     try {
-      measured(request, counts, &Speeds::gl, &Speeds::gl_pictures, [&] { gl_->render(request, out, counts); });
+      measured(request, counts, &Speeds::gl, &Speeds::gl_pictures,
+               [&] { gl_->render(request, out, counts, occlusion); });
     } catch (const NoTextureMemory& error) {
       // Other volumes have it: tried again once there is more.
       too_little_ = device->texture_memory().left();
@@ -150,8 +151,9 @@ class BackendChooser::Renderer final : public BrickRenderer {
     return true;
   }
 
-  void draw_on_cpu(const RenderRequest& request, Image& out, FrameCounts& counts) {
-    measured(request, counts, &Speeds::cpu, &Speeds::cpu_pictures, [&] { cpu_->render(request, out, counts); });
+  void draw_on_cpu(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
+    measured(request, counts, &Speeds::cpu, &Speeds::cpu_pictures,
+             [&] { cpu_->render(request, out, counts, occlusion); });
   }
 
   /// Whether the next picture of this kind is OpenGL's: those after the CPU's while measuring, and all if it

@@ -358,7 +358,12 @@ void GlslRayCaster::set_uniforms(const MarchProgram& program, const RenderReques
   }
 }
 
-void GlslRayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts) {
+void GlslRayCaster::draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
+  draw_all(request, out, counts);
+  if (occlusion != nullptr && can_occlude(request)) cover_opaque_tiles(out, request, *occlusion);
+}
+
+void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCounts& counts) {
   if (!store_.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
   validate(store_.description(), request);
   if (const auto reason = obstacle(request))

@@ -45,11 +45,14 @@ class GlslRayCaster final : public BrickRenderer {
   BrickFigures brick_figures() const;
 
   void blocks_changed(std::span<const std::size_t> blocks) override;
-  /// Throws as RayCaster::render() does, and NotSupported, after which the CPU can be asked. `samples_taken`
-  /// includes those that share a stretch of eight with a block that shows something.
-  void render(const RenderRequest& request, Image& out, FrameCounts& counts) override;
 
  private:
+  /// Throws as RayCaster::render() does, and NotSupported, after which the CPU can be asked. `samples_taken`
+  /// includes those that share a stretch of eight with a block that shows something. Tiles that are hidden are
+  /// drawn all the same: one draw has all of them.
+  void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) override;
+  void draw_all(const RenderRequest& request, Image& out, FrameCounts& counts);
+
   struct Prepared;
   struct Rays;
   struct Resources;

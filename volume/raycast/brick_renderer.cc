@@ -10,11 +10,12 @@ class CpuRenderer final : public BrickRenderer {
  public:
   explicit CpuRenderer(const BrickStore& store) : caster_(store) {}
   void blocks_changed(std::span<const std::size_t> blocks) override { caster_.blocks_changed(blocks); }
-  void render(const RenderRequest& request, Image& out, FrameCounts& counts) override {
-    caster_.render(request, out, counts);
-  }
 
  private:
+  void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) override {
+    caster_.render(request, out, counts, occlusion);
+  }
+
   RayCaster caster_;
 };
 

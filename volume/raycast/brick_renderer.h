@@ -8,6 +8,7 @@
 #include <span>
 
 #include "volume/brick/brick_store.h"
+#include "volume/occlusion.h"
 #include "volume/request.h"
 
 namespace understudy::volume {
@@ -19,10 +20,15 @@ class BrickRenderer {
   /// These blocks of the store show other texels than at the last render().
   virtual void blocks_changed(std::span<const std::size_t> blocks) = 0;
 
-  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral.
-  virtual void render(const RenderRequest& request, Image& out, FrameCounts& counts) = 0;
+  /// Renders the pixels of `out.rect` that lie in the request's window; all others become neutral, and so may
+  /// those that `occlusion` hides. It is told of what these bricks hide.
+  void render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion = nullptr) {
+    draw(request, out, counts, occlusion);
+  }
 
  protected:
+  virtual void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) = 0;
+
   BrickRenderer() = default;
   BrickRenderer(const BrickRenderer&) = default;
   BrickRenderer(BrickRenderer&&) = default;

@@ -16,6 +16,7 @@
 #include "volume/brick_grid.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
+#include "volume/occlusion.h"
 #include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/map_visibility.h"
@@ -399,7 +400,7 @@ void RayCaster::blocks_changed(std::span<const std::size_t> blocks) {
     if (prepared) prepared->blocks_changed(*store_, blocks);
 }
 
-void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts) {
+void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
   const BrickStore& store = *store_;
   if (!store.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
   validate(store.description(), request);
@@ -457,7 +458,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     scene.has_border[axis] = store.description().wrap[axis] == Wrap::border && request.filter == Filter::linear;
 
   tbb::combinable<FrameCounts> partial;
-  const auto render_tile = [&](const Piece& piece, int x, int y, int width, int height) {
+  const auto render_tile = [&](const Piece& piece, int x, int y, int width, int height, bool hidden) {
     FrameCounts& mine = partial.local();
     RayStrip strip;
     alignas(64) std::array<float, 4 * strip_rays> rgba;
@@ -467,8 +468,11 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
       for (std::size_t r = 0; r < strip_rays; ++r)
         if (strip.first[r] <= strip.last[r]) {
           ++mine.rays;
-          mine.samples += std::uint64_t(strip.last[r] - strip.first[r] + 1);
+          const auto samples = std::uint64_t(strip.last[r] - strip.first[r] + 1);
+          mine.samples += samples;
+          if (hidden) mine.samples_hidden += samples;
         }
+      if (hidden) continue;
       KernelCounts done;
       kernel(scene, strip, rgba.data(), done);
       mine.samples_taken += done.samples_taken;
@@ -484,21 +488,23 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     }
   };
 
-  constexpr int tile_height = 32;
-  const int columns = (pixels.width + tile_width - 1) / tile_width,
-            rows = (pixels.height + tile_height - 1) / tile_height;
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 1, 0, columns, 1),
-                    [&](const tbb::blocked_range2d<int>& range) {
-                      for (int row = range.rows().begin(); row < range.rows().end(); ++row)
-                        for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
-                          const int x = column * tile_width, y = row * tile_height;
-                          const Rect tile{pixels.x + x, pixels.y + y, std::min(tile_width, pixels.width - x),
-                                          std::min(tile_height, pixels.height - y)};
-                          for (const Piece& piece : pieces)
-                            if (!intersection(piece.pixels, tile).empty())
-                              render_tile(piece, tile.x, tile.y, tile.width, tile.height);
-                        }
-                    });
+  static_assert(tile_width == occlusion_tile);
+  const Rect tiles = tiles_touched(pixels);
+  if (!can_occlude(request)) occlusion = nullptr;
+  tbb::parallel_for(
+      tbb::blocked_range2d<int>(tiles.y, tiles.y + tiles.height, 1, tiles.x, tiles.x + tiles.width, 1),
+      [&](const tbb::blocked_range2d<int>& range) {
+        for (int row = range.rows().begin(); row < range.rows().end(); ++row)
+          for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
+            const Rect tile = intersection(
+                pixels, {occlusion_tile * column, occlusion_tile * row, occlusion_tile, occlusion_tile});
+            const bool hidden = occlusion != nullptr && occlusion->hides(tile);
+            for (const Piece& piece : pieces)
+              if (!intersection(piece.pixels, tile).empty())
+                render_tile(piece, tile.x, tile.y, tile.width, tile.height, hidden);
+            if (occlusion != nullptr && !hidden && is_opaque(out, tile, request)) occlusion->cover(tile);
+          }
+      });
   partial.combine_each([&](const FrameCounts& c) {
     counts.rays += c.rays;
     counts.rays_terminated += c.rays_terminated;

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "volume/brick/brick_store.h"
+#include "volume/occlusion.h"
 #include "volume/request.h"
 
 namespace understudy::volume {
@@ -52,7 +53,10 @@ class RayCaster {
   /// those empty under the classification. Sums over ranks: `samples` is the same for every partition, a ray
   /// counts on every rank it crosses. Leaves bytes and times to the caller. Throws as validate() does, and
   /// std::logic_error on an unfinished store.
-  void render(const RenderRequest& request, Image& out, FrameCounts& counts);
+  ///
+  /// `occlusion`, where requests can occlude, is asked before a tile and told after it. The samples of hidden
+  /// tiles count as hidden.
+  void render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion = nullptr);
 
  private:
   struct Prepared;

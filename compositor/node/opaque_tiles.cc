@@ -1,0 +1,120 @@
+#include "compositor/node/opaque_tiles.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace understudy::compositor {
+
+namespace {
+
+using volume::Rect;
+
+// A note begins with the picture's number; indices of tiles follow, row after row of the window's tiles.
+constexpr std::size_t tiles_per_note = most_note_bytes / sizeof(std::uint32_t) - 1;
+
+Rect pixels_of_tile(int column, int row) {
+  return {volume::occlusion_tile * column, volume::occlusion_tile * row, volume::occlusion_tile,
+          volume::occlusion_tile};
+}
+
+bool contains(const Rect& outer, const Rect& inner) {
+  return intersection(outer, inner) == inner;
+}
+
+}  // namespace
+
+OpaqueTiles::OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderRequest& request,
+                         std::span<const Rank> order, std::span<const Rect> footprints)
+    : link_(link),
+      number_(number),
+      window_(intersection(request.window, request.viewport)),
+      tiles_(volume::tiles_touched(window_)),
+      hidden_(tiles_.pixels()),
+      covered_(tiles_.pixels()),
+      told_(tiles_.pixels()),
+      notes_heard_(footprints.size()) {
+  // Notes go where footprints share a tile.
+  const Rect mine = volume::tiles_touched(footprints[std::size_t(link.rank())]);
+  std::vector<Rank>* side = &nearer_;
+  for (const Rank rank : order) {
+    if (rank == link.rank())
+      side = &farther_;
+    else if (!intersection(mine, volume::tiles_touched(footprints[std::size_t(rank)])).empty())
+      side->push_back(rank);
+  }
+}
+
+bool OpaqueTiles::hides(const Rect& pixels) {
+  // Only one thread may use the link.
+  if (std::this_thread::get_id() == thread_) {
+    while (const std::optional<Note> note = link_.take_note()) hear(*note);
+    tell();
+  }
+  if (nearer_.empty()) return false;
+  const Rect touched = volume::tiles_touched(intersection(pixels, window_));
+  for (int row = touched.y; row < touched.y + touched.height; ++row)
+    for (int column = touched.x; column < touched.x + touched.width; ++column)
+      if (hidden_[index_of(column, row)].load(std::memory_order_relaxed) == 0) return false;
+  return true;
+}
+
+void OpaqueTiles::cover(const Rect& pixels) {
+  if (farther_.empty()) return;
+  const Rect touched = volume::tiles_touched(intersection(pixels, window_));
+  for (int row = touched.y; row < touched.y + touched.height; ++row)
+    for (int column = touched.x; column < touched.x + touched.width; ++column) {
+      if (!contains(pixels, intersection(window_, pixels_of_tile(column, row)))) continue;
+      covered_[index_of(column, row)].store(1, std::memory_order_relaxed);
+      covered_more_.store(true, std::memory_order_release);
+    }
+}
+
+void OpaqueTiles::tell() {
+  if (!covered_more_.exchange(false, std::memory_order_acquire)) return;
+  std::vector<std::uint32_t> note{number_};
+  const auto send = [&] {
+    if (note.size() == 1) return;
+    for (const Rank rank : farther_) link_.post(rank, std::as_bytes(std::span(note)));
+    ++notes_told_;
+    note.resize(1);
+  };
+  for (std::size_t i = 0; i < covered_.size(); ++i) {
+    if (told_[i] != 0 || covered_[i].load(std::memory_order_relaxed) == 0) continue;
+    told_[i] = 1;
+    note.push_back(std::uint32_t(i));
+    if (note.size() > tiles_per_note) send();
+  }
+  send();
+}
+
+void OpaqueTiles::hear(const Note& note) {
+  std::vector<std::uint32_t> words(note.bytes.size() / sizeof(std::uint32_t));
+  std::memcpy(words.data(), note.bytes.data(), sizeof(std::uint32_t) * words.size());
+  // Of a picture that was refused somewhere notes may be left.
+  if (words.empty() || words.front() != number_) return;
+  ++notes_heard_[std::size_t(note.from)];
+  for (const std::uint32_t index : std::span(words).subspan(1))
+    if (index < hidden_.size()) hidden_[index].store(1, std::memory_order_relaxed);
+}
+
+std::uint32_t OpaqueTiles::tell_rest() {
+  tell();
+  return notes_told_;
+}
+
+void OpaqueTiles::clear_hidden(volume::Image& image, std::span<const std::uint32_t> notes_of_ranks) {
+  const auto missing = [&](Rank rank) {
+    return notes_heard_[std::size_t(rank)] < notes_of_ranks[std::size_t(rank)];
+  };
+  while (std::ranges::any_of(nearer_, missing)) hear(link_.wait_for_note());
+  const Rect touched = volume::tiles_touched(intersection(image.rect, window_));
+  for (int row = touched.y; row < touched.y + touched.height; ++row)
+    for (int column = touched.x; column < touched.x + touched.width; ++column) {
+      if (hidden_[index_of(column, row)].load(std::memory_order_relaxed) == 0) continue;
+      const Rect pixels = intersection(image.rect, pixels_of_tile(column, row));
+      for (int y = pixels.y; y < pixels.y + pixels.height; ++y)
+        std::fill_n(image.at(pixels.x, y), 4 * std::size_t(pixels.width), 0.0F);
+    }
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,58 @@
+// Ranks nearer to the eye tell those behind them, while all of them draw, which tiles of the picture are
+// already opaque: what lies there behind them is neither drawn nor sent. Nobody waits for a note while drawing,
+// so one that comes late saves less; but what has been drawn in vain is cleared before pictures are exchanged,
+// so that the picture does not depend on when notes came.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "compositor/exchange/link.h"
+#include "volume/image.h"
+#include "volume/occlusion.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+class OpaqueTiles final : public volume::Occlusion {
+ public:
+  /// Of one picture: the `number`-th, by the same count on all ranks. `order` holds all ranks, front first, and
+  /// `footprints`, by rank, what each could show at most; both are the same on all ranks. Made on the thread
+  /// that `link` belongs to.
+  OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderRequest& request,
+              std::span<const Rank> order, std::span<const volume::Rect> footprints);
+
+  bool hides(const volume::Rect& pixels) override;
+  void cover(const volume::Rect& pixels) override;
+
+  /// When this rank has drawn: tells what it has not told yet. Returns how many notes each rank behind it got.
+  std::uint32_t tell_rest();
+  /// When all ranks have, with what they returned: clears the pixels of `image` that are hidden.
+  void clear_hidden(volume::Image& image, std::span<const std::uint32_t> notes_of_ranks);
+
+ private:
+  using Tiles = std::vector<std::atomic<std::uint8_t>>;
+
+  std::size_t index_of(int column, int row) const {
+    return std::size_t(row - tiles_.y) * std::size_t(tiles_.width) + std::size_t(column - tiles_.x);
+  }
+  void tell();
+  void hear(const Note& note);
+
+  Link& link_;
+  std::thread::id thread_ = std::this_thread::get_id();
+  std::uint32_t number_;
+  volume::Rect window_;
+  volume::Rect tiles_;  ///< of the window
+  std::vector<Rank> nearer_, farther_;
+  Tiles hidden_, covered_;
+  std::atomic<bool> covered_more_ = false;  ///< than was told
+  std::vector<std::uint8_t> told_;
+  std::uint32_t notes_told_ = 0;
+  std::vector<std::uint32_t> notes_heard_;  ///< by rank
+};
+
+}  // namespace understudy::compositor

@@ -27,6 +27,7 @@ class OpaqueTiles final : public volume::Occlusion {
 
   bool hides(const volume::Rect& pixels) override;
   void cover(const volume::Rect& pixels) override;
+  bool from_the_end() const override { return nearer_.size() % 2 == 1; }
 
   /// When this rank has drawn: tells what it has not told yet. Returns how many notes each rank behind it got.
   std::uint32_t tell_rest();

@@ -491,13 +491,15 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   static_assert(tile_width == occlusion_tile);
   const Rect tiles = tiles_touched(pixels);
   if (!can_occlude(request)) occlusion = nullptr;
+  const bool from_the_end = occlusion != nullptr && occlusion->from_the_end();
   tbb::parallel_for(
       tbb::blocked_range2d<int>(tiles.y, tiles.y + tiles.height, 1, tiles.x, tiles.x + tiles.width, 1),
       [&](const tbb::blocked_range2d<int>& range) {
         for (int row = range.rows().begin(); row < range.rows().end(); ++row)
           for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
+            const int at = from_the_end ? 2 * tiles.y + tiles.height - 1 - row : row;
             const Rect tile = intersection(
-                pixels, {occlusion_tile * column, occlusion_tile * row, occlusion_tile, occlusion_tile});
+                pixels, {occlusion_tile * column, occlusion_tile * at, occlusion_tile, occlusion_tile});
             const bool hidden = occlusion != nullptr && occlusion->hides(tile);
             for (const Piece& piece : pieces)
               if (!intersection(piece.pixels, tile).empty())

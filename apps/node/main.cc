@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "compositor/exchange/mpi_link.h"
@@ -15,6 +17,20 @@
 #include "compositor/service/backend_line.h"
 #include "volume/glsl/backend.h"
 #include "volume/glsl/brick_size.h"
+
+namespace {
+
+/// What the kernel says could be had without swapping; where it does not say, nothing.
+std::size_t available_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);) {
+    constexpr std::string_view name = "MemAvailable:";
+    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10) << 10;
+  }
+  return 0;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace understudy;
@@ -70,6 +86,7 @@ int main(int argc, char** argv) {
         std::fflush(stderr);
       },
       memory);
+  balance.memory_left = [&] { return available_memory() / std::size_t(link.ranks_on_this_machine()); };
   balance.moved = [&](const MoveFigures& move) {
     if (link.rank() != 0) return;
     fmt::print(

@@ -30,6 +30,8 @@ struct BalanceInput {
   /// Samples to be expected in the picture to come; all must be finite and not negative.
   const volume::BlockCosts& costs;
   double ms_per_block = 0;  ///< that travels
+  /// Blocks that each rank has memory for; empty: all of them. No plane goes where a rank would hold more.
+  std::span<const std::size_t> most_blocks{};
 };
 
 class Balancer {

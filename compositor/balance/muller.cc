@@ -16,14 +16,6 @@ namespace {
 
 constexpr int block = volume::BrickStore::block_cells;
 
-double layers(int cells) {
-  return double((cells + block - 1) / block);
-}
-
-double blocks_in(const TexelBox& box) {
-  return layers(box.high[0] - box.low[0]) * layers(box.high[1] - box.low[1]) * layers(box.high[2] - box.low[2]);
-}
-
 class MullerBalancer : public Balancer {
  public:
   explicit MullerBalancer(const MullerSettings& settings) : settings_(settings) {}
@@ -48,8 +40,8 @@ class MullerBalancer : public Balancer {
       const std::size_t towards = low_ms > high_ms ? 0 : 1;  // which side gets smaller, and gives a slice
       TexelBox slice = box;
       slice.high[axis] = std::min(box.high[axis], box.low[axis] + block);
-      const double blocks = blocks_in(slice);
-      const double ms_per_block = (low_sum + high_sum) / blocks_in(box);
+      const auto blocks = double(blocks_in(slice));
+      const double ms_per_block = (low_sum + high_sum) / double(blocks_in(box));
       std::array<double, 2>& factor = factors_[i];
       const double cost = blocks * ms_per_block + blocks * factor[towards] * input.ms_per_block;
       if (!(cost < std::abs(low_ms - high_ms))) return;
@@ -60,7 +52,7 @@ class MullerBalancer : public Balancer {
       factor[1 - towards] += settings_.raised_by;
       factor[towards] = std::max(0.0, factor[towards] - settings_.lowered_by);
     });
-    return partition;
+    return with_room(input.partition, partition, input.lattice, input.most_blocks);
   }
 
  private:

@@ -17,24 +17,6 @@ using volume::TexelBox;
 
 namespace {
 
-std::vector<TexelBox> boxes_of(const Partition& partition, const TexelBox& lattice) {
-  std::vector<TexelBox> boxes(std::size_t(partition.ranks), lattice);
-  Partition walked = partition;
-  walk_splits(walked, lattice, [&](std::size_t i, const TexelBox& box) {
-    const Partition::Split& split = walked.splits[i];
-    const auto axis = std::size_t(split.axis);
-    if (split.low < 0) {
-      boxes[std::size_t(~split.low)] = box;
-      boxes[std::size_t(~split.low)].high[axis] = split.cut;
-    }
-    if (split.high < 0) {
-      boxes[std::size_t(~split.high)] = box;
-      boxes[std::size_t(~split.high)].low[axis] = split.cut;
-    }
-  });
-  return boxes;
-}
-
 /// How many ms a sample takes on one rank.
 class Slowness {
  public:
@@ -91,7 +73,9 @@ class PredictingBalancer : public Balancer {
     for (std::size_t i = 0; i < weights_.size(); ++i) costs.values()[i] *= double(weights_[i]);
     const CostSums sums(costs);
     const std::vector<double> slow = all_slownesses();
-    const Partition fair = refined(fair_partition(input, sums, slow), input, sums, slow);
+    const Partition fair =
+        with_room(input.partition, refined(fair_partition(input, sums, slow), input, sums, slow), input.lattice,
+                  input.most_blocks);
     const std::vector<TexelBox> then = boxes_of(fair, input.lattice);
 
     const double stay_ms = slowest(sums, now, slow), move_ms = slowest(sums, then, slow);

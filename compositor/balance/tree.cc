@@ -1,11 +1,20 @@
 #include "compositor/balance/tree.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "volume/brick/brick_store.h"
 
 namespace understudy::compositor {
 
 using volume::Partition;
 using volume::TexelBox;
+
+namespace {
+
+constexpr int block = volume::BrickStore::block_cells;
+
+}  // namespace
 
 std::vector<int> ranks_under(const Partition& partition, int child) {
   if (child < 0) return {~child};
@@ -39,6 +48,66 @@ int allowed_cut(const Partition& partition, std::size_t split, const TexelBox& b
   const int last = (high - origin + edge - 1) / edge - layers_needed(partition, here.high)[axis];
   if (first > last) return std::clamp(cut, low, high);
   return std::clamp(cut, std::min(high, origin + first * edge), std::min(high, origin + last * edge));
+}
+
+std::size_t blocks_in(const TexelBox& box) {
+  std::size_t blocks = 1;
+  for (std::size_t k = 0; k < 3; ++k) blocks *= std::size_t((box.high[k] - box.low[k] + block - 1) / block);
+  return blocks;
+}
+
+std::vector<TexelBox> boxes_of(const Partition& partition, const TexelBox& lattice) {
+  std::vector<TexelBox> boxes(std::size_t(partition.ranks), lattice);
+  Partition walked = partition;
+  walk_splits(walked, lattice, [&](std::size_t i, const TexelBox& box) {
+    const Partition::Split& split = walked.splits[i];
+    const auto axis = std::size_t(split.axis);
+    if (split.low < 0) {
+      boxes[std::size_t(~split.low)] = box;
+      boxes[std::size_t(~split.low)].high[axis] = split.cut;
+    }
+    if (split.high < 0) {
+      boxes[std::size_t(~split.high)] = box;
+      boxes[std::size_t(~split.high)].low[axis] = split.cut;
+    }
+  });
+  return boxes;
+}
+
+Partition with_room(const Partition& now, const Partition& next, const TexelBox& lattice,
+                    std::span<const std::size_t> most_blocks) {
+  if (most_blocks.empty()) return next;
+  const auto fits = [&](const Partition& partition) {
+    const std::vector<TexelBox> boxes = boxes_of(partition, lattice);
+    for (std::size_t rank = 0; rank < boxes.size(); ++rank)
+      if (blocks_in(boxes[rank]) > most_blocks[rank]) return false;
+    return true;
+  };
+  const auto allowed = [&](Partition cuts) {
+    walk_splits(cuts, lattice, [&](std::size_t i, const TexelBox& box) {
+      cuts.splits[i].cut = allowed_cut(cuts, i, box, lattice, block, cuts.splits[i].cut);
+    });
+    return cuts;
+  };
+  if (fits(next)) return next;
+  // All planes as large a part of their ways as there is room for.
+  constexpr int parts = 16;
+  for (int part = parts - 1; part > 0; --part) {
+    Partition candidate = now;
+    for (std::size_t i = 0; i < now.splits.size(); ++i)
+      candidate.splits[i].cut += (next.splits[i].cut - now.splits[i].cut) / block * part / parts * block;
+    candidate = allowed(std::move(candidate));
+    if (candidate != now && fits(candidate)) return candidate;
+  }
+  // Steps of a layer have no parts: one plane after the other then goes, or stays.
+  Partition result = now;
+  for (std::size_t i = 0; i < now.splits.size(); ++i) {
+    Partition candidate = result;
+    candidate.splits[i].cut += next.splits[i].cut - now.splits[i].cut;
+    candidate = allowed(std::move(candidate));
+    if (fits(candidate)) result = std::move(candidate);
+  }
+  return result;
 }
 
 }  // namespace understudy::compositor

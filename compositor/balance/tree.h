@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "volume/partition.h"
@@ -18,6 +20,17 @@ std::array<int, 3> layers_needed(const volume::Partition& partition, int child);
 /// need.
 int allowed_cut(const volume::Partition& partition, std::size_t split, const volume::TexelBox& box,
                 const volume::TexelBox& lattice, int edge, int cut);
+
+/// By rank.
+std::vector<volume::TexelBox> boxes_of(const volume::Partition& partition, const volume::TexelBox& lattice);
+
+/// Blocks of 8^3 cells in a box, those in part too.
+std::size_t blocks_in(const volume::TexelBox& box);
+
+/// `next`, or, where a rank would then hold more blocks than it may, planes on their way there from `now`: as
+/// far as all ranks have room. `most_blocks` by rank; empty: there is room.
+volume::Partition with_room(const volume::Partition& now, const volume::Partition& next,
+                            const volume::TexelBox& lattice, std::span<const std::size_t> most_blocks);
 
 /// Calls visit(split, box) for every split, with the box that it cuts; planes may be moved on the way, and
 /// boxes further down follow.

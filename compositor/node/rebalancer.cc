@@ -100,7 +100,8 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
     if (known == volumes_.end())
       known =
           volumes_
-              .emplace(key, Volume{make_balancer(settings_.balance), BlockCache(settings_.cache_bytes), {}, 0})
+              .emplace(key,
+                       Volume{make_balancer(settings_.balance), BlockCache(settings_.cache_bytes), {}, 0, {}})
               .first;
     volume = &known->second;
     costs.emplace(lattice, cost_edge(lattice));
@@ -119,6 +120,8 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   if (trouble) std::rethrow_exception(trouble);
   if (!agreed) return std::move(*request);  // another rank refuses it
 
+  if (volume->most_blocks.empty())
+    volume->most_blocks = most_blocks_of_ranks(renderer_.bricks(client, *request));
   link_.gather_to_all(std::as_bytes(std::span(mine)), std::as_writable_bytes(std::span(all)));
   std::ranges::fill(costs->values(), 0.0);
   for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
@@ -128,8 +131,8 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   }
   try {
     const Partition now = renderer_.partition(client, *request);
-    const Partition next =
-        volume->balancer->decide({now, costs->lattice(), volume->work, *costs, volume->ms_per_block});
+    const Partition next = volume->balancer->decide(
+        {now, costs->lattice(), volume->work, *costs, volume->ms_per_block, volume->most_blocks});
     volume->work.clear();  // learned from
     if (next != now) move({client, request->volume}, *volume, *request, next);
   } catch (const LinkLost&) {
@@ -140,6 +143,17 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
     link_.abandon(error.what());
   }
   return std::move(*request);
+}
+
+// What each rank holds, and what more it has memory for.
+std::vector<std::size_t> Rebalancer::most_blocks_of_ranks(const BrickStore& bricks) {
+  // A block that comes is in a message, unpacked, and in the store for a while.
+  constexpr std::size_t copies = 3;
+  const std::size_t block_bytes = BrickStore::block_texels * bytes_per_texel(bricks.description().type);
+  std::size_t mine = bricks.blocks() + settings_.memory_left() / (copies * block_bytes);
+  std::vector<std::size_t> all(std::size_t(link_.size()));
+  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(all)));
+  return all;
 }
 
 void Rebalancer::after_picture(VolumeKey key, std::span<const RankWork> work) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -34,6 +35,8 @@ struct BalanceSettings {
   std::function<void(const MoveFigures&)> moved = [](const MoveFigures&) {};
   /// Of blocks that were given away, kept by each rank for each volume.
   std::size_t cache_bytes = std::size_t(64) << 20;
+  /// Bytes that this rank may still fill, asked before a volume's first picture.
+  std::function<std::size_t()> memory_left = [] { return std::numeric_limits<std::size_t>::max(); };
 };
 
 class Rebalancer {
@@ -60,6 +63,7 @@ class Rebalancer {
     BlockCache given_away;
     std::vector<RankWork> work;
     double ms_per_block = 0;
+    std::vector<std::size_t> most_blocks;  ///< by rank
   };
 
   void move(VolumeKey key, Volume& volume, const volume::RenderRequest& request, const volume::Partition& next);
@@ -67,6 +71,7 @@ class Rebalancer {
                    std::span<const volume::TexelBox> after,
                    std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures);
   bool all_agree(bool mine);
+  std::vector<std::size_t> most_blocks_of_ranks(const volume::BrickStore& bricks);
 
   Link& link_;
   RankRenderer& renderer_;

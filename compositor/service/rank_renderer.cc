@@ -288,6 +288,11 @@ void RankRenderer::divide(
     const std::function<std::vector<std::byte>(const std::array<int, 3>& place)>& packed_block) {
   Volume& volume = find(key);
   KdTree tree(volume.bricks.description(), partition);
+  if (tree.box(rank_) == volume.tree.box(rank_)) {
+    volume.tree = std::move(tree);
+    volume.find_shown();
+    return;
+  }
   // What it keeps is of blocks that are about to move; it goes first, so that there is room.
   volume.renderer.reset();
   volume.bricks.reshape(tree.box(rank_), packed_block);

@@ -9,6 +9,7 @@
 #include "compositor/balance/balancer.h"
 #include "compositor/balance/block_cache.h"
 #include "compositor/balance/moves.h"
+#include "compositor/balance/tree.h"
 #include "tests/volume/scenes.h"
 #include "volume/brick/cell_lattice.h"
 #include "volume/brick/texel_box.h"
@@ -33,6 +34,7 @@ struct Group {
   std::vector<double> slowness;
   double noise = 0.05;
   double ms_per_block = 1e-4;
+  std::vector<std::size_t> most_blocks;
   Partition partition;
   std::vector<RankWork> work;
   std::mt19937 random;
@@ -50,7 +52,7 @@ struct Group {
 
   /// One picture; how far the slowest rank's time lies over the mean, without noise.
   double draw(Balancer& balancer) {
-    const Partition next = balancer.decide({partition, lattice, work, costs, ms_per_block});
+    const Partition next = balancer.decide({partition, lattice, work, costs, ms_per_block, most_blocks});
     for (std::size_t i = 0; i < next.splits.size(); ++i) {
       const int step = next.splits[i].cut - partition.splits[i].cut;
       if (step == 0) continue;
@@ -110,6 +112,37 @@ TEST(Balance, PredictingEvensOutASlowRankInTwoMovesAndThenRests) {
     for (int picture = 0; picture < 300; ++picture) group.draw(*balancer);
     EXPECT_LE(group.moves - settled, ranks) << ranks << " ranks: planes wander though nothing changes";
   }
+}
+
+TEST(Balance, NoRankComesToHoldMoreThanItHasMemoryFor) {
+  for (const Balance balance : {Balance::predicted, Balance::muller})
+    for (const int ranks : {2, 3, 5, 8}) {
+      Group free(ranks, 5), bound(ranks, 5);
+      // One rank is so fast that nearly all of the volume would be its share.
+      const std::size_t fast = std::size_t(ranks) / 2;
+      for (Group* group : {&free, &bound}) {
+        std::ranges::fill(group->slowness, 50.0);
+        group->slowness[fast] = 1;
+      }
+      const auto held = [&](const Group& group, std::size_t rank) {
+        return blocks_in(volume::boxes(group.partition, group.description)[rank]);
+      };
+      for (std::size_t rank = 0; rank < std::size_t(ranks); ++rank)
+        bound.most_blocks.push_back(rank == fast ? held(bound, rank) * 3 / 2
+                                                 : std::numeric_limits<std::size_t>::max());
+      const auto one = make_balancer(balance), other = make_balancer(balance);
+      double unlimited = 0, limited = 0;
+      std::size_t most = 0;
+      for (int picture = 0; picture < 60; ++picture) {
+        unlimited = free.draw(*one);
+        limited = bound.draw(*other);
+        ASSERT_LE(held(bound, fast), bound.most_blocks[fast]);
+        most = std::max(most, held(bound, fast));
+      }
+      EXPECT_GT(held(free, fast), bound.most_blocks[fast]) << "the limit must be felt";
+      EXPECT_GT(most, bound.most_blocks[fast] * 2 / 3) << "planes move as far as there is room";
+      EXPECT_GT(limited, unlimited);
+    }
 }
 
 TEST(Balance, PredictingLearnsWhatExpectationDoesNotKnow) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <random>
 
+#include "compositor/balance/tree.h"
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/thread_link.h"
@@ -224,6 +225,30 @@ TEST(Rebalancer, ARefusedRequestMovesNothingAndLeavesTheGroupAlive) {
       EXPECT_LE(picture_by_one(texture, request, image), 1e-5);
     }
   });
+}
+
+TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
+  const auto most_held = [](std::size_t memory_left) {
+    Figures figures;
+    std::size_t most = 0;
+    run_ranks(2, [&](Link& link) {
+      const Texture texture = scene();
+      BalanceSettings settings = figures.settings(Balance::predicted);
+      settings.memory_left = [=] { return memory_left; };
+      Rank rank(link, settings);
+      rank.upload(texture);
+      for (int picture = 0; picture < 20; ++picture) {
+        rank.picture(request_of(texture, 0), link.rank() == 0 ? 30 : 1);
+        if (link.rank() != 0) continue;
+        for (const volume::TexelBox& box : volume::boxes(rank.partition, texture.description))
+          most = std::max(most, blocks_in(box));
+      }
+    });
+    return most;
+  };
+  const std::size_t bound = most_held(0), free = most_held(std::size_t(1) << 30);
+  std::printf("the busiest rank holds %zu blocks, and %zu where memory is left\n", bound, free);
+  EXPECT_LT(bound, free);
 }
 
 /// Draws every picture so many times.

@@ -73,9 +73,7 @@ class PredictingBalancer : public Balancer {
     for (std::size_t i = 0; i < weights_.size(); ++i) costs.values()[i] *= double(weights_[i]);
     const CostSums sums(costs);
     const std::vector<double> slow = all_slownesses();
-    const Partition fair =
-        with_room(input.partition, refined(fair_partition(input, sums, slow), input, sums, slow), input.lattice,
-                  input.most_blocks);
+    const Partition fair = fair_with_room(input, sums, slow);
     const std::vector<TexelBox> then = boxes_of(fair, input.lattice);
 
     const double stay_ms = slowest(sums, now, slow), move_ms = slowest(sums, then, slow);
@@ -142,6 +140,27 @@ class PredictingBalancer : public Balancer {
     for (const Slowness& slowness : slowness_)
       result.push_back(slowness.known() && slowness.value() > 0 ? slowness.value() : usual);
     return result;
+  }
+
+  /// A rank that would hold more than it has room for counts as slower, so that the others share the rest
+  /// fairly.
+  static Partition fair_with_room(const BalanceInput& input, const CostSums& sums, std::vector<double> slow) {
+    constexpr int attempts = 8;
+    for (int attempt = 1;; ++attempt) {
+      Partition fair = refined(fair_partition(input, sums, slow), input, sums, slow);
+      if (input.most_blocks.empty()) return fair;
+      const std::vector<TexelBox> boxes = boxes_of(fair, input.lattice);
+      bool fits = true;
+      for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
+        const double over =
+            double(blocks_in(boxes[rank])) / double(std::max<std::size_t>(1, input.most_blocks[rank]));
+        if (over <= 1) continue;
+        slow[rank] *= over;
+        fits = false;
+      }
+      if (fits) return fair;
+      if (attempt == attempts) return with_room(input.partition, fair, input.lattice, input.most_blocks);
+    }
   }
 
   static Partition fair_partition(const BalanceInput& input, const CostSums& sums,

@@ -452,6 +452,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   std::vector<Outcome> outcomes = agree(mine, filling);
   if (rebalancer_ && order.type == MessageType::render && !first_refusal(outcomes)) {
     std::vector<RankWork> work;
+    work.reserve(outcomes.size());
     for (const Outcome& outcome : outcomes)
       work.push_back({outcome.counts.render_ms, outcome.counts.samples_taken});
     rebalancer_->after_picture(rendered_, work);
@@ -501,6 +502,7 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
   if (opaque_tiles_) {
     std::vector<std::uint32_t> notes;
+    notes.reserve(outcomes.size());
     for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
     opaque_tiles_->clear_hidden(image_, notes);
   }

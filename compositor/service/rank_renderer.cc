@@ -267,6 +267,7 @@ std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderReq
   return refusing([&] {
     validate(volume.bricks.description(), request);
     std::vector<Rect> result;
+    result.reserve(std::size_t(ranks_));
     for (int rank = 0; rank < ranks_; ++rank)
       result.push_back(footprint(request, volume.bricks.description(), volume.tree.box(rank)));
     return result;

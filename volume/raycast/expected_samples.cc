@@ -1,5 +1,7 @@
 #include "volume/raycast/expected_samples.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -25,7 +27,7 @@ class Visibility {
   Visibility(const BrickStore& store, const RenderRequest& request)
       : store_(store),
         map_(std::get_if<LinearMap>(&request.classification)),
-        keeps_all_(request.op == Operator::min) {
+        keeps_all_(request.op == Operator::min || !request.leave_out.empty_blocks) {
     if (const auto* function = std::get_if<TransferFunction>(&request.classification))
       table_.emplace(*function, store.description().type, neutral_value(request.op));
     for (const Level& level : SegmentScene(store.description(), request).levels) levels_.push_back(level.value);
@@ -58,7 +60,8 @@ double sample_density(const RenderRequest& request, const Vec3& t) {
     if (dot(plane.normal, t) + plane.offset < 0) return 0;
   const Matrix4& m = request.texture_to_clip;
   const Vec4 clip = transform_point(m, t);
-  if (!(clip[3] > 0)) return 0;
+  // In front of the near plane and behind the far one there are none either.
+  if (!(clip[3] > 0) || std::abs(clip[2]) > clip[3]) return 0;
   const double x = clip[0] / clip[3], y = clip[1] / clip[3];
   const double column = request.viewport.x + request.viewport.width * (x + 1) / 2;
   const double row = request.viewport.y + request.viewport.height * (y + 1) / 2;
@@ -94,26 +97,33 @@ void add_expected_samples(const BrickStore& store, const RenderRequest& request,
   const Visibility shows(store, request);
   const auto& first = store.first_block();
   const auto& counts = store.block_counts();
-  std::size_t index = 0;
-  for (int z = 0; z < counts[2]; ++z)
-    for (int y = 0; y < counts[1]; ++y)
-      for (int x = 0; x < counts[0]; ++x, ++index) {
-        const std::array<int, 3> place{first[0] + x, first[1] + y, first[2] + z};
-        bool own = true;
-        double size = 1;  // in units of texture space
-        Vec3 middle{};
-        std::array<int, 3> cube{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const int low = lattice.low[k] + place[k] * block, high = std::min(low + block, lattice.high[k]);
-          own = own && low >= store.owned_cells().low[k] && low < store.owned_cells().high[k];
-          size *= double(high - low) / volume.size[k];
-          middle[k] = (0.5 * (low + high) + 0.5) / volume.size[k];
-          cube[k] = place[k] * block / costs.edge();
+  // Layers of cubes beside each other: no two tasks add to one cube.
+  const int blocks_per_cube = costs.edge() / block;
+  const int last_layer = counts[2] > 0 ? (first[2] + counts[2] - 1) / blocks_per_cube : -1;
+  tbb::parallel_for(first[2] / blocks_per_cube, last_layer + 1, [&](int layer) {
+    const int from = std::max(0, layer * blocks_per_cube - first[2]);
+    const int to = std::min(counts[2], (layer + 1) * blocks_per_cube - first[2]);
+    std::size_t index = std::size_t(from) * std::size_t(counts[1]) * std::size_t(counts[0]);
+    for (int z = from; z < to; ++z)
+      for (int y = 0; y < counts[1]; ++y)
+        for (int x = 0; x < counts[0]; ++x, ++index) {
+          const std::array<int, 3> place{first[0] + x, first[1] + y, first[2] + z};
+          bool own = true;
+          double size = 1;  // in units of texture space
+          Vec3 middle{};
+          std::array<int, 3> cube{};
+          for (std::size_t k = 0; k < 3; ++k) {
+            const int low = lattice.low[k] + place[k] * block, high = std::min(low + block, lattice.high[k]);
+            own = own && low >= store.owned_cells().low[k] && low < store.owned_cells().high[k];
+            size *= double(high - low) / volume.size[k];
+            middle[k] = (0.5 * (low + high) + 0.5) / volume.size[k];
+            cube[k] = place[k] * block / costs.edge();
+          }
+          if (!own) continue;
+          const double samples = size * sample_density(request, middle);
+          costs.values()[costs.index(cube)] += shows(index) ? samples : passing * samples;
         }
-        if (!own) continue;
-        const double samples = size * sample_density(request, middle);
-        costs.values()[costs.index(cube)] += shows(index) ? samples : passing * samples;
-      }
+  });
 }
 
 }  // namespace understudy::volume

@@ -52,7 +52,10 @@ int allowed_cut(const Partition& partition, std::size_t split, const TexelBox& b
 
 std::size_t blocks_in(const TexelBox& box) {
   std::size_t blocks = 1;
-  for (std::size_t k = 0; k < 3; ++k) blocks *= std::size_t((box.high[k] - box.low[k] + block - 1) / block);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int layers = (box.high[k] - box.low[k] + block - 1) / block;
+    blocks *= std::size_t(layers);
+  }
   return blocks;
 }
 
@@ -62,13 +65,13 @@ std::vector<TexelBox> boxes_of(const Partition& partition, const TexelBox& latti
   walk_splits(walked, lattice, [&](std::size_t i, const TexelBox& box) {
     const Partition::Split& split = walked.splits[i];
     const auto axis = std::size_t(split.axis);
-    if (split.low < 0) {
-      boxes[std::size_t(~split.low)] = box;
-      boxes[std::size_t(~split.low)].high[axis] = split.cut;
+    if (const int rank = ~split.low; rank >= 0) {
+      boxes[std::size_t(rank)] = box;
+      boxes[std::size_t(rank)].high[axis] = split.cut;
     }
-    if (split.high < 0) {
-      boxes[std::size_t(~split.high)] = box;
-      boxes[std::size_t(~split.high)].low[axis] = split.cut;
+    if (const int rank = ~split.high; rank >= 0) {
+      boxes[std::size_t(rank)] = box;
+      boxes[std::size_t(rank)].low[axis] = split.cut;
     }
   });
   return boxes;

@@ -1,132 +1,186 @@
-// understudy-bench-scaling: what a frame would cost on 1 to 1,024 ranks, on paper. The partition, the
-// footprints and the exchange's messages are those that the nodes would really use; only time is modelled: so
-// many nanoseconds a sample, so many a message, a byte and a blended pixel. Prints one JSON object a line.
+// understudy-bench-scaling: what a picture would cost on 1 to 1,024 ranks. Partition, rays, footprints and the
+// bytes of every message are those of the nodes (frame_parts.h); time alone is modelled (frame_time.h). Prints
+// one JSON object a line.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "apps/bench/frame_parts.h"
+#include "apps/bench/frame_time.h"
 #include "compositor/exchange/cost.h"
-#include "compositor/exchange/schedule.h"
-#include "volume/footprint.h"
+#include "volume/block_costs.h"
+#include "volume/brick/brick_store.h"
+#include "volume/file/texel_stream.h"
+#include "volume/file/volume_file.h"
 #include "volume/kd_tree.h"
-#include "volume/matrix.h"
+#include "volume/orbit_camera.h"
+#include "volume/partition.h"
+#include "volume/raycast/expected_samples.h"
+#include "volume/transfer_knots.h"
 
 namespace {
 
 using namespace understudy;
 
 struct Settings {
-  int side = 512;     ///< voxels, along each axis
-  bool weak = false;  ///< `side` is for one rank; the volume grows with their number
+  int side = 512;                ///< voxels, along each axis
+  bool weak = false;             ///< `side` is for one rank; the volume grows with their number
+  bool growing_picture = false;  ///< so does `pixels`, with the volume's side
   int pixels = 1024;
   int most_ranks = 1024;
-  double ns_per_sample = 2;
-  double latency = 5e-6;
+  int cast_ranks = 0;  ///< up to so many ranks boxes are cast
+  std::string volume;  ///< a file instead of the cube
+  std::string table = "vessels";
+  bool by_cost = false;
+  bench::Costs costs;
   double gigabits = 100;
-  double ns_per_pixel = 2;
 };
 
-volume::VolumeDescription cube(int side) {
+/// What is drawn: texels, where there are any, and one picture.
+struct Scene {
   volume::VolumeDescription description;
-  description.size = {side, side, side};
-  description.stored = {{0, 0, 0}, description.size};
-  return description;
-}
-
-/// The eye two edges away, 30 degrees around and 25 above, with an opening of 40 degrees; in units of the edge.
-volume::RenderRequest view(int pixels) {
-  constexpr double degree = std::numbers::pi / 180;
-  const volume::Vec3 back{std::sin(30 * degree) * std::cos(25 * degree), std::sin(25 * degree),
-                          std::cos(30 * degree) * std::cos(25 * degree)};
-  const volume::Vec3 right{std::cos(30 * degree), 0, -std::sin(30 * degree)};
-  const volume::Vec3 up = volume::cross(back, right);
-  const double near = 0.5, far = 4, f = 1 / std::tan(20 * degree);
-  const volume::Matrix4 projection{
-      f, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), 2 * far * near / (near - far), 0, 0, -1, 0};
-  const volume::Matrix4 camera{right[0], right[1], right[2], 0,  up[0], up[1], up[2], 0,
-                               back[0],  back[1],  back[2],  -2, 0,     0,     0,     1};
-  const volume::Matrix4 centred{1, 0, 0, -0.5, 0, 1, 0, -0.5, 0, 0, 1, -0.5, 0, 0, 0, 1};
+  std::vector<std::byte> texels;
   volume::RenderRequest request;
-  request.texture_to_clip = volume::multiply(projection, volume::multiply(camera, centred));
-  request.viewport = request.window = {0, 0, pixels, pixels};
-  return request;
-}
-
-struct Ray {
-  volume::Vec3 origin{};
-  volume::Vec3 direction{};  ///< of length one
 };
 
-Ray ray_through(const volume::Matrix4& clip_to_texture, double x, double y) {
-  const auto point = [&](double z) {
-    const volume::Vec4 p = volume::transform_point(clip_to_texture, {x, y, z});
-    return volume::Vec3{p[0] / p[3], p[1] / p[3], p[2] / p[3]};
-  };
-  const volume::Vec3 near = point(-1);
-  const volume::Vec3 way = volume::subtract(point(1), near);
-  return {near, volume::scale(way, 1 / volume::length(way))};
-}
-
-/// How long the ray is in the box, in edges of the volume.
-double length_within(const Ray& ray, const volume::Box& box) {
-  double enter = 0, leave = std::numeric_limits<double>::max();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double low = (std::max(box.low[k], 0.0) - ray.origin[k]) / ray.direction[k];
-    const double high = (std::min(box.high[k], 1.0) - ray.origin[k]) / ray.direction[k];
-    enter = std::max(enter, std::min(low, high));
-    leave = std::min(leave, std::max(low, high));
+/// Every sample of it shows something, and no ray ends before it leaves the cube.
+Scene dense_cube(const Settings& settings, int ranks) {
+  const double growth = settings.weak ? std::cbrt(double(ranks)) : 1;
+  const int side = int(std::lround(settings.side * growth));
+  const int pixels = settings.growing_picture ? int(std::lround(settings.pixels * growth)) : settings.pixels;
+  Scene scene;
+  scene.description.id = 1;
+  scene.description.size = {side, side, side};
+  scene.description.stored = {{0, 0, 0}, scene.description.size};
+  scene.request = volume::orbit_request(scene.description, {1, 1, 1}, {}, pixels, pixels, 1);
+  constexpr float faint = 1e-3F;
+  scene.request.classification =
+      volume::TransferFunction{0, 1, {{faint, faint, faint, faint}, {faint, faint, faint, faint}}};
+  scene.request.termination = 0;
+  if (ranks <= settings.cast_ranks) {
+    scene.texels.resize(std::size_t(side) * std::size_t(side) * std::size_t(side));
+    for (std::size_t i = 0; i < scene.texels.size(); ++i) scene.texels[i] = std::byte(i * 2654435761U >> 24);
   }
-  return std::max(0.0, leave - enter);
+  return scene;
 }
 
-nlohmann::ordered_json simulate(const Settings& settings, int ranks) {
-  const int side = settings.weak ? int(std::lround(settings.side * std::cbrt(double(ranks)))) : settings.side;
-  const volume::VolumeDescription description = cube(side);
-  const volume::KdTree tree(description, ranks);
-  const volume::RenderRequest request = view(settings.pixels);
-  std::vector<volume::Rect> footprints;
-  std::vector<double> samples(std::size_t(ranks), 0.0);
-  const std::vector<compositor::Rank> order = tree.visibility_order(request.texture_to_clip);
-  const auto clip_to_texture = volume::inverse(request.texture_to_clip);
-  // Every fourth ray each way stands for sixteen.
-  constexpr int stride = 4;
-  for (int rank = 0; rank < ranks; ++rank) {
-    const volume::Rect& rect = footprints.emplace_back(volume::footprint(request, description, tree.box(rank)));
-    const volume::Box box = volume::texture_box(description, tree.box(rank));
-    for (int y = rect.y + (stride - rect.y % stride) % stride; y < rect.y + rect.height; y += stride)
-      for (int x = rect.x + (stride - rect.x % stride) % stride; x < rect.x + rect.width; x += stride) {
-        const auto clip = [&](int pixel) { return (2.0 * pixel + 1) / settings.pixels - 1; };
-        samples[std::size_t(rank)] +=
-            stride * stride * side * length_within(ray_through(*clip_to_texture, clip(x), clip(y)), box);
+Scene volume_in_file(const Settings& settings) {
+  Scene scene;
+  auto file = volume::open_volume(settings.volume);
+  const volume::FileDescription of_file = file->description();
+  volume::VolumeDescription& description = scene.description;
+  description.id = 1;
+  description.size = of_file.size;
+  description.stored = {{0, 0, 0}, description.size};
+  volume::TexelStream stream(std::move(file), {}, description.stored);
+  description.type = stream.mapping().type;
+  while (!stream.done()) {
+    const auto slab = stream.next(std::size_t(16) << 20);
+    scene.texels.insert(scene.texels.end(), slab.texels.begin(), slab.texels.end());
+  }
+  scene.request = volume::orbit_request(description, of_file.spacing, {}, settings.pixels, settings.pixels, 1);
+  scene.request.classification = volume::sampled(volume::knots_named(settings.table), 0, 1, 1);
+  return scene;
+}
+
+/// How many samples are to be expected where.
+volume::BlockCosts expected_costs(const Scene& scene, bool dense) {
+  const volume::TexelBox lattice = volume::cell_lattice(scene.description).box();
+  constexpr int block = volume::BrickStore::block_cells;
+  if (!dense) {
+    volume::BlockCosts costs(lattice, block);
+    volume::BrickStore store(scene.description, lattice);
+    store.add_slices(scene.description.stored, scene.texels);
+    store.finish();
+    volume::add_expected_samples(store, scene.request, costs);
+    return costs;
+  }
+  // A hundred cubes along each axis tell where the rays lie more densely.
+  const int longest = *std::ranges::max_element(scene.description.size);
+  volume::BlockCosts costs(lattice, block * std::max(1, longest / (100 * block)));
+  const std::array<int, 3>& counts = costs.counts();
+  for (int z = 0; z < counts[2]; ++z)
+    for (int y = 0; y < counts[1]; ++y)
+      for (int x = 0; x < counts[0]; ++x) {
+        volume::TexelBox cells;
+        double size = 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const int at = std::array{x, y, z}[k];
+          cells.low[k] = lattice.low[k] + costs.edge() * at;
+          cells.high[k] = std::min(cells.low[k] + costs.edge(), lattice.high[k]);
+          size *= double(cells.high[k] - cells.low[k]) / scene.description.size[k];
+        }
+        volume::Vec3 middle;
+        for (std::size_t k = 0; k < 3; ++k)
+          middle[k] = (0.5 * (cells.low[k] + cells.high[k]) + 0.5) / scene.description.size[k];
+        costs.values()[costs.index({x, y, z})] = size * volume::sample_density(scene.request, middle);
       }
+  return costs;
+}
+
+volume::Partition partition_of(const Settings& settings, const Scene& scene, int ranks) {
+  if (!settings.by_cost) return volume::by_blocks(scene.description, ranks);
+  const volume::BlockCosts costs = expected_costs(scene, settings.volume.empty());
+  return volume::by_cost(scene.description, ranks, volume::CostSums(costs));
+}
+
+nlohmann::ordered_json exchange_row(const Settings& settings, const bench::FrameParts& parts,
+                                    compositor::Algorithm algorithm, double& render_ms) {
+  // Rank 0 has the application's machine to itself.
+  const compositor::CountedExchange counted = bench::counted(
+      parts, algorithm, compositor::Home::gathered, volume::Operator::over, compositor::Layout::rgba32f);
+  const bench::FrameTime time = bench::time_of(parts, counted, settings.costs);
+  render_ms = 1e3 * time.render;
+  std::uint64_t busiest = 0;
+  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
+  for (const compositor::RankTraffic& rank : counted.ranks)
+    busiest = std::max({busiest, rank.bytes_sent, rank.bytes_received});
+  for (const compositor::CountedRound& round : counted.rounds) {
+    std::uint64_t bytes = 0, most = 0;
+    for (const compositor::RankTraffic& rank : round.ranks) {
+      bytes += rank.bytes_sent;
+      most = std::max({most, rank.bytes_sent, rank.bytes_received});
+    }
+    rounds.push_back({{"messages", round.messages.size()}, {"bytes", bytes}, {"busiest", most}});
   }
-  const double most = *std::ranges::max_element(samples);
-  double all = 0;
-  for (const double of_rank : samples) all += of_rank;
-  const compositor::LinkCost link{settings.latency, 8e-9 / settings.gigabits, 1e-9 * settings.ns_per_pixel};
+  return {{"messages", counted.messages},
+          {"bytes", counted.bytes},
+          {"bytes_a_rank", double(counted.bytes) / double(parts.ranks.size())},
+          {"bytes_of_the_busiest", busiest},
+          {"ms", 1e3 * time.exchange},
+          {"rounds", rounds}};
+}
+
+nlohmann::ordered_json simulate(const Settings& settings, const Scene& scene, int ranks) {
+  const volume::KdTree tree(scene.description, partition_of(settings, scene, ranks));
+  const bool cast = !scene.texels.empty();
+  const bench::FrameParts parts = cast ? bench::cast_parts(scene.description, scene.texels, scene.request, tree)
+                                       : bench::parts_of_rays(scene.description, scene.request, tree);
+  std::uint64_t most = 0;
+  for (const bench::RankPart& part : parts.ranks) most = std::max(most, part.samples);
   nlohmann::ordered_json row{{"ranks", ranks},
-                             {"side", side},
-                             {"samples", all},
-                             {"imbalance", most * ranks / all},
-                             {"render_ms", 1e-6 * settings.ns_per_sample * most},
-                             {"one_rank_ms", 1e-6 * settings.ns_per_sample * all}};
+                             {"size", scene.description.size},
+                             {"pixels", scene.request.window.width},
+                             {"parts", cast ? "cast" : "rays"},
+                             {"samples", parts.samples()},
+                             {"imbalance", double(most) * ranks / double(parts.samples())},
+                             {"one_rank_ms", 1e3 * bench::time_on_one_rank(parts, settings.costs)}};
+  double render_ms = 0;
   for (std::size_t a = 0; a < compositor::algorithm_count; ++a) {
     const auto algorithm = compositor::Algorithm(a);
-    const compositor::ExchangeCost cost =
-        compositor::cost(compositor::schedule(algorithm, order, footprints), compositor::Layout::rgba32f, link);
-    constexpr double bytes = 16;
-    row[std::string(compositor::name_of(algorithm))] = {{"messages", cost.messages},
-                                                        {"bytes", bytes * double(cost.pixels_sent)},
-                                                        {"most_bytes", bytes * double(cost.most_pixels_sent)},
-                                                        {"ms", 1e3 * cost.seconds}};
+    row[std::string(compositor::name_of(algorithm))] = exchange_row(settings, parts, algorithm, render_ms);
   }
+  row["render_ms"] = render_ms;
   return row;
 }
 
@@ -134,19 +188,29 @@ nlohmann::ordered_json simulate(const Settings& settings, int ranks) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"models frames of a dense cube on 1 to 1,024 ranks"};
+  CLI::App app{"models pictures of a dense cube, or of a volume in a file, on 1 to 1,024 ranks"};
   app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 8192));
-  app.add_flag("--weak", settings.weak, "that many for each rank");
+  CLI::Option* weak = app.add_flag("--weak", settings.weak, "that many for each rank");
+  app.add_flag("--growing-picture", settings.growing_picture, "with the volume")->needs(weak);
   app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 8192));
   app.add_option("--most-ranks", settings.most_ranks, "powers of two up to here")->check(CLI::Range(1, 1024));
-  app.add_option("--ns-per-sample", settings.ns_per_sample, "of a node's whole processor");
-  app.add_option("--latency", settings.latency, "seconds a message");
-  app.add_option("--gigabits", settings.gigabits, "a second, of each node's line")->check(CLI::PositiveNumber);
-  app.add_option("--ns-per-pixel", settings.ns_per_pixel, "to blend one");
+  app.add_option("--cast-ranks", settings.cast_ranks, "up to so many, boxes are really cast");
+  app.add_option("--volume", settings.volume, "a file, always cast, instead of the cube")->excludes(weak);
+  app.add_option("--table", settings.table, "its transfer function: " + volume::built_in_knots());
+  app.add_flag("--by-cost", settings.by_cost, "boxes that cost the same, instead of as many blocks");
+  app.add_option("--sample", settings.costs.per_sample, "seconds, of a node's whole processor");
+  app.add_option("--latency", settings.costs.latency, "L, seconds");
+  app.add_option("--overhead", settings.costs.overhead, "o, seconds a message, at either end");
+  app.add_option("--gap", settings.costs.gap, "g, seconds between messages");
+  app.add_option("--gigabits", settings.gigabits, "a second, of each node's line: 1/G")
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
+  settings.costs.per_byte = 8e-9 / settings.gigabits;
   try {
+    std::optional<Scene> given;
+    if (!settings.volume.empty()) given = volume_in_file(settings);
     for (int ranks = 1; ranks <= settings.most_ranks; ranks *= 2)
-      fmt::print("{}\n", simulate(settings, ranks).dump());
+      fmt::print("{}\n", simulate(settings, given ? *given : dense_cube(settings, ranks), ranks).dump());
   } catch (const std::exception& error) {
     fmt::print(stderr, "understudy-bench-scaling: {}\n", error.what());
     return 1;

@@ -1,38 +1,137 @@
-"""Frames on 1 to 1,024 ranks, on paper: real partition, footprints and messages, modelled time (scaling.cc says how).
+"""Pictures on 1 to 1,024 ranks, on paper, and on 1 to 8 real ranks of this machine beside what the paper says of them.
 
-Strong: the same cube on more ranks; weak: a cube that grows with them. A node samples in SAMPLE_NS, the line between nodes
-carries 100 Gbit/s with 5 us a message. `value` is rendering on the slowest rank and then the cheapest exchange; beside it
-the speed-up over one rank, its part that every rank really gives (efficiency), and what travels.
+On paper partition, rays and the bytes of every message are the nodes' own and time is modelled (frame_time.h): a node samples
+in SAMPLE_NS, the line between nodes carries 100 Gbit/s, a small message takes 5 us. Strong: the same cube on more ranks; weak:
+a cube that grows with them, and once with it the picture. `value` is rendering on the slowest rank and then the cheapest
+exchange; beside it the speed-up over all samples on one rank, its part that every rank gives (efficiency), and what travels.
+
+The check runs first. Bytes and messages must be equal; of times both are there, and their ratio. Plots and tables go to
+out/bench/scaling/.
 """
 
 import json
+import os
 import subprocess
+from pathlib import Path
 
 import viewers
 
 SAMPLE_NS = 2.0
-CASES = {"strong/512": ["--side", "512"], "strong/2048": ["--side", "2048"], "strong/8192": ["--side", "8192"],
-         "weak/512": ["--side", "512", "--weak"]}
 EXCHANGES = ("serial", "tree", "direct-send", "binary-swap", "radix-k")
+SIDES = (512, 1024, 2048, 4096, 8192)
+CUBES = {**{f"strong/{side}": ["--side", str(side)] for side in SIDES}, "weak/512": ["--side", "512", "--weak"],
+         "weak/512-growing": ["--side", "512", "--weak", "--growing-picture", "--pixels", "512"]}
+PARTITIONS = {"blocks": [], "cost": ["--by-cost"]}
+CAST = {"side": 256, "ranks": 8}
+VESSELS = viewers.ROOT.parent / "shared" / "data" / "aneurism_256x256x256_uint8.raw.gz"
+REAL_RANKS = 8
 
 
-def simulated(options):
-    text = subprocess.run([str(viewers.PROGRAMS / "understudy-bench-scaling"), "--ns-per-sample", str(SAMPLE_NS), *options],
-                          stdout=subprocess.PIPE, text=True, check=True).stdout
+def lines_of(program, options):
+    text = subprocess.run([str(viewers.PROGRAMS / program), *map(str, options)], stdout=subprocess.PIPE, text=True,
+                          check=True).stdout
     return [json.loads(line) for line in text.splitlines()]
 
 
+def link_costs():
+    """What messages, bytes and blending cost between two ranks of this machine, as real_ranks.cc takes it."""
+    environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return subprocess.run(["mpirun", "-n", "2", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1",
+                           "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
+                           str(viewers.PROGRAMS / "understudy-bench-link")],
+                          stdout=subprocess.PIPE, text=True, check=True, env=environment).stdout.strip()
+
+
+def checked(folder):
+    """Rows of real ranks. Raises RuntimeError where a byte or a message is not as predicted."""
+    costs, *pictures = lines_of("understudy-bench-real-ranks", ["--most-ranks", REAL_RANKS, "--costs", link_costs()])
+    for key in ("bytes", "messages", "samples"):
+        wrong = [picture for picture in pictures if picture[key] != picture[f"{key}_counted"]]
+        if wrong:
+            raise RuntimeError(f"{key} of {len(wrong)} pictures on real ranks are not those predicted: {wrong[0]}")
+    print(f"scaling: {len(pictures)} pictures on real ranks: bytes, messages and samples are those predicted")
+    print("scaling: " + ", ".join(f"{key} {value:.3g}" for key, value in costs.items()))
+    (folder / "real.json").write_text(json.dumps({"costs": costs, "pictures": pictures}), encoding="utf-8")
+    (folder / "real.md").write_text(real_table(pictures), encoding="utf-8")
+    return [{"name": f"scaling/real/{picture['scene']}/{picture['exchange']}/{picture['home']}/{picture['ranks']} ranks",
+             "value": picture["frame_ms_measured"], "unit": "ms", "predicted_ms": picture["frame_ms"],
+             "measured_to_predicted": picture["frame_ms_measured"] / picture["frame_ms"],
+             **{key: picture[key] for key in ("render_ms", "render_ms_measured", "exchange_ms", "exchange_ms_measured",
+                                              "bytes", "bytes_counted", "messages", "messages_counted")}}
+            for picture in pictures]
+
+
+def real_table(pictures):
+    """By number of ranks, over all exchanges and both ways home: the median of what was measured over what was predicted."""
+    lines = ["| ranks | messages | bytes | render ms: predicted | measured | ratio | exchange ms: predicted | measured | ratio "
+             "| frame ms: predicted | measured | ratio |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
+    for ranks in range(1, REAL_RANKS + 1):
+        chosen = [picture for picture in pictures if picture["ranks"] == ranks and picture["scene"] == "lobes"]
+        usual = next(picture for picture in chosen if (picture["exchange"], picture["home"]) == ("direct-send", "direct"))
+        cells = [str(ranks), str(usual["messages"]), str(usual["bytes"])]
+        for key in ("render_ms", "exchange_ms", "frame_ms"):
+            predicted, measured = usual[key], usual[f"{key}_measured"]
+            ratios = sorted(picture[f"{key}_measured"] / picture[key] for picture in chosen if picture[key] > 0)
+            among = f" ({ratios[0]:.2f} to {ratios[-1]:.2f})" if ratios else ""
+            cells += [f"{predicted:.2f}", f"{measured:.2f}", f"{measured / predicted:.2f}{among}" if predicted else "-"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def simulated(options):
+    return lines_of("understudy-bench-scaling", ["--sample", SAMPLE_NS * 1e-9, *options])
+
+
+def check_rays():
+    """Raises RuntimeError where boxes that are really cast take other samples or send other bytes than their rays tell."""
+    options = ["--side", CAST["side"], "--most-ranks", CAST["ranks"]]
+    for cast, told in zip(simulated([*options, "--cast-ranks", CAST["ranks"]]), simulated(options)):
+        if {**cast, "parts": ""} != {**told, "parts": ""}:
+            raise RuntimeError(f"what {cast['ranks']} ranks cast is not what their rays tell")
+    print(f"scaling: boxes of 1 to {CAST['ranks']} ranks, really cast, take the samples and send the bytes that their rays tell")
+
+
+def row_of(name, frame):
+    exchange = min(EXCHANGES, key=lambda which: frame[which]["ms"])
+    chosen = frame[exchange]
+    total = frame["render_ms"] + chosen["ms"]
+    speed_up = frame["one_rank_ms"] / total
+    return {"name": f"scaling/{name}/{frame['ranks']} ranks", "value": total, "unit": "ms", "render_ms": frame["render_ms"],
+            "exchange": exchange, "exchange_ms": chosen["ms"], "speed_up": speed_up,
+            "efficiency": speed_up / frame["ranks"], "imbalance": frame["imbalance"], "messages": chosen["messages"],
+            "bytes": chosen["bytes"], "bytes_a_rank": chosen["bytes_a_rank"],
+            "bytes_of_the_busiest": chosen["bytes_of_the_busiest"]}
+
+
+def table(result):
+    lines = ["| scene | partition | ranks | render ms | exchange ms | speed-up | efficiency | imbalance | messages | MB in all "
+             "| MB a rank | MB of the busiest |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
+    for row in result:
+        _, kind, case, partition, ranks = row["name"].split("/")
+        if int(ranks.split()[0]) in (1, 8, 64, 512, 1024):
+            lines.append(f"| {kind} {case} | {partition} | {ranks.split()[0]} | {row['render_ms']:.2f} | "
+                         f"{row['exchange']} {row['exchange_ms']:.2f} | {row['speed_up']:.1f} | {row['efficiency']:.2f} | "
+                         f"{row['imbalance']:.2f} | {row['messages']} | {row['bytes'] / 1e6:.1f} | "
+                         f"{row['bytes_a_rank'] / 1e6:.2f} | {row['bytes_of_the_busiest'] / 1e6:.2f} |")
+    return "\n".join(lines) + "\n"
+
+
 def rows():
-    result = []
-    for case, options in CASES.items():
-        for frame in simulated(options):
-            exchange = min(EXCHANGES, key=lambda name: frame[name]["ms"])
-            chosen = frame[exchange]
-            total = frame["render_ms"] + chosen["ms"]
-            speed_up = frame["one_rank_ms"] / total
-            result.append({"name": f"scaling/{case}/{frame['ranks']} ranks", "value": total, "unit": "ms",
-                           "render_ms": frame["render_ms"], "exchange": exchange, "exchange_ms": chosen["ms"],
-                           "speed_up": speed_up, "efficiency": speed_up / frame["ranks"],
-                           "imbalance": frame["imbalance"], "messages": chosen["messages"], "bytes": chosen["bytes"],
-                           "most_bytes_of_a_rank": chosen["most_bytes"]})
-    return result
+    folder = viewers.OUT / "bench" / "scaling"
+    folder.mkdir(parents=True, exist_ok=True)
+    result = checked(folder)
+    check_rays()
+    runs = {f"{case}/{partition}": simulated([*options, *further])
+            for case, options in CUBES.items() for partition, further in PARTITIONS.items()}
+    if VESSELS.exists():
+        for partition, further in PARTITIONS.items():
+            runs[f"sparse/vessels/{partition}"] = simulated(["--volume", VESSELS, "--most-ranks", 256, *further])
+    else:
+        print(f"scaling/sparse: left out, {VESSELS} is not there")
+    on_paper = [row_of(name, frame) for name, frames in runs.items() for frame in frames]
+    (folder / "table.md").write_text(table(on_paper), encoding="utf-8")
+    (folder / "runs.json").write_text(json.dumps(runs), encoding="utf-8")
+    # Matplotlib is Debian's, whatever python this is.
+    subprocess.run(["/usr/bin/python3", "-B", str(Path(__file__).with_name("scaling_plot.py")), str(folder)],
+                   input=json.dumps(runs), text=True, check=True)
+    return result + on_paper

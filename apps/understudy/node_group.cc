@@ -68,7 +68,8 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
                        // Its session files go when the run's folder goes, whatever happens to it.
                        "--mca", "orte_tmpdir_base", plan.folder.string(), installation.node().string(),
                        "--control", plan.socket.string(), "--exchange", plan.exchange, "--pixels", plan.pixels,
-                       "--backend", plan.backend, "--gpu-memory", plan.gpu_memory, "--balance", plan.balance};
+                       "--home", plan.home, "--backend", plan.backend, "--gpu-memory", plan.gpu_memory,
+                       "--balance", plan.balance};
   command.environment = node_environment(current_environment(), installation);
   command.output = log_of(plan);
   command.own_group = true;

@@ -29,6 +29,7 @@ struct NodeGroupPlan {
   std::string backend = "cpu";  ///< who casts the nodes' rays, as understudy-node takes it
   std::string gpu_memory = "auto";
   std::string balance = "off";  ///< who gets how much of a volume, as understudy-node takes it
+  std::string home = "direct";  ///< how the parts of a picture come to the viewer, as understudy-node takes it
 };
 
 /// Why no nodes can be started here, with the fix, in one line; empty when they can.

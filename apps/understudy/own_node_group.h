@@ -13,6 +13,7 @@ struct OwnNodes {
   std::string pixels = "float";
   std::string backend = "cpu";
   std::string gpu_memory = "auto";
+  std::string home = "direct";
 };
 
 /// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks

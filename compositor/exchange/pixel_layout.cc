@@ -81,19 +81,14 @@ struct Head {
 };
 constexpr std::uint32_t all_pixels = 0xffffffff;
 
-/// So many pixels untouched, then so many that travel; runs go on from row to row.
 struct PixelRun {
   std::uint32_t untouched = 0;
   std::uint32_t touched = 0;
 };
+static_assert(sizeof(PixelRun) == bytes_per_run);
 
 bool of_unknown_length(const Rect& rect) {
   return bytes_of_all_pixels(rect, Layout::rgba32f) <= longest_of_unknown_length;
-}
-
-/// Narrow numbers have none for an untouched pixel under `min`.
-bool needs_runs(Operator op, Layout layout) {
-  return op == Operator::min && layout != Layout::rgba32f;
 }
 
 std::size_t most_bytes(const Rect& rect, Layout layout) {
@@ -172,17 +167,14 @@ PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, La
   if (!of_unknown_length(rect)) layout = Layout::rgba32f;
   const std::size_t pixel = bytes_per_pixel(layout);
   std::vector<PixelRun> runs;
-  std::size_t touched = rect.pixels();
-  if (of_unknown_length(rect) && (!clear_too || needs_runs(op, layout))) {
+  std::size_t touched = 0;
+  if (may_travel_in_runs(rect, op, layout, clear_too)) {
     runs = runs_in(image, rect, volume::neutral_value(op));
-    std::size_t in_runs = 0;
-    for (const PixelRun& run : runs) in_runs += run.touched;
-    if (needs_runs(op, layout) || sizeof(PixelRun) * runs.size() + pixel * in_runs < pixel * rect.pixels())
-      touched = in_runs;
-    else
-      runs.clear();
+    for (const PixelRun& run : runs) touched += run.touched;
   }
-  PixelMessage message(head_bytes + sizeof(PixelRun) * runs.size() + pixel * touched);
+  const MessageLength length = message_length(rect, op, layout, clear_too, runs.size(), touched);
+  if (!length.in_runs) runs.clear();
+  PixelMessage message(length.bytes);
   std::byte* to = put(message.room().data(), std::uint64_t(0));
   to = put(to, runs.empty() ? all_pixels : std::uint32_t(runs.size()));
   if (runs.empty()) {

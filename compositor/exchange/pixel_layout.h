@@ -30,6 +30,37 @@ inline std::size_t bytes_of_all_pixels(const volume::Rect& rect, Layout layout) 
                                                : head_bytes + bytes_per_pixel(layout) * rect.pixels();
 }
 
+/// Before the pixels of a message in runs: for each so many pixels untouched, then so many that travel; runs go
+/// on from row to row, and there is always one, if of nothing.
+constexpr std::size_t bytes_per_run = 8;
+
+/// Narrow numbers have none for an untouched pixel under `min`.
+inline bool must_travel_in_runs(volume::Operator op, Layout layout) {
+  return op == volume::Operator::min && layout != Layout::rgba32f;
+}
+
+/// Whether a message about `rect` may leave pixels out.
+inline bool may_travel_in_runs(const volume::Rect& rect, volume::Operator op, Layout layout, bool clear_too) {
+  return bytes_of_all_pixels(rect, Layout::rgba32f) <= longest_of_unknown_length &&
+         (!clear_too || must_travel_in_runs(op, layout));
+}
+
+struct MessageLength {
+  std::size_t bytes = 0;
+  bool in_runs = false;  ///< only touched pixels travel; else all of them
+};
+
+/// What encode_pixels() makes of a rectangle of whose pixels `touched` are touched, in `runs` runs. Where
+/// nothing may be left out, neither is looked at.
+inline MessageLength message_length(const volume::Rect& rect, volume::Operator op, Layout layout,
+                                    bool clear_too, std::size_t runs, std::size_t touched) {
+  const std::size_t all = bytes_of_all_pixels(rect, layout);
+  if (!may_travel_in_runs(rect, op, layout, clear_too)) return {all, false};
+  const std::size_t in_runs = head_bytes + bytes_per_run * runs + bytes_per_pixel(layout) * touched;
+  if (must_travel_in_runs(op, layout) || in_runs < all) return {in_runs, true};
+  return {all, false};
+}
+
 /// One message, on its way out or on its way in.
 class PixelMessage {
  public:

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compositor/exchange/cost.h"
+#include "compositor/exchange/counted_exchange.h"
 #include "compositor/exchange/thread_link.h"
 #include "tests/compositor/forwarding_link.h"
 #include "volume/raycast/ray_caster.h"
@@ -434,6 +435,104 @@ TEST(Exchange, CostOfAFullPictureIsThatOfThePapers) {
   // Halves, quarters, eighths: as many pixels, and 3 messages of each rank instead of 7.
   EXPECT_EQ(of(Algorithm::binary_swap).pixels_sent, (ranks - 1) * picture + strips_home);
   EXPECT_EQ(of(Algorithm::binary_swap).messages, ranks * 3 + ranks - 1);
+}
+
+// Keeps the length of every message that one rank sends, and of those it receives.
+class RecordingLink : public testing::ForwardingLink {
+ public:
+  struct Sent {
+    Rank to = 0;
+    std::uint64_t bytes = 0;
+    bool operator==(const Sent&) const = default;
+  };
+
+  using ForwardingLink::ForwardingLink;
+  void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
+    for (const Outgoing& message : outgoing) sent.push_back({message.to, message.bytes.size()});
+    ForwardingLink::transfer(outgoing, incoming);
+    for (const Incoming& message : incoming) received += *message.received;
+  }
+
+  std::vector<Sent> sent;
+  std::uint64_t received = 0;
+};
+
+// Plays the schedule, and compares each message with what was counted beforehand.
+void expect_counted(const Scene& scene, const Schedule& plan, Layout layout,
+                    const std::vector<bool>& reached_by = {}) {
+  std::vector<PixelMask> masks;
+  for (const Image& image : scene.images) masks.push_back(mask_of(image.view(), scene.op));
+  const CountedExchange counted = counted_exchange(plan, masks, scene.op, layout);
+  std::vector<float> memory(reached_by.empty() ? 0 : 4 * plan.whole.pixels());
+  std::uint64_t told = 0;
+  run_ranks(int(scene.images.size()), [&](Link& link) {
+    RecordingLink recording(link);
+    const auto me = std::size_t(link.rank());
+    const bool reaches = !reached_by.empty() && (me == 0 || reached_by[me]);
+    const Exchanged done = exchange(scene.images[me], plan, scene.op, layout, recording,
+                                    reaches ? std::span(memory) : std::span<float>());
+    if (me == 0) told = done.bytes;
+    std::vector<RecordingLink::Sent> expected;
+    for (const CountedRound& round : counted.rounds)
+      for (const CountedMessage& message : round.messages)
+        if (message.from == link.rank()) expected.push_back({message.to, message.bytes});
+    EXPECT_EQ(recording.sent, expected);
+    EXPECT_EQ(recording.sent.size(), counted.ranks[me].messages_sent);
+    EXPECT_EQ(recording.received, counted.ranks[me].bytes_received);
+  });
+  EXPECT_EQ(told, counted.bytes);
+  EXPECT_EQ(cost(plan, layout, {}).messages, counted.messages);
+  std::uint64_t of_rounds = 0, of_ranks = 0;
+  for (const RankTraffic& rank : counted.ranks) of_ranks += rank.bytes_sent;
+  for (const CountedRound& round : counted.rounds)
+    for (const RankTraffic& rank : round.ranks) of_rounds += rank.bytes_received;
+  EXPECT_EQ(of_rounds, counted.bytes);
+  EXPECT_EQ(of_ranks, counted.bytes);
+}
+
+TEST(CountedExchange, EqualsEveryMessageOfEveryAlgorithmLayoutOperatorAndRankCount) {
+  for (const Layout layout : {Layout::rgba32f, Layout::rgba16f, Layout::rgba8})
+    for (std::size_t a = 0; a < algorithm_count; ++a)
+      for (int ranks = 1; ranks <= 16; ++ranks)
+        for (const Operator op : all_operators)
+          for (unsigned trial = 0; trial < 3; ++trial) {
+            // Narrow numbers follow the same masks: of them one kind for each number of ranks will do.
+            if (layout != Layout::rgba32f && trial != unsigned(ranks) % 3) continue;
+            const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
+            SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
+            Scene scene = random_scene(op, ranks, seed);
+            for (Image& image : scene.images)
+              for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
+                // What is touched, and how much of it; never so faint that a byte would round it away.
+                const bool touched = trial == 0 || (trial == 1 ? image.rgba[p + 3] > 0.5F : p / 4 % 11 == 0);
+                for (std::size_t c = p; c < p + 4; ++c)
+                  image.rgba[c] = touched ? 0.25F + image.rgba[c] / 2 : volume::neutral_value(op);
+              }
+            Schedule plan = schedule_of(scene, Algorithm(a));
+            plan.clear_pixels_travel = trial == 2 && seed % 2 == 0;
+            expect_counted(scene, plan, layout);
+            std::vector<bool> reached_by;
+            for (int rank = 0; rank < ranks; ++rank)
+              reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
+            write_home(plan, reached_by);
+            expect_counted(scene, plan, layout, reached_by);
+            if (HasFailure()) return;
+          }
+}
+
+TEST(CountedExchange, LeavesOutOfTheCostOfFootprintsWhatNoSampleHasReached) {
+  const Scene scene = random_scene(Operator::over, 12, 8);
+  const Schedule plan = schedule_of(scene, Algorithm::radix_k);
+  std::vector<PixelMask> nothing, everything;
+  for (const Image& image : scene.images) {
+    nothing.emplace_back(image.rect);
+    std::ranges::fill(everything.emplace_back(image.rect).touched, std::uint8_t(1));
+  }
+  const ExchangeCost bound = cost(plan, Layout::rgba32f, {});
+  EXPECT_EQ(counted_exchange(plan, nothing, Operator::over, Layout::rgba32f).bytes,
+            bound.messages * (head_bytes + bytes_per_run));
+  EXPECT_LE(counted_exchange(plan, everything, Operator::over, Layout::rgba32f).bytes, bound.bytes_sent);
+  EXPECT_THROW(counted_exchange(plan, {}, Operator::over, Layout::rgba32f), std::invalid_argument);
 }
 
 TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/bench/frame_parts.h"
 #include "compositor/service/linked.h"
 #include "tests/compositor/group_scene.h"
 
@@ -164,6 +165,38 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
                 static_cast<unsigned long long>(rendered.counts.bytes_exchanged));
     EXPECT_LE(apart, bound) << options[1];
   }
+}
+
+TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
+  const Texture texture = some_texture();
+  const auto count = [&](const volume::RenderRequest& request, int ranks, Algorithm algorithm, Home home) {
+    const volume::KdTree tree(texture.description, ranks);
+    return bench::counted(bench::cast_parts(texture.description, texture.texels, request, tree), algorithm,
+                          home, request.op, Layout::rgba32f);
+  };
+  for (int ranks = 1; ranks <= 8; ++ranks)
+    for (std::size_t a = 0; a < algorithm_count; ++a) {
+      // All algorithms on some numbers of ranks, one on the others; each way home for each of both. (Groups
+      // take seconds to start; `./run bench scaling` has all of them.)
+      const bool all_algorithms = ranks == 2 || ranks == 3 || ranks == 5 || ranks == 8;
+      if (!all_algorithms && a != std::size_t(ranks) % algorithm_count) continue;
+      const Home home = (ranks + int(a)) % 2 == 0 ? Home::direct : Home::gathered;
+      const std::string name(name_of(Algorithm(a))), way = home == Home::direct ? "direct" : "gathered";
+      SCOPED_TRACE(::testing::Message() << ranks << " ranks, " << name << ", " << way);
+      const ScratchFolder folder;
+      const std::string path = folder / "control";
+      Launcher launcher(path);
+      MpiGroup group(ranks, path, {"--exchange", name, "--home", way});
+      const auto linked = linked_service(path, 60'000);
+      upload(*linked, texture);
+      for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {
+        volume::RenderRequest request = some_request(texture, op);
+        const CountedExchange counted = count(request, ranks, Algorithm(a), home);
+        const Rendered rendered = linked->render(request);
+        EXPECT_EQ(rendered.counts.bytes_exchanged, counted.bytes);
+        EXPECT_EQ(rendered.counts.messages, counted.messages);
+      }
+    }
 }
 
 TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {

@@ -1,0 +1,249 @@
+// understudy-bench-real-ranks: pictures of real node groups on this machine, beside what the model
+// (frame_parts.h, frame_time.h) said of them: bytes and messages, to be equal, and times. Prints one JSON
+// object a line. The costs of messages, bytes and blending are those that understudy-bench-link printed; what a
+// sample and a ray cost is measured on one rank.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/bench/frame_parts.h"
+#include "apps/bench/frame_time.h"
+#include "apps/understudy/own_node_group.h"
+#include "compositor/service/loading_service.h"
+#include "volume/file/synthetic.h"
+#include "volume/file/texel_stream.h"
+#include "volume/orbit_camera.h"
+#include "volume/transfer_knots.h"
+
+namespace {
+
+using namespace understudy;
+using compositor::Algorithm;
+using compositor::Home;
+
+struct Settings {
+  int most_ranks = 8;
+  int side = 128;
+  int pixels = 512;
+  int pictures = 8;
+  int rounds = 1;
+  int cores = int(std::max(1U, std::thread::hardware_concurrency()));
+  std::string costs;
+};
+
+/// A volume and one picture of it.
+struct Scene {
+  std::string name;
+  compositor::LoadRequest load;
+  std::vector<std::byte> texels;
+  volume::RenderRequest request;
+  volume::RenderRequest sparser;  ///< the same rays with a quarter of the samples
+};
+
+Scene scene_of(const Settings& settings, volume::VolumeId id, const std::string& kind) {
+  Scene scene;
+  scene.name = kind;
+  scene.load.file = fmt::format("synthetic:{0}x{0}x{0}:u8:{1}", settings.side, kind);
+  volume::VolumeDescription& description = scene.load.volume;
+  description.id = id;
+  description.size = {settings.side, settings.side, settings.side};
+  description.stored = {{0, 0, 0}, description.size};
+  volume::TexelStream stream(volume::open_synthetic(scene.load.file), {}, description.stored);
+  description.type = stream.mapping().type;
+  while (!stream.done()) {
+    const auto slab = stream.next(std::size_t(16) << 20);
+    scene.texels.insert(scene.texels.end(), slab.texels.begin(), slab.texels.end());
+  }
+  const auto request = [&](double step) {
+    volume::RenderRequest made =
+        volume::orbit_request(description, {1, 1, 1}, {}, settings.pixels, settings.pixels, step);
+    made.classification = volume::sampled(volume::knots_named("grey"), 0, 1, step);
+    return made;
+  };
+  scene.request = request(1);
+  scene.sparser = request(4);
+  // Nothing is left out of the volume that is nowhere empty, so that its time is that of all samples.
+  if (kind == "lobes") scene.request.termination = scene.sparser.termination = 0;
+  return scene;
+}
+
+/// The shortest of several pictures, in milliseconds.
+struct Measured {
+  double render = std::numeric_limits<double>::max();
+  double exchange = render;
+  double frame = render;
+  volume::FrameCounts counts;
+};
+
+void draw(compositor::LoadingService& service, const volume::RenderRequest& request, int pictures,
+          Measured& measured) {
+  for (int picture = 0; picture < pictures; ++picture) {
+    const auto start = std::chrono::steady_clock::now();
+    measured.counts = service.render(request).counts;
+    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+    measured.frame = std::min(measured.frame, taken.count());
+    measured.render = std::min(measured.render, measured.counts.render_ms);
+    measured.exchange = std::min(measured.exchange, measured.counts.composite_ms);
+  }
+}
+
+struct Way {
+  int ranks = 1;
+  Algorithm algorithm{};
+  Home home{};
+  auto operator<=>(const Way&) const = default;
+};
+
+const char* name_of(Home home) {
+  return home == Home::direct ? "direct" : "gathered";
+}
+
+struct WayMeasured {
+  std::vector<Measured> scenes;
+  Measured sparser;  ///< of the last scene
+};
+
+void measure(const Settings& settings, const std::vector<Scene>& scenes, const Way& way,
+             WayMeasured& measured) {
+  measured.scenes.resize(scenes.size());
+  launcher::OwnNodes nodes;
+  nodes.nodes = way.ranks;
+  nodes.exchange = compositor::name_of(way.algorithm);
+  nodes.home = name_of(way.home);
+  launcher::with_own_nodes(nodes, [&](const std::string& socket) {
+    constexpr std::chrono::minutes patience{5};
+    const auto service =
+        compositor::linked_loading_service(socket, {patience, patience, patience, patience, patience});
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const Scene& scene = scenes[i];
+      service->begin_load(scene.load);
+      while (!std::ranges::all_of(service->continue_load(scene.load.volume.id), &compositor::RankLoad::done)) {
+      }
+      draw(*service, scene.request, settings.pictures, measured.scenes[i]);
+      if (i + 1 == scenes.size() && way.ranks == 1)
+        draw(*service, scene.sparser, settings.pictures, measured.sparser);
+    }
+  });
+}
+
+bench::Costs link_costs(const Settings& settings) {
+  bench::Costs costs;
+  costs.cores = settings.cores;
+  if (settings.costs.empty()) return costs;
+  const auto given = nlohmann::json::parse(settings.costs);
+  // What one small message takes from rank to rank is a processor's time at both ends.
+  costs.latency = 0;
+  costs.overhead = costs.gap = double(given.at("latency")) / 2;
+  costs.per_byte = given.at("per_byte");
+  costs.per_byte_packed = given.at("per_byte_packed");
+  costs.per_byte_unpacked = given.at("per_byte_unpacked");
+  costs.per_pixel_blended = given.at("per_pixel_blended");
+  costs.per_pixel_written = given.at("per_pixel_written");
+  return costs;
+}
+
+/// From the times of one rank, which has all cores to itself.
+void calibrate(bench::Costs& costs, const Settings& settings, const Scene& scene, const WayMeasured& one_rank) {
+  const volume::KdTree tree(scene.load.volume, 1);
+  const bench::FrameParts all = bench::cast_parts(scene.load.volume, scene.texels, scene.request, tree),
+                          few = bench::cast_parts(scene.load.volume, scene.texels, scene.sparser, tree);
+  const double longer = one_rank.scenes.back().render, shorter = one_rank.sparser.render;
+  costs.per_sample =
+      1e-3 * settings.cores * (longer - shorter) / (double(all.samples()) - double(few.samples()));
+  const double left = 1e-3 * settings.cores * longer - costs.per_sample * double(all.samples());
+  costs.per_pixel_cast = std::max(0.0, left) / double(all.ranks.front().cast.pixels());
+}
+
+void run(const Settings& settings) {
+  const std::vector<Scene> scenes{scene_of(settings, 1, "shells"), scene_of(settings, 2, "lobes")};
+  std::map<Way, WayMeasured> measured;
+  for (int round = 0; round < settings.rounds; ++round)
+    for (int ranks = 1; ranks <= settings.most_ranks; ++ranks)
+      for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
+        for (const Home home : {Home::direct, Home::gathered}) {
+          const Way way{ranks, Algorithm(a), home};
+          measure(settings, scenes, way, measured[way]);
+        }
+  bench::Costs costs = link_costs(settings);
+  // One rank exchanges nothing: what it takes does not depend on the way.
+  WayMeasured one_rank = measured.begin()->second;
+  for (const auto& [way, of_way] : measured) {
+    if (way.ranks != 1) continue;
+    one_rank.sparser.render = std::min(one_rank.sparser.render, of_way.sparser.render);
+    one_rank.scenes.back().render = std::min(one_rank.scenes.back().render, of_way.scenes.back().render);
+  }
+  calibrate(costs, settings, scenes.back(), one_rank);
+  fmt::print("{}\n", nlohmann::ordered_json{{"cores", settings.cores},
+                                            {"ns_per_sample", 1e9 * costs.per_sample},
+                                            {"ns_per_pixel_cast", 1e9 * costs.per_pixel_cast},
+                                            {"us_per_message", 2e6 * costs.overhead},
+                                            {"ns_per_byte", 1e9 * costs.per_byte},
+                                            {"ns_per_byte_packed", 1e9 * costs.per_byte_packed},
+                                            {"ns_per_byte_unpacked", 1e9 * costs.per_byte_unpacked},
+                                            {"ns_per_pixel_blended", 1e9 * costs.per_pixel_blended},
+                                            {"ns_per_pixel_written", 1e9 * costs.per_pixel_written}}
+                         .dump());
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const Scene& scene = scenes[i];
+    for (int ranks = 1; ranks <= settings.most_ranks; ++ranks) {
+      const volume::KdTree tree(scene.load.volume, ranks);
+      const bench::FrameParts parts = bench::cast_parts(scene.load.volume, scene.texels, scene.request, tree);
+      for (const auto& [way, of_way] : measured) {
+        if (way.ranks != ranks) continue;
+        const Measured& real = of_way.scenes[i];
+        const compositor::CountedExchange counted =
+            bench::counted(parts, way.algorithm, way.home, scene.request.op, compositor::Layout::rgba32f);
+        const bench::FrameTime time = bench::time_of(parts, counted, costs);
+        fmt::print("{}\n", nlohmann::ordered_json{{"scene", scene.name},
+                                                  {"ranks", ranks},
+                                                  {"exchange", compositor::name_of(way.algorithm)},
+                                                  {"home", name_of(way.home)},
+                                                  {"samples", parts.samples()},
+                                                  {"samples_counted", real.counts.samples_taken},
+                                                  {"messages", counted.messages},
+                                                  {"messages_counted", real.counts.messages},
+                                                  {"bytes", counted.bytes},
+                                                  {"bytes_counted", real.counts.bytes_exchanged},
+                                                  {"render_ms", 1e3 * time.render},
+                                                  {"render_ms_measured", real.render},
+                                                  {"exchange_ms", 1e3 * time.exchange},
+                                                  {"exchange_ms_measured", real.exchange},
+                                                  {"frame_ms", 1e3 * (time.render + time.exchange)},
+                                                  {"frame_ms_measured", real.frame}}
+                               .dump());
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"compares the model of pictures on many ranks with real ranks on this machine"};
+  app.add_option("--most-ranks", settings.most_ranks)->check(CLI::Range(1, 64));
+  app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(16, 512));
+  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 4096));
+  app.add_option("--pictures", settings.pictures, "of each kind; the fastest counts")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--rounds", settings.rounds, "in which all ways follow each other")->check(CLI::Range(1, 100));
+  app.add_option("--cores", settings.cores, "that the ranks share")->check(CLI::Range(1, 1024));
+  app.add_option("--costs", settings.costs, "what understudy-bench-link printed");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    run(settings);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy-bench-real-ranks: {}\n", error.what());
+    return 1;
+  }
+}

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -63,12 +65,11 @@ class Player {
     link_.transfer(outgoing, incoming);
 
     std::vector<Contribution> contributions;
-    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], {}, kept->rect});
+    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], kept->rect, {}});
     for (std::size_t i = 0; i < arriving.size(); ++i) {
       bytes_to_tell_ += arrived[i].told();
-      contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)],
-                               decode_pixels(arrived[i], arriving[i]->rect, op_, layout_), arriving[i]->rect});
-      arrived[i] = {};
+      contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)], arriving[i]->rect,
+                               PixelReader(arrived[i], arriving[i]->rect, layout_)});
     }
     blend_all(contributions, round.afterwards[std::size_t(me)]);
   }
@@ -81,32 +82,67 @@ class Player {
  private:
   struct Contribution {
     int position = 0;
-    Image image;  ///< without pixels: the part of this rank's own image
     Rect rect;
+    std::optional<PixelReader> arrived;  ///< none: it is the part of this rank's own image
   };
 
   void blend_all(std::vector<Contribution>& contributions, const Rect& afterwards) {
-    if (contributions.size() == 1) {
-      Contribution& only = contributions.front();
-      if (!only.image.rgba.empty())
-        image_ = std::move(only.image);
-      else if (only.rect != image_.rect)
-        image_ = part_of(image_, only.rect);
+    if (contributions.size() == 1 && !contributions.front().arrived) {
+      if (afterwards != image_.rect) image_ = part_of(image_, afterwards);
       return;
     }
     std::ranges::sort(contributions, {}, &Contribution::position);
-    Image result(afterwards);
-    if (const float value = volume::neutral_value(op_); value != 0) std::ranges::fill(result.rgba, value);
-    for (const Contribution& contribution : contributions) {
-      const bool own = contribution.image.rgba.empty();
-      // Of this rank's own image only the part that it kept counts.
-      if (own && contribution.rect != image_.rect)
-        blend(op_, result, part_of(image_, contribution.rect).view());
+    if (!contributions.empty() && !contributions.front().arrived && image_.rect == afterwards &&
+        contributions.front().rect == afterwards)
+      blend_behind_own(std::span(contributions).subspan(1));
+    else
+      blend_anew(contributions, afterwards);
+    for (const Contribution& contribution : contributions)
+      if (contribution.arrived) contribution.arrived->end();
+  }
+
+  // Everything else lies behind this rank's own image, within its rectangle.
+  void blend_behind_own(std::span<Contribution> others) {
+    for (int y = image_.rect.y; y < image_.rect.y + image_.rect.height; ++y)
+      for (Contribution& other : others)
+        if (has_row(other.rect, y))
+          other.arrived->blend_row_behind(op_, {image_.at(other.rect.x, y), 4 * std::size_t(other.rect.width)});
+  }
+
+  // Row by row, so that what is blended stays in the nearest cache and a picture is written once.
+  void blend_anew(std::span<Contribution> contributions, const Rect& afterwards) {
+    const std::size_t floats = 4 * std::size_t(afterwards.width);
+    std::vector<float> blank(floats, volume::neutral_value(op_)), row(floats);
+    // This rank's own part of a row has been blended when the row is written.
+    const bool in_place = image_.rect == afterwards;
+    Image result;
+    if (!in_place) result.rgba.reserve(4 * afterwards.pixels());
+    for (int y = afterwards.y; y < afterwards.y + afterwards.height; ++y) {
+      row = blank;
+      bool first = true;
+      for (Contribution& contribution : contributions) {
+        if (!has_row(contribution.rect, y)) continue;
+        const std::span<float> here = std::span(row).subspan(
+            4 * std::size_t(contribution.rect.x - afterwards.x), 4 * std::size_t(contribution.rect.width));
+        if (contribution.arrived && first)
+          contribution.arrived->read_row(here);
+        else if (contribution.arrived)
+          contribution.arrived->blend_row_behind(op_, here);
+        else
+          blend(op_, here, {image_.at(contribution.rect.x, y), here.size()});
+        first = false;
+      }
+      if (in_place)
+        std::ranges::copy(row, image_.at(afterwards.x, y));
       else
-        blend(op_, result, own ? image_.view() : contribution.image.view());
+        result.rgba.insert(result.rgba.end(), row.begin(), row.end());
     }
+    if (in_place) return;
+    result.rect = afterwards;
     image_ = std::move(result);
   }
+
+  static bool has_row(const Rect& rect, int y) { return y >= rect.y && y < rect.y + rect.height; }
 
   Image image_;
   const Schedule& schedule_;

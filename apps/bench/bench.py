@@ -17,14 +17,18 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
 import balance  # noqa: E402
+import blend  # noqa: E402
 import calls  # noqa: E402
+import exchange  # noqa: E402
 import frame  # noqa: E402
+import paraview_frames  # noqa: E402
 import ranks  # noqa: E402
 import raycast  # noqa: E402
 import scaling  # noqa: E402
 
 BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows,
-              "ranks": ranks.rows, "balance": balance.rows}
+              "ranks": ranks.rows, "balance": balance.rows, "blend": blend.rows, "exchange": exchange.rows,
+              "paraview": paraview_frames.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 

@@ -13,25 +13,27 @@ namespace {
 using volume::Rect;
 
 struct Runs {
-  std::size_t runs = 1;
-  std::size_t touched = 0;
+  std::size_t runs = 0;
+  std::size_t pixels = 0;  ///< that travel in them
 };
 
-Runs runs_in(const PixelMask& mask, const Rect& rect) {
+Runs runs_in(const PixelMask& mask, const Rect& rect, std::size_t least_hole) {
   Runs result;
   const auto width = std::size_t(rect.width);
-  std::uint8_t before = 0;
+  std::size_t next = 0;  // behind the last run
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     const std::uint8_t* const row = mask.at(rect.x, y);
-    // A run begins where an untouched pixel follows a touched one.
-    std::size_t touched = row[0], begun = row[0] < before;
-    for (std::size_t x = 1; x < width; ++x) {
-      touched += row[x];
-      begun += row[x] < row[x - 1];
+    const std::size_t before = std::size_t(y - rect.y) * width;
+    bool any = false;  // of this row has been in a run
+    for (std::size_t x = 0; x < width; ++x) {
+      if (row[x] == 0) continue;
+      const std::size_t at = before + x;
+      const bool bridged = any && at - next < least_hole;
+      if (!bridged && (result.runs == 0 || at > next)) ++result.runs;
+      result.pixels += bridged ? at + 1 - next : 1;
+      next = at + 1;
+      any = true;
     }
-    before = row[width - 1];
-    result.touched += touched;
-    result.runs += begun;
   }
   return result;
 }
@@ -48,10 +50,11 @@ void unite(PixelMask& mask, const PixelMask& from, const Rect& rect) {
 CountedMessage message_of(const Piece& piece, const PixelMask& mask, const Schedule& schedule,
                           volume::Operator op, Layout layout) {
   if (piece.written) return {piece.from, piece.to, head_bytes, 0};
-  const Runs runs = runs_in(mask, piece.rect);
-  const MessageLength length =
-      message_length(piece.rect, op, layout, schedule.clear_pixels_travel, runs.runs, runs.touched);
-  return {piece.from, piece.to, length.bytes, length.in_runs ? runs.touched : piece.rect.pixels()};
+  if (!may_travel_in_runs(piece.rect, op, layout, schedule.clear_pixels_travel))
+    return {piece.from, piece.to, bytes_of_all_pixels(piece.rect, layout), piece.rect.pixels()};
+  const Runs runs = runs_in(mask, piece.rect, least_hole(op, layout));
+  return {piece.from, piece.to, head_bytes + bytes_per_run * runs.runs + bytes_per_pixel(layout) * runs.pixels,
+          runs.pixels};
 }
 
 }  // namespace

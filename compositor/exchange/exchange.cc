@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -20,15 +22,6 @@ Image part_of(const Image& image, const Rect& rect) {
   for (int y = rect.y; y < rect.y + rect.height; ++y)
     std::memcpy(part.at(rect.x, y), image.at(rect.x, y), 4 * sizeof(float) * std::size_t(rect.width));
   return part;
-}
-
-/// `room` shows the pixels of `whole`.
-void write_part(const Image& image, const Rect& rect, std::span<float> room, const Rect& whole) {
-  for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    const std::size_t pixel =
-        std::size_t(y - whole.y) * std::size_t(whole.width) + std::size_t(rect.x - whole.x);
-    std::memcpy(room.data() + 4 * pixel, image.at(rect.x, y), 4 * sizeof(float) * std::size_t(rect.width));
-  }
 }
 
 /// The parts of `rect` outside `hole`: below, above, left and right of it.
@@ -70,10 +63,11 @@ class Player {
     outgoing.reserve(given.size());
     for (const Piece* piece : given) {
       if (piece->written) {
-        write_part(image_, piece->rect, memory_, schedule_.whole);
-        messages.emplace_back(head_bytes);
+        write_part(piece->rect);
+        std::ranges::fill(messages.emplace_back(head_bytes).room(), std::byte(0));
       } else {
-        messages.push_back(encode_pixels(image_, piece->rect, op_, layout_, schedule_.clear_pixels_travel));
+        messages.push_back(
+            encode_pixels(image_, piece->rect, op_, layout_, schedule_.packed, schedule_.clear_pixels_travel));
       }
       bytes_to_tell_ += messages.back().size();
     }
@@ -92,21 +86,19 @@ class Player {
 
     for (const PixelMessage& message : arrived) bytes_to_tell_ += message.told();
     if (me == 0 && std::ranges::any_of(round.pieces, &Piece::written)) {
-      if (kept != nullptr) write_part(image_, kept->rect, memory_, schedule_.whole);
+      if (kept != nullptr) write_part(kept->rect);
       for (std::size_t i = 0; i < arriving.size(); ++i)
-        if (const Rect& rect = arriving[i]->rect; !arriving[i]->written)
-          write_part(decode_pixels(arrived[i], rect, op_, layout_), rect, memory_, schedule_.whole);
+        if (!arriving[i]->written) write_arrived(PixelReader(arrived[i], arriving[i]->rect, layout_));
       clear_between(round);
       written_ = true;
       return;
     }
 
     std::vector<Contribution> contributions;
-    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], {}, kept->rect});
+    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], kept->rect, {}});
     for (std::size_t i = 0; i < arriving.size(); ++i) {
-      contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)],
-                               decode_pixels(arrived[i], arriving[i]->rect, op_, layout_), arriving[i]->rect});
-      arrived[i] = {};
+      contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)], arriving[i]->rect,
+                               PixelReader(arrived[i], arriving[i]->rect, layout_)});
     }
     blend_all(contributions, round.afterwards[std::size_t(me)]);
   }
@@ -114,16 +106,38 @@ class Player {
   Exchanged finish() && {
     if (link_.rank() != 0) return {};
     if (memory_.empty()) return {std::move(image_), bytes_to_tell_};
-    if (!written_ && !schedule_.whole.empty()) write_part(image_, image_.rect, memory_, schedule_.whole);
+    if (!written_ && !schedule_.whole.empty()) write_part(image_.rect);
     return {{}, bytes_to_tell_};
   }
 
  private:
   struct Contribution {
     int position = 0;
-    Image image;  ///< without pixels: the part of this rank's own image
     Rect rect;
+    std::optional<PixelReader> arrived;  ///< none: it is the part of this rank's own image
   };
+
+  /// A row of pixels from (x, y) on, in the picture's memory.
+  std::span<float> in_memory(int x, int y, int pixels) const {
+    const Rect& whole = schedule_.whole;
+    const std::size_t first = std::size_t(y - whole.y) * std::size_t(whole.width) + std::size_t(x - whole.x);
+    return memory_.subspan(4 * first, 4 * std::size_t(pixels));
+  }
+
+  void write_part(const Rect& rect) {
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      std::copy_n(image_.at(rect.x, y), 4 * std::size_t(rect.width), in_memory(rect.x, y, rect.width).begin());
+  }
+
+  void write_arrived(PixelReader arrived) {
+    const Rect rect = arrived.rect();
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+      const std::span<float> row = in_memory(rect.x, y, rect.width);
+      std::ranges::fill(row, volume::neutral_value(op_));
+      arrived.read_row(row);
+    }
+    arrived.end();
+  }
 
   /// What no piece of the last round covers has been reached by no sample.
   void clear_between(const Round& round) {
@@ -133,37 +147,68 @@ class Player {
       for (const Rect& rect : bare) add_around(rect, piece.rect, left);
       bare = std::move(left);
     }
-    const float neutral = volume::neutral_value(op_);
     for (const Rect& rect : bare)
-      for (int y = rect.y; y < rect.y + rect.height; ++y) {
-        const std::size_t pixel = std::size_t(y - schedule_.whole.y) * std::size_t(schedule_.whole.width) +
-                                  std::size_t(rect.x - schedule_.whole.x);
-        std::fill_n(memory_.begin() + std::ptrdiff_t(4 * pixel), 4 * std::size_t(rect.width), neutral);
-      }
+      for (int y = rect.y; y < rect.y + rect.height; ++y)
+        std::ranges::fill(in_memory(rect.x, y, rect.width), volume::neutral_value(op_));
   }
 
   void blend_all(std::vector<Contribution>& contributions, const Rect& afterwards) {
-    if (contributions.size() == 1) {
-      Contribution& only = contributions.front();
-      if (!only.image.rgba.empty())
-        image_ = std::move(only.image);
-      else if (only.rect != image_.rect)
-        image_ = part_of(image_, only.rect);
+    if (contributions.size() == 1 && !contributions.front().arrived) {
+      if (afterwards != image_.rect) image_ = part_of(image_, afterwards);
       return;
     }
     std::ranges::sort(contributions, {}, &Contribution::position);
-    Image result(afterwards);
-    if (const float value = volume::neutral_value(op_); value != 0) std::ranges::fill(result.rgba, value);
-    for (const Contribution& contribution : contributions) {
-      const bool own = contribution.image.rgba.empty();
-      // Of this rank's own image only the part that it kept counts.
-      if (own && contribution.rect != image_.rect)
-        blend(op_, result, part_of(image_, contribution.rect).view());
+    if (!contributions.empty() && !contributions.front().arrived && image_.rect == afterwards &&
+        contributions.front().rect == afterwards)
+      blend_behind_own(std::span(contributions).subspan(1));
+    else
+      blend_anew(contributions, afterwards);
+    for (const Contribution& contribution : contributions)
+      if (contribution.arrived) contribution.arrived->end();
+  }
+
+  // Everything else lies behind this rank's own image, within its rectangle.
+  void blend_behind_own(std::span<Contribution> others) {
+    for (int y = image_.rect.y; y < image_.rect.y + image_.rect.height; ++y)
+      for (Contribution& other : others)
+        if (has_row(other.rect, y))
+          other.arrived->blend_row_behind(op_, {image_.at(other.rect.x, y), 4 * std::size_t(other.rect.width)});
+  }
+
+  // Row by row, so that what is blended stays in the nearest cache and a picture is written once.
+  void blend_anew(std::span<Contribution> contributions, const Rect& afterwards) {
+    const std::size_t floats = 4 * std::size_t(afterwards.width);
+    std::vector<float> blank(floats, volume::neutral_value(op_)), row(floats);
+    // This rank's own part of a row has been blended when the row is written.
+    const bool in_place = image_.rect == afterwards;
+    Image result;
+    if (!in_place) result.rgba.reserve(4 * afterwards.pixels());
+    for (int y = afterwards.y; y < afterwards.y + afterwards.height; ++y) {
+      row = blank;
+      bool first = true;
+      for (Contribution& contribution : contributions) {
+        if (!has_row(contribution.rect, y)) continue;
+        const std::span<float> here = std::span(row).subspan(
+            4 * std::size_t(contribution.rect.x - afterwards.x), 4 * std::size_t(contribution.rect.width));
+        if (contribution.arrived && first)
+          contribution.arrived->read_row(here);
+        else if (contribution.arrived)
+          contribution.arrived->blend_row_behind(op_, here);
+        else
+          blend(op_, here, {image_.at(contribution.rect.x, y), here.size()});
+        first = false;
+      }
+      if (in_place)
+        std::ranges::copy(row, image_.at(afterwards.x, y));
       else
-        blend(op_, result, own ? image_.view() : contribution.image.view());
+        result.rgba.insert(result.rgba.end(), row.begin(), row.end());
     }
+    if (in_place) return;
+    result.rect = afterwards;
     image_ = std::move(result);
   }
+
+  static bool has_row(const Rect& rect, int y) { return y >= rect.y && y < rect.y + rect.height; }
 
   Image image_;
   const Schedule& schedule_;

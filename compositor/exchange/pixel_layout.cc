@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cstring>
-#include <utility>
+#include <vector>
 
+#include "compositor/blend.h"
 #include "compositor/exchange/link.h"
 #include "volume/raycast/ray_caster.h"
 
@@ -19,42 +21,47 @@ namespace understudy::compositor::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr float largest_half = 65504;
-
-// A pixel at a time, or less where a vector holds less (HWY_SCALAR).
-using Floats = hn::CappedTag<float, 4>;
-using Halves = hn::Rebind<hwy::float16_t, Floats>;
-
-void to_halves(const float* from, std::size_t floats, std::byte* to) {
-  const Floats wide;
-  const Halves narrow;
-  HWY_ALIGN std::array<hwy::float16_t, 4> halves;
-  for (std::size_t i = 0; i < floats; i += hn::Lanes(wide)) {
-    const auto bounded =
-        hn::Max(hn::Min(hn::LoadU(wide, from + i), hn::Set(wide, largest_half)), hn::Set(wide, -largest_half));
-    hn::Store(hn::DemoteTo(narrow, bounded), narrow, halves.data());
-    std::memcpy(to + 2 * i, halves.data(), 2 * hn::Lanes(wide));
+/// Bit i: a component of pixel i, of at most 64, differs from `neutral`.
+std::uint64_t touched_one_by_one(const float* pixels, std::size_t count, float neutral) {
+  const hn::CappedTag<float, 4> d;
+  const auto untouched = hn::Set(d, neutral);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bool touched = false;
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d))
+      touched |= !hn::AllTrue(d, hn::Eq(hn::LoadU(d, pixels + 4 * i + lane), untouched));
+    bits |= std::uint64_t(touched) << i;
   }
+  return bits;
 }
 
-void from_halves(const std::byte* from, std::size_t floats, float* to) {
-  const Floats wide;
-  const Halves narrow;
-  HWY_ALIGN std::array<hwy::float16_t, 4> halves{};
-  for (std::size_t i = 0; i < floats; i += hn::Lanes(wide)) {
-    std::memcpy(halves.data(), from + 2 * i, 2 * hn::Lanes(wide));
-    hn::StoreU(hn::PromoteTo(wide, hn::Load(narrow, halves.data())), wide, to + i);
-  }
-}
-
-void to_bytes(const float* from, std::size_t floats, std::byte* to) {
-  const Floats wide;
-  const hn::RebindToSigned<Floats> whole;
-  HWY_ALIGN std::array<std::int32_t, 4> values;
-  for (std::size_t i = 0; i < floats; i += hn::Lanes(wide)) {
-    const auto bounded = hn::Max(hn::Min(hn::LoadU(wide, from + i), hn::Set(wide, 1.0F)), hn::Zero(wide));
-    hn::Store(hn::NearestInt(hn::Mul(bounded, hn::Set(wide, 255.0F))), whole, values.data());
-    for (std::size_t k = 0; k < hn::Lanes(wide); ++k) to[i + k] = std::byte(values[k]);
+/// Bit x % 64 of word x / 64 of `bits` for pixel x of a row.
+void find_touched(const float* row, std::size_t pixels, float neutral, std::uint64_t* bits) {
+  const hn::ScalableTag<float> d;
+  const auto untouched = hn::Set(d, neutral);
+  // So many at once that are all the same are told in few steps.
+  constexpr std::size_t at_once = 16;
+  for (std::size_t x = 0; x < pixels; x += 64) {
+    std::uint64_t word = 0;
+    for (std::size_t i = 0; i < 64 && x + i < pixels; i += at_once) {
+      const float* const here = row + 4 * (x + i);
+      const std::size_t count = std::min(at_once, pixels - x - i);
+      if (count == at_once && hn::Lanes(d) <= 4 * at_once) {
+        auto all = hn::Eq(hn::LoadU(d, here), untouched), any = all;
+        for (std::size_t k = hn::Lanes(d); k < 4 * at_once; k += hn::Lanes(d)) {
+          const auto same = hn::Eq(hn::LoadU(d, here + k), untouched);
+          all = hn::And(all, same);
+          any = hn::Or(any, same);
+        }
+        if (hn::AllTrue(d, all)) continue;
+        if (hn::AllFalse(d, any)) {
+          word |= ((std::uint64_t(1) << at_once) - 1) << i;
+          continue;
+        }
+      }
+      word |= touched_one_by_one(here, count, neutral) << i;
+    }
+    bits[x / 64] = word;
   }
 }
 
@@ -64,9 +71,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace understudy::compositor {
 
-HWY_EXPORT(to_halves);
-HWY_EXPORT(from_halves);
-HWY_EXPORT(to_bytes);
+HWY_EXPORT(find_touched);
 
 namespace {
 
@@ -74,165 +79,207 @@ using volume::Image;
 using volume::Operator;
 using volume::Rect;
 
-/// Before the pixels, in head_bytes: what is told, and how many runs follow, or that all pixels travel.
+/// Before the pixels, in head_bytes: what is told, how many runs stand behind the pixels (or that all of them
+/// travel), and whether they are packed.
 struct Head {
   std::uint64_t told = 0;
   std::uint32_t runs = 0;
+  std::uint32_t packed = 0;
 };
+static_assert(sizeof(Head) == head_bytes);
 constexpr std::uint32_t all_pixels = 0xffffffff;
 
+/// So many pixels untouched, then so many that travel; runs go on from row to row.
 struct PixelRun {
   std::uint32_t untouched = 0;
   std::uint32_t touched = 0;
 };
-static_assert(sizeof(PixelRun) == bytes_per_run);
-
-bool of_unknown_length(const Rect& rect) {
-  return bytes_of_all_pixels(rect, Layout::rgba32f) <= longest_of_unknown_length;
-}
 
 std::size_t most_bytes(const Rect& rect, Layout layout) {
+  if (!of_unknown_length(rect)) return bytes_of_all_pixels(rect, layout);
   // One pixel in two touched is the most runs that there can be.
-  const std::size_t runs = layout == Layout::rgba32f ? 0 : sizeof(PixelRun) * (rect.pixels() / 2 + 1);
-  return head_bytes + bytes_per_pixel(layout) * rect.pixels() + runs;
+  return head_bytes + most_packed_bytes(rect.pixels()) + sizeof(PixelRun) * (rect.pixels() / 2 + 1);
 }
 
-template <class T>
-std::byte* put(std::byte* to, const T& value) {
-  std::memcpy(to, &value, sizeof value);
-  return to + sizeof value;
+LinkLost malformed() {
+  return LinkLost("a message with pixels does not fit its rectangle");
 }
 
-void put_pixels(const float* from, std::size_t floats, Layout layout, std::byte* to) {
-  switch (layout) {
-    case Layout::rgba32f:
-      std::memcpy(to, from, sizeof(float) * floats);
-      break;
-    case Layout::rgba16f:
-      HWY_DYNAMIC_DISPATCH(to_halves)(from, floats, to);
-      break;
-    case Layout::rgba8:
-      HWY_DYNAMIC_DISPATCH(to_bytes)(from, floats, to);
-      break;
-  }
-}
+struct Span {
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
 
-void get_pixels(const std::byte* from, std::size_t floats, Layout layout, float* to) {
-  switch (layout) {
-    case Layout::rgba32f:
-      std::memcpy(to, from, sizeof(float) * floats);
-      break;
-    case Layout::rgba16f:
-      HWY_DYNAMIC_DISPATCH(from_halves)(from, floats, to);
-      break;
-    case Layout::rgba8:
-      std::transform(from, from + floats, to, [](std::byte value) { return float(int(value)) / 255.0F; });
-      break;
-  }
-}
+/// The touched spans of a row, from what find_touched() has found.
+class TouchedSpans {
+ public:
+  explicit TouchedSpans(std::size_t width) : width_(width), bits_((width + 63) / 64) {}
 
-std::vector<PixelRun> runs_in(const Image& image, const Rect& rect, float neutral) {
-  std::vector<PixelRun> runs{{}};
-  for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    const float* pixel = image.at(rect.x, y);
-    for (const float* const end = pixel + 4 * std::size_t(rect.width); pixel != end; pixel += 4) {
-      const bool touched =
-          pixel[0] != neutral || pixel[1] != neutral || pixel[2] != neutral || pixel[3] != neutral;
-      if (touched)
-        ++runs.back().touched;
-      else if (runs.back().touched > 0)
-        runs.push_back({1, 0});
+  /// Holes of less than `least_hole` pixels do not part spans.
+  const std::vector<Span>& find(const float* row, float neutral, std::size_t least_hole) {
+    HWY_DYNAMIC_DISPATCH(find_touched)(row, width_, neutral, bits_.data());
+    spans_.clear();
+    for (std::size_t x = next(0, true); x < width_;) {
+      const std::size_t end = next(x, false);
+      if (!spans_.empty() && x - spans_.back().end < least_hole)
+        spans_.back().end = end;
       else
-        ++runs.back().untouched;
+        spans_.push_back({x, end});
+      x = next(end, true);
     }
+    return spans_;
   }
-  return runs;
-}
+
+ private:
+  /// The first pixel from x on that is touched, or is not; the width if there is none.
+  std::size_t next(std::size_t x, bool touched) const {
+    for (; x < width_; x = (x / 64 + 1) * 64) {
+      const std::uint64_t word = (touched ? bits_[x / 64] : ~bits_[x / 64]) >> (x % 64);
+      if (word != 0) return std::min(width_, x + std::size_t(std::countr_zero(word)));
+    }
+    return width_;
+  }
+
+  std::size_t width_;
+  std::vector<std::uint64_t> bits_;
+  std::vector<Span> spans_;
+};
 
 }  // namespace
 
 void PixelMessage::tell(std::uint64_t count) {
-  assert(bytes_.size() >= head_bytes);
-  put(bytes_.data(), count);
+  assert(size_ >= head_bytes);
+  std::memcpy(bytes_.get() + offsetof(Head, told), &count, sizeof count);
 }
 
 std::uint64_t PixelMessage::told() const {
   if (received_ < head_bytes) throw LinkLost("a message with pixels was cut short");
   std::uint64_t count = 0;
-  std::memcpy(&count, bytes_.data(), sizeof count);
+  std::memcpy(&count, bytes_.get() + offsetof(Head, told), sizeof count);
   return count;
 }
 
-PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, Layout layout, bool clear_too) {
-  if (!of_unknown_length(rect)) layout = Layout::rgba32f;
+PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, Layout layout, bool packed,
+                           bool clear_too) {
+  const bool of_known_length = !of_unknown_length(rect);
+  if (of_known_length) layout = Layout::rgba32f;
   const std::size_t pixel = bytes_per_pixel(layout);
-  std::vector<PixelRun> runs;
-  std::size_t touched = 0;
-  if (may_travel_in_runs(rect, op, layout, clear_too)) {
-    runs = runs_in(image, rect, volume::neutral_value(op));
-    for (const PixelRun& run : runs) touched += run.touched;
-  }
-  const MessageLength length = message_length(rect, op, layout, clear_too, runs.size(), touched);
-  if (!length.in_runs) runs.clear();
-  PixelMessage message(length.bytes);
-  std::byte* to = put(message.room().data(), std::uint64_t(0));
-  to = put(to, runs.empty() ? all_pixels : std::uint32_t(runs.size()));
-  if (runs.empty()) {
-    for (int y = rect.y; y < rect.y + rect.height; ++y, to += pixel * std::size_t(rect.width))
-      put_pixels(image.at(rect.x, y), 4 * std::size_t(rect.width), layout, to);
-    return message;
-  }
-  for (const PixelRun& run : runs) to = put(to, run);
+  const bool all = !may_travel_in_runs(rect, op, layout, clear_too);
+  packed = packed && !all;
   const auto width = std::size_t(rect.width);
-  std::size_t at = 0;
-  for (const PixelRun& run : runs) {
-    at += run.untouched;
-    for (std::size_t left = run.touched; left > 0;) {
-      const std::size_t here = std::min(left, width - at % width);
-      put_pixels(image.at(rect.x + int(at % width), rect.y + int(at / width)), 4 * here, layout, to);
-      to += pixel * here;
-      at += here;
-      left -= here;
+  PixelMessage message(most_bytes(rect, layout));
+  std::byte* to = message.room().data() + head_bytes;
+  LastPixel last{};
+  std::vector<PixelRun> runs;
+  const auto put = [&](std::span<const float> floats) {
+    if (packed) {
+      to += pack_pixels(floats, layout, last, to);
+      return;
+    }
+    put_pixels(floats, layout, to);
+    to += pixel * floats.size() / 4;
+  };
+  TouchedSpans spans(width);
+  std::size_t next = 0;  // behind the last run
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    const float* const row = image.at(rect.x, y);
+    if (all) {
+      put({row, 4 * width});
+      continue;
+    }
+    const std::size_t before = std::size_t(y - rect.y) * width;
+    for (const Span& span : spans.find(row, volume::neutral_value(op), least_hole(op, layout))) {
+      if (runs.empty() || before + span.first > next)
+        runs.push_back({std::uint32_t(before + span.first - next), 0});
+      runs.back().touched += std::uint32_t(span.end - span.first);
+      next = before + span.end;
+      put({row + 4 * span.first, 4 * (span.end - span.first)});
     }
   }
+  if (!runs.empty()) std::memcpy(to, runs.data(), sizeof(PixelRun) * runs.size());
+  to += sizeof(PixelRun) * runs.size();
+  const Head head{0, all ? all_pixels : std::uint32_t(runs.size()), packed ? 1U : 0U};
+  std::memcpy(message.room().data(), &head, sizeof head);
+  message.shorten(std::size_t(to - message.room().data()));
   return message;
 }
 
 PixelMessage room_for_pixels(const Rect& rect, Layout layout) {
-  return PixelMessage(most_bytes(rect, of_unknown_length(rect) ? layout : Layout::rgba32f));
+  return PixelMessage(most_bytes(rect, layout));
 }
 
-Image decode_pixels(PixelMessage& message, const Rect& rect, Operator op, Layout layout) {
-  if (!of_unknown_length(rect)) layout = Layout::rgba32f;
-  const std::size_t pixel = bytes_per_pixel(layout);
-  const auto malformed = [] { return LinkLost("a message with pixels does not fit its rectangle"); };
-  if (message.received() < head_bytes) throw malformed();
-  std::span<const std::byte> left = message.bytes().first(message.received()).subspan(head_bytes);
-  std::uint32_t count = 0;
-  std::memcpy(&count, message.bytes().data() + sizeof(std::uint64_t), sizeof count);
-  Image image(rect);
-  if (count == all_pixels) {
-    if (left.size() != pixel * rect.pixels()) throw malformed();
-    get_pixels(left.data(), image.rgba.size(), layout, image.rgba.data());
-    return image;
+PixelReader::PixelReader(const PixelMessage& message, const Rect& rect, Layout layout)
+    : rect_(rect), layout_(of_unknown_length(rect) ? layout : Layout::rgba32f) {
+  if (message.received() < head_bytes || message.received() > message.size()) throw malformed();
+  Head head;
+  std::memcpy(&head, message.bytes().data(), sizeof head);
+  pixels_ = message.bytes().first(message.received()).subspan(head_bytes);
+  packed_ = head.packed != 0;
+  if (head.runs == all_pixels) {
+    touched_ = rect.pixels();
+    return;
   }
-  if (const float neutral = volume::neutral_value(op); neutral != 0) std::ranges::fill(image.rgba, neutral);
-  if (left.size() / sizeof(PixelRun) < count) throw malformed();
-  const std::span<const std::byte> runs = left.first(sizeof(PixelRun) * count);
-  left = left.subspan(runs.size());
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    PixelRun run;
-    std::memcpy(&run, runs.data() + sizeof run * i, sizeof run);
-    at += run.untouched;
-    if (at > rect.pixels() || run.touched > rect.pixels() - at || left.size() < pixel * run.touched)
-      throw malformed();
-    get_pixels(left.data(), 4 * std::size_t(run.touched), layout, image.rgba.data() + 4 * at);
-    left = left.subspan(pixel * run.touched);
-    at += run.touched;
+  if (pixels_.size() / sizeof(PixelRun) < head.runs) throw malformed();
+  runs_ = pixels_.last(sizeof(PixelRun) * head.runs);
+  pixels_ = pixels_.first(pixels_.size() - runs_.size());
+}
+
+// Calls use(pixels of the row) for every span of it that came, in which they are next.
+template <class Use>
+void PixelReader::for_spans(std::span<float> row, Use use) {
+  assert(row.size() == 4 * std::size_t(rect_.width));
+  while (!row.empty()) {
+    if (untouched_ == 0 && touched_ == 0) {
+      if (runs_.empty()) return;
+      PixelRun run;
+      std::memcpy(&run, runs_.data(), sizeof run);
+      runs_ = runs_.subspan(sizeof run);
+      untouched_ = run.untouched;
+      touched_ = run.touched;
+    }
+    const std::size_t skipped = std::min(untouched_, row.size() / 4);
+    untouched_ -= skipped;
+    row = row.subspan(4 * skipped);
+    const std::size_t here = untouched_ > 0 ? 0 : std::min(touched_, row.size() / 4);
+    touched_ -= here;
+    if (here > 0) use(row.first(4 * here));
+    row = row.subspan(4 * here);
   }
-  if (at > rect.pixels() || !left.empty()) throw malformed();
-  return image;
+}
+
+void PixelReader::next_pixels(std::span<float> pixels) {
+  if (packed_) {
+    const std::size_t taken = unpack_pixels(pixels_, layout_, last_, pixels);
+    if (taken == 0) throw malformed();
+    pixels_ = pixels_.subspan(taken);
+    return;
+  }
+  const std::size_t bytes = bytes_per_pixel(layout_) * pixels.size() / 4;
+  if (pixels_.size() < bytes) throw malformed();
+  get_pixels(pixels_.data(), layout_, pixels);
+  pixels_ = pixels_.subspan(bytes);
+}
+
+void PixelReader::read_row(std::span<float> row) {
+  for_spans(row, [&](std::span<float> span) { next_pixels(span); });
+}
+
+void PixelReader::blend_row_behind(Operator op, std::span<float> row) {
+  // Few enough to stay in the nearest cache.
+  constexpr std::size_t floats_at_once = 4 * 4 * packed_block_pixels;
+  for_spans(row, [&](std::span<float> span) {
+    while (!span.empty()) {
+      std::array<float, floats_at_once> behind;
+      const std::span<float> here = span.first(std::min(span.size(), floats_at_once));
+      next_pixels(std::span(behind).first(here.size()));
+      blend(op, here, std::span(behind).first(here.size()));
+      span = span.subspan(here.size());
+    }
+  });
+}
+
+void PixelReader::end() const {
+  if (!pixels_.empty() || !runs_.empty() || untouched_ > 0 || touched_ > 0) throw malformed();
 }
 
 }  // namespace understudy::compositor

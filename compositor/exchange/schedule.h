@@ -39,6 +39,7 @@ struct Schedule {
   /// By rank: where its image stands in visibility order; -1 for ranks with nothing to show.
   std::vector<int> position;
   bool clear_pixels_travel = false;  ///< also those that no sample has reached, to see what they cost
+  bool packed = false;               ///< pixels travel packed, which takes time and saves bytes
   volume::Rect whole;  ///< the picture that rank 0 ends with: the smallest rectangle that holds all footprints
 };
 

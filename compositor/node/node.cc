@@ -507,10 +507,11 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
     opaque_tiles_->clear_hidden(image_, notes);
   }
   const PictureMemories::Memory& memory = memories_.of(rendered_.client);
-  if (!exchange_.algorithm && !link_cost_) link_cost_ = measure_link(link_);
+  if (!link_cost_) link_cost_ = measure_link(link_);
   Schedule chosen = schedule_of(footprints, memory.reached_by);
   if (4 * chosen.whole.pixels() > memory.floats) return std::nullopt;
   chosen.clear_pixels_travel = !only_footprints_;
+  chosen.packed = packing_pays(*link_cost_);
   const Exchanged exchanged = exchange(std::move(image_), chosen, op_, layout_, link_, memory.here);
   if (link_.rank() == 0) {
     const ExchangeCost& whole = cost_of_whole_windows();

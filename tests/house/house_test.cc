@@ -113,10 +113,11 @@ TEST(House, TheBundledViewerIncludesNothingOfUnderstudy) {
               IsEmpty());
 }
 
-TEST(House, OnlyTheCompositorAndTheNodesKnowMpi) {
+TEST(House, OnlyTheCompositorTheNodesAndBenchmarksKnowMpi) {
   EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
                 return header == "mpi.h" && room_of(file.path) != "compositor" &&
-                       room_of(file.path) != "tests" && !file.path.starts_with("apps/node/");
+                       room_of(file.path) != "tests" && !file.path.starts_with("apps/node/") &&
+                       !file.path.starts_with("apps/bench/");
               }),
               IsEmpty());
 }

@@ -1,0 +1,264 @@
+// understudy-bench-exchange: partial images become one picture on rank 0, by each of our exchanges and, where
+// it was found when this was built, by IceT. One rank of an MPI job. All ways get the same images in turn; time
+// is that of the slowest rank, from a barrier until it is done. Rank 0 prints one JSON object a line.
+#include "compositor/exchange/exchange.h"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "apps/bench/message_counter.h"
+#include "apps/bench/partial_images.h"
+#include "compositor/exchange/cost.h"
+#include "compositor/exchange/measure_link.h"
+#include "compositor/exchange/mpi_link.h"
+#ifdef UNDERSTUDY_ICET
+#include "apps/bench/icet_compositor.h"
+#endif
+
+namespace {
+
+using namespace understudy;
+using compositor::Link;
+using volume::Image;
+using volume::ImageView;
+using volume::Rect;
+
+struct Settings {
+  std::string file;
+  int side = 256;
+  std::vector<int> pixels{512, 1024};
+  int rounds = 15;
+  std::vector<std::string> only;  ///< ways; none: all
+};
+
+/// One way from partial images to a picture. Both functions are called by all ranks; what is prepared is not
+/// timed.
+struct Way {
+  std::string name;
+  std::function<void(const Image& mine)> prepare;
+  std::function<void()> compose;
+  std::function<ImageView()> picture;  ///< on rank 0, of the last compose()
+  std::vector<double> seconds{};
+  bench::Sent sent{};  ///< by all ranks, once
+  double error = 0;    ///< of the last picture, the largest of all components
+};
+
+/// Front to back in double precision.
+std::vector<double> product_of(const std::vector<Image>& images, std::span<const int> order, int pixels) {
+  std::vector<double> product(4 * std::size_t(pixels) * std::size_t(pixels), 0.0);
+  for (const int rank : order) {
+    const Image& image = images[std::size_t(rank)];
+    for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y)
+      for (int x = image.rect.x; x < image.rect.x + image.rect.width; ++x) {
+        double* const sum = &product[4 * (std::size_t(y) * std::size_t(pixels) + std::size_t(x))];
+        const double clear = 1 - sum[3];
+        const float* const behind = image.at(x, y);
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += clear * double(behind[c]);
+      }
+  }
+  return product;
+}
+
+/// What lies outside of the picture counts as clear.
+double largest_error(const ImageView& picture, std::span<const double> product, int pixels) {
+  double largest = 0;
+  for (int y = 0; y < pixels; ++y)
+    for (int x = 0; x < pixels; ++x) {
+      const Rect& rect = picture.rect;
+      const bool inside = !intersection(rect, {x, y, 1, 1}).empty();
+      for (std::size_t c = 0; c < 4; ++c) {
+        const double exact = product[4 * (std::size_t(y) * std::size_t(pixels) + std::size_t(x)) + c];
+        const double shown = inside
+                                 ? double(picture.rgba[4 * (std::size_t(y - rect.y) * std::size_t(rect.width) +
+                                                            std::size_t(x - rect.x)) +
+                                                       c])
+                                 : 0;
+        largest = std::max(largest, std::abs(shown - exact));
+      }
+    }
+  return largest;
+}
+
+/// All images on rank 0; elsewhere nothing.
+std::vector<Image> gathered(const Image& mine, std::span<const Rect> footprints, Link& link) {
+  std::vector<Image> images;
+  if (link.rank() != 0) {
+    const compositor::Outgoing out{0, std::as_bytes(std::span(mine.rgba))};
+    if (!mine.rgba.empty()) link.transfer({&out, 1}, {});
+    return images;
+  }
+  std::vector<compositor::Incoming> incoming;
+  for (const Rect& footprint : footprints) images.emplace_back(footprint);
+  images[0] = mine;
+  for (std::size_t rank = 1; rank < images.size(); ++rank)
+    if (!images[rank].rgba.empty())
+      incoming.push_back({int(rank), std::as_writable_bytes(std::span(images[rank].rgba)), nullptr});
+  link.transfer({}, incoming);
+  return images;
+}
+
+std::vector<Rect> footprints_of(Rect mine, Link& link) {
+  std::vector<Rect> footprints(std::size_t(link.size()));
+  link.gather_to_all(compositor::bytes_of(mine), std::as_writable_bytes(std::span(footprints)));
+  return footprints;
+}
+
+/// Our exchanges, as a node calls them: the footprints are agreed upon first.
+class Ours {
+ public:
+  Ours(Link& link, compositor::LinkCost cost) : link_(link), cost_(cost) {}
+
+  Way way(std::string name, std::optional<compositor::Algorithm> algorithm, compositor::Layout layout,
+          const std::vector<int>& order) {
+    return {
+        .name = std::move(name),
+        .prepare = [this](const Image& mine) { image_ = mine; },
+        .compose =
+            [this, algorithm, layout, &order] {
+              const std::vector<Rect> footprints = footprints_of(image_.rect, link_);
+              const compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
+                                                          : cheapest(order, footprints, layout, cost_);
+              picture_ =
+                  compositor::exchange(std::move(image_), plan, volume::Operator::over, layout, link_).picture;
+            },
+        .picture = [this] { return picture_.view(); }};
+  }
+
+ private:
+  Link& link_;
+  compositor::LinkCost cost_;
+  Image image_, picture_;
+};
+
+double slowest(double seconds) {
+  double result = 0;
+  MPI_Reduce(&seconds, &result, 1, MPI_DOUBLE, MPI_MAX, 0, MPI_COMM_WORLD);
+  return result;
+}
+
+bench::Sent by_all(const bench::Sent& mine) {
+  std::array<std::uint64_t, 2> part{mine.messages, mine.bytes}, all{};
+  MPI_Reduce(part.data(), all.data(), 2, MPI_UINT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
+  return {all[0], all[1]};
+}
+
+void measure(std::vector<Way>& ways, const Image& mine, int rounds) {
+  // In the first two rounds libraries make their buffers.
+  constexpr int settle = 2;
+  for (int round = 0; round < settle + rounds; ++round)
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      Way& way = ways[(i + std::size_t(round)) % ways.size()];
+      way.prepare(mine);
+      MPI_Barrier(MPI_COMM_WORLD);
+      bench::take_sent();
+      const double start = MPI_Wtime();
+      way.compose();
+      const double seconds = slowest(MPI_Wtime() - start);
+      way.sent = by_all(bench::take_sent());
+      if (round >= settle) way.seconds.push_back(seconds);
+    }
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+std::vector<std::byte> read(const std::string& file, std::size_t count) {
+  std::vector<std::byte> bytes(count);
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(count)))
+    throw std::runtime_error(fmt::format("{} does not hold {} bytes", file, count));
+  return bytes;
+}
+
+void run(const Settings& settings, Link& link) {
+  const auto side = std::size_t(settings.side);
+  const std::vector<std::byte> texels = read(settings.file, side * side * side);
+  Ours ours(link, measure_link(link));
+#ifdef UNDERSTUDY_ICET
+  bench::IcetCompositor icet;
+#endif
+  for (const int pixels : settings.pixels)
+    for (const bench::Scene scene : bench::all_scenes) {
+      const bench::PartialImage mine =
+          partial_image(scene, pixels, texels, settings.side, link.rank(), link.size());
+      std::vector<Way> ways;
+      for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
+        ways.push_back(ours.way(std::string(name_of(compositor::Algorithm(a))), compositor::Algorithm(a),
+                                compositor::Layout::rgba32f, mine.order));
+      ways.push_back(ours.way("auto", {}, compositor::Layout::rgba32f, mine.order));
+      ways.push_back(ours.way("auto, half", {}, compositor::Layout::rgba16f, mine.order));
+      ways.push_back(ours.way("auto, byte", {}, compositor::Layout::rgba8, mine.order));
+#ifdef UNDERSTUDY_ICET
+      icet.begin(pixels, mine.order);
+      ImageView shown;
+      for (const std::string& strategy : bench::IcetCompositor::strategies())
+        ways.push_back({.name = "icet/" + strategy,
+                        .prepare = [&](const Image& image) { icet.lay_in(image); },
+                        .compose = [&icet, &shown, strategy] { shown = icet.compose(strategy); },
+                        .picture = [&] { return shown; }});
+#endif
+      if (!settings.only.empty())
+        std::erase_if(ways, [&](const Way& way) { return std::ranges::count(settings.only, way.name) == 0; });
+      const std::vector<Rect> footprints = footprints_of(mine.image.rect, link);
+      {
+        const std::vector<Image> images = gathered(mine.image, footprints, link);
+        std::vector<double> product;
+        if (link.rank() == 0) product = product_of(images, mine.order, pixels);
+        for (Way& way : ways) {
+          way.prepare(mine.image);
+          way.compose();
+          if (link.rank() == 0) way.error = largest_error(way.picture(), product, pixels);
+        }
+      }
+      measure(ways, mine.image, settings.rounds);
+      if (link.rank() != 0) continue;
+      std::size_t covered = 0;
+      for (const Rect& footprint : footprints) covered += footprint.pixels();
+      for (const Way& way : ways)
+        fmt::print("{}\n", nlohmann::ordered_json{{"ranks", link.size()},
+                                                  {"scene", name_of(scene)},
+                                                  {"pixels", pixels},
+                                                  {"covered", covered},
+                                                  {"way", way.name},
+                                                  {"ms", 1e3 * median(way.seconds)},
+                                                  {"least_ms", 1e3 * *std::ranges::min_element(way.seconds)},
+                                                  {"bytes", way.sent.bytes},
+                                                  {"messages", way.sent.messages},
+                                                  {"error", way.error}}
+                               .dump());
+      std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"times exchanges of partial images, and IceT's: one rank of an MPI job"};
+  app.add_option("volume", settings.file, "raw bytes, x fastest")->required()->check(CLI::ExistingFile);
+  app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 1024));
+  app.add_option("--pixels", settings.pixels, "edges of the pictures")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 8192));
+  app.add_option("--rounds", settings.rounds, "of which the median counts")->check(CLI::Range(1, 10000));
+  app.add_option("--only", settings.only, "these ways, as they are printed");
+  CLI11_PARSE(app, argc, argv);
+  compositor::MpiLink link(argc, argv);
+  try {
+    run(settings, link);
+  } catch (const std::exception& error) {
+    link.abandon(error.what());
+  }
+}

@@ -53,7 +53,7 @@ std::vector<std::string> with_own_nodes(const OwnNodes& own,
   const RunFolder folder;
   const std::string socket = folder.path() / "nodes.sock";
   std::optional<NodeGroup> group;
-  group.emplace(installation, NodeGroupPlan{own.nodes, socket, folder.path(), own.exchange, own.pixels,
+  group.emplace(installation, NodeGroupPlan{own.placement, socket, folder.path(), own.exchange, own.pixels,
                                             own.backend, own.gpu_memory});
 
   const FileDescriptor job_over = checked(eventfd(0, EFD_CLOEXEC));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/understudy/environment.h"
+#include "apps/understudy/hosts/mpirun_command.h"
 #include "compositor/service/backend_line.h"
 
 namespace understudy::launcher {
@@ -40,6 +41,10 @@ std::uintmax_t size_of(const std::filesystem::path& path) {
   return none_yet ? 0 : size;
 }
 
+std::string last_word(const std::string& line) {
+  return line.substr(line.find_last_of(' ') + 1);
+}
+
 /// The one line that tells most: what a node said itself, else mpirun's verdict; empty when there is neither.
 std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
   constexpr std::string_view from_node = "understudy-node: ";
@@ -51,29 +56,36 @@ std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with(from_node)) return line.substr(from_node.size());
     if (line.starts_with(from_mpirun)) verdict = line.substr(from_mpirun.size());
+    if (line.starts_with("  Remote daemon: ")) verdict = "the connection to " + last_word(line) + " was lost";
+    if (line.starts_with("ORTE was unable to reliably start one or more daemons"))
+      verdict =
+          "mpirun could not start Open MPI's daemon on every host: Open MPI must be there under the same path "
+          "as here";
   }
   while (verdict.ends_with('.') || verdict.ends_with(' ')) verdict.pop_back();
   return verdict;
 }
 
-Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan) {
+Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan,
+                       const Placement& placement) {
   Command command;
-  command.arguments = {"mpirun", "-n", std::to_string(plan.nodes),
-                       // More ranks than cores are usual here, and each rank uses all the cores it finds.
-                       "--oversubscribe", "--bind-to", "none",
-                       // Ranks that wait must not keep the others from their cores.
-                       "--mca", "mpi_yield_when_idle", "1",
-                       // One machine: no remote shell is looked for, no network device is needed.
-                       "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
-                       // Its session files go when the run's folder goes, whatever happens to it.
-                       "--mca", "orte_tmpdir_base", plan.folder.string(), installation.node().string(),
-                       "--control", plan.socket.string(), "--exchange", plan.exchange, "--pixels", plan.pixels,
-                       "--home", plan.home, "--backend", plan.backend, "--gpu-memory", plan.gpu_memory,
-                       "--balance", plan.balance};
-  command.environment = node_environment(current_environment(), installation);
+  command.arguments = mpirun_words(placement, plan.folder);
+  for (const std::string& word :
+       {installation.node().string(), std::string("--control"), plan.socket.string(), std::string("--exchange"),
+        plan.exchange, std::string("--pixels"), plan.pixels, std::string("--home"), plan.home,
+        std::string("--backend"), plan.backend, std::string("--gpu-memory"), plan.gpu_memory,
+        std::string("--balance"), plan.balance})
+    command.arguments.push_back(word);
+  command.environment =
+      mpirun_environment(node_environment(current_environment(), installation), placement, plan.folder);
   command.output = log_of(plan);
   command.own_group = true;
   return command;
+}
+
+bool is_on_path(const std::string& program) {
+  return program.find('/') != std::string::npos ? std::filesystem::exists(program)
+                                                : program_on_path(program).has_value();
 }
 
 }  // namespace
@@ -101,7 +113,10 @@ std::vector<std::string> backend_choices(const std::filesystem::path& folder) {
 NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan)
     : installation_(installation), plan_(plan), broker_(plan.socket, [this](const std::string& line) {
         // The loss of the group is told once, with its reason, when mpirun has ended.
-        if (!broker_.lost()) say(line);
+        if (broker_.lost())
+          why_lost_ = line;
+        else
+          say(line);
       }) {
   start();
 }
@@ -116,19 +131,51 @@ NodeGroup::~NodeGroup() {
 }
 
 void NodeGroup::start() {
-  log_start_ = size_of(log_of(plan_));
-  mpirun_.emplace(mpirun_command(installation_, plan_));
+  if (plan_.placement.launch != Launch::remote_shell) return start_on(plan_.placement);
+  const std::vector<Host> others(plan_.placement.hosts.begin() + 1, plan_.placement.hosts.end());
+  const Environment environment = node_environment(current_environment(), installation_);
+  probe_.emplace(others, launch_agent(environment, is_on_path), installation_.node(), environment,
+                 plan_.folder);
 }
 
-void NodeGroup::start_when_due() {
-  if (!next_start_ || Clock::now() < *next_start_) return;
-  next_start_.reset();
+void NodeGroup::start_on(const Placement& placement) {
+  if (!placement.hosts.empty()) std::ofstream(own_hostfile(plan_.folder)) << hostfile_text(placement.hosts);
+  log_start_ = size_of(log_of(plan_));
+  why_ended_.clear();
+  started_at_ = Clock::now();
+  mpirun_.emplace(mpirun_command(installation_, plan_, placement));
+}
+
+void NodeGroup::try_to(const std::function<void()>& start) {
   try {
     start();
   } catch (const std::exception& error) {
     broker_.turn_away(error.what());
     say(fmt::format("{}; the viewer goes on by itself", error.what()));
   }
+}
+
+void NodeGroup::start_when_due() {
+  if (!next_start_ || Clock::now() < *next_start_) return;
+  next_start_.reset();
+  try_to([this] { start(); });
+}
+
+void NodeGroup::start_on_hosts_that_answer() {
+  if (!probe_ || !probe_->finished()) return;
+  const std::vector<SilentHost> silent = probe_->silent();
+  probe_.reset();
+  std::vector<std::string> gone;
+  std::string what;
+  for (const SilentHost& host : silent) {
+    gone.push_back(host.name);
+    what += fmt::format("{}host {} {}", what.empty() ? "" : ", ", host.name, host.trouble);
+  }
+  const Placement placement = without_hosts(plan_.placement, gone);
+  if (!silent.empty())
+    say(fmt::format("{}: going on with {} {} on {}", what, placement.ranks,
+                    placement.ranks == 1 ? "node" : "nodes", names_of(placement.hosts)));
+  try_to([&] { start_on(placement); });
 }
 
 void NodeGroup::wait_and_serve(int other) {
@@ -143,22 +190,38 @@ void NodeGroup::wait_and_serve(int other) {
   const bool lost_before = broker_.lost();
   broker_.step(std::chrono::milliseconds(0));
   if (broker_.lost() && !lost_before) lost_at_ = Clock::now();
-  // A group that lost its rank 0 is ended by mpirun, which crashes when it is signalled in the midst of that
-  // (4.1.4): only one that does not get anywhere is ended from here. Its end is seen in look_after_children.
-  if (broker_.lost() && mpirun_ && Clock::now() > lost_at_ + patience_with_lost_group) {
-    mpirun_->end(patience_with_mpirun_ms);
-    look_after_children();
-  }
+  end_what_hangs();
+  start_on_hosts_that_answer();
   start_when_due();
 }
 
+void NodeGroup::end_what_hangs() {
+  if (!mpirun_) return;
+  // A group that lost its rank 0 is ended by mpirun, which crashes when it is signalled in the midst of that
+  // (4.1.4): only one that does not get anywhere is ended from here. Its end is seen in look_after_children.
+  // The broker also says lost() of the group before this one, until this one is there.
+  const bool was_there = broker_.lost() && started_at_ < lost_at_;
+  const bool lost = was_there && Clock::now() > lost_at_ + patience_with_lost_group;
+  const bool never_came = plan_.placement.launch != Launch::this_machine && !was_there && !ready() &&
+                          Clock::now() > started_at_ + patience_with_start;
+  if (!lost && !never_came) return;
+  why_ended_ = lost ? why_lost_
+                    : fmt::format(
+                          "they did not find each other within {} s: the hosts' names, and the ports "
+                          "between them, must be open to each other",
+                          patience_with_start.count());
+  mpirun_->end(patience_with_mpirun_ms);
+  look_after_children();
+}
+
 void NodeGroup::look_after_children() {
+  start_on_hosts_that_answer();
   if (!mpirun_) return;
   const std::optional<Ending> ending = mpirun_->poll_ending();
   if (!ending) return;
   mpirun_.reset();
   broker_.dismiss_node_group();
-  const std::string words = last_words(log_of(plan_), log_start_);
+  const std::string words = why_ended_.empty() ? last_words(log_of(plan_), log_start_) : why_ended_;
   const std::string what =
       fmt::format("the render nodes are gone ({})", words.empty() ? "mpirun " + ending->text() : words);
   if (restarts_ == max_restarts) {
@@ -168,8 +231,11 @@ void NodeGroup::look_after_children() {
   }
   next_start_ = Clock::now() + first_pause * (1 << restarts_);
   ++restarts_;
-  say(fmt::format("{}; starting {} again ({} of {}), the viewer draws by itself meanwhile", what, plan_.nodes,
-                  restarts_, max_restarts));
+  const std::string where = plan_.placement.launch == Launch::remote_shell
+                                ? "again on the hosts that answer"
+                                : fmt::format("{} again", plan_.placement.ranks);
+  say(fmt::format("{}; starting {} ({} of {}), the viewer draws by itself meanwhile", what, where, restarts_,
+                  max_restarts));
 }
 
 }  // namespace understudy::launcher

@@ -31,4 +31,14 @@ void add_exchange_options(CLI::App& subcommand, std::string& exchange, std::stri
   add_node_option(subcommand, "--pixels", pixels);
 }
 
+void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) {
+  subcommand
+      .add_option(
+          "--hostfile", hostfile,
+          "MPI ranks on these hosts, this one among them: a host a line as in 'node1 slots=2', comments "
+          "behind '#'; without -n as many as there are slots. Programs and libraries must be there under "
+          "the same path, and the launch agent (ssh, or OMPI_MCA_plm_rsh_agent) must ask for no password")
+      ->type_name("FILE");
+}
+
 }  // namespace understudy::launcher

@@ -53,7 +53,7 @@ std::vector<std::string> with_own_nodes(const OwnNodes& own,
   const RunFolder folder;
   const std::string socket = folder.path() / "nodes.sock";
   std::optional<NodeGroup> group;
-  group.emplace(installation, NodeGroupPlan{.nodes = own.nodes,
+  group.emplace(installation, NodeGroupPlan{.placement = own.placement,
                                             .socket = socket,
                                             .folder = folder.path(),
                                             .exchange = own.exchange,

@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/understudy/hosts/placement.h"
+
 namespace understudy::launcher {
 
 struct OwnNodes {
-  int nodes = 1;
+  Placement placement{Launch::this_machine, 1, {}};
   std::string exchange = "auto";
   std::string pixels = "float";
   std::string backend = "cpu";

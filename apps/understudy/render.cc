@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "apps/understudy/backend_option.h"
+#include "apps/understudy/environment.h"
+#include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/knots_file.h"
 #include "apps/understudy/load_progress.h"
 #include "apps/understudy/node_options.h"
@@ -46,7 +48,8 @@ constexpr std::chrono::minutes patience{10};
 
 struct RenderArguments {
   std::string volume;
-  int nodes = 0;        ///< 0: in this process
+  std::optional<int> nodes;
+  std::filesystem::path hostfile;
   std::string connect;  ///< a socket of nodes that run already
   std::string exchange = "auto";
   std::string pixels = "float";
@@ -251,7 +254,10 @@ RenderFigures render_with(LoadingService& service, Scene& scene, const RenderArg
 }
 
 int render(const RenderArguments& arguments) {
-  if (arguments.nodes == 0 && arguments.backend != "cpu")
+  Placement placement;  // without ranks: in this process
+  if (arguments.connect.empty())
+    placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
+  if (placement.ranks == 0 && arguments.backend != "cpu")
     throw std::invalid_argument(
         fmt::format("--backend {} is for nodes of this rendering: give -n N as well, or give it to "
                     "understudy serve",
@@ -267,9 +273,9 @@ int render(const RenderArguments& arguments) {
   try {
     if (!arguments.connect.empty())
       with_linked(arguments.connect);
-    else if (arguments.nodes > 0)
+    else if (placement.ranks > 0)
       backends = with_own_nodes(
-          {arguments.nodes, arguments.exchange, arguments.pixels, arguments.backend, arguments.gpu_memory},
+          {placement, arguments.exchange, arguments.pixels, arguments.backend, arguments.gpu_memory},
           with_linked);
     else
       figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
@@ -297,12 +303,15 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
   CLI::Option* nodes =
       render_command
           ->add_option("-n,--nodes", arguments->nodes,
-                       "MPI ranks on this machine, each reads its own part; without: this process")
+                       "MPI ranks, each reads its own part; without, and without a hostfile or a Slurm "
+                       "allocation: this process")
           ->check(CLI::Range(1, spu::max_nodes));
+  add_hostfile_option(*render_command, arguments->hostfile);
   render_command
       ->add_option("--connect", arguments->connect, "the socket of nodes that `understudy serve` keeps")
       ->type_name("SOCKET")
-      ->excludes(nodes);
+      ->excludes(nodes)
+      ->excludes(render_command->get_option("--hostfile"));
   add_backend_option(*render_command, arguments->backend);
   add_gpu_memory_option(*render_command, arguments->gpu_memory);
   add_exchange_options(*render_command, arguments->exchange, arguments->pixels);

@@ -10,6 +10,7 @@
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
 #include "apps/understudy/installation.h"
+#include "apps/understudy/node_options.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/run.h"
 #include "spu/assemble.h"
@@ -64,6 +65,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
+  add_hostfile_option(*subcommand, arguments->hostfile);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

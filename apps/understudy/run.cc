@@ -6,20 +6,24 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <system_error>
 
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/environment.h"
+#include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/node_group.h"
+#include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
 #include "apps/understudy/trace_option.h"
@@ -61,7 +65,7 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
   if (!options.save_frames.empty())
     environment["UNDERSTUDY_SAVE_FRAMES"] = absolute_or_empty(options.save_frames);
   if (nodes) {
-    environment["UNDERSTUDY_NODES"] = std::to_string(nodes->nodes);
+    environment["UNDERSTUDY_NODES"] = std::to_string(nodes->placement.ranks);
     environment["UNDERSTUDY_CONNECT"] = nodes->socket;
   } else {
     environment.erase("UNDERSTUDY_NODES");
@@ -77,6 +81,13 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
                     door.value.string()));
   }
   return environment;
+}
+
+/// -n, if it was given: 0 of them is a wish too.
+std::optional<int> wished_nodes(const RunArguments& arguments, const spu::Options& options) {
+  constexpr const char* variable = "UNDERSTUDY_NODES";
+  if (arguments.settings.contains(variable) || std::getenv(variable) != nullptr) return options.nodes;
+  return {};
 }
 
 /// Nodes are a help, never a condition: whatever keeps them from starting, the viewer runs.
@@ -172,15 +183,24 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say(error.what());
     return usage_error;
   }
+  const bool may_have_nodes = options.connect.empty() && !options.disable;
+  Placement placement;
+  try {
+    if (may_have_nodes || !arguments.hostfile.empty())
+      placement = placement_of({wished_nodes(arguments, options), arguments.hostfile}, current_environment());
+  } catch (const std::runtime_error& error) {
+    say(error.what());
+    return usage_error;
+  }
   if (!options.save_frames.empty()) std::filesystem::create_directories(options.save_frames);
 
   const Installation installation = this_installation();
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
   const RunFolder folder;
   std::optional<NodeGroupPlan> plan;
-  if (options.nodes > 0 && options.connect.empty() && !options.disable) {
+  if (placement.ranks > 0 && may_have_nodes) {
     plan = NodeGroupPlan{
-        options.nodes,     folder.path() / "nodes.sock", folder.path(),    options.exchange, options.pixels,
+        placement,         folder.path() / "nodes.sock", folder.path(),    options.exchange, options.pixels,
         arguments.backend, arguments.gpu_memory,         arguments.balance};
   } else if (arguments.backend != "cpu") {
     say(fmt::format(
@@ -191,6 +211,9 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   if (!plan && arguments.balance != "off")
     say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
                     arguments.balance));
+  if (!plan && !arguments.hostfile.empty())
+    say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
+                    arguments.hostfile.string()));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
   std::optional<ChildProcess> viewer;
@@ -253,6 +276,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
+  add_hostfile_option(*subcommand, arguments->hostfile);
   const std::map<std::string, Door> doors{
       {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
   subcommand

@@ -36,6 +36,7 @@ struct RunArguments {
   std::string backend = "cpu";                  ///< who casts the nodes' rays
   std::string gpu_memory = "auto";              ///< what that may take of a graphics card, in bytes
   std::string balance = "off";                  ///< who of the nodes gets how much of a volume
+  std::filesystem::path hostfile;               ///< where the nodes are; empty: on this machine
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

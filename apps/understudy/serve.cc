@@ -9,10 +9,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
+#include "apps/understudy/environment.h"
+#include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
@@ -23,7 +26,8 @@ namespace understudy::launcher {
 namespace {
 
 struct ServeArguments {
-  int nodes = 1;
+  std::optional<int> nodes;
+  std::filesystem::path hostfile;
   std::string backend = "cpu";
   std::string gpu_memory = "auto";
   std::string balance = "off";
@@ -41,6 +45,9 @@ bool is_over(const ServeArguments& arguments) {
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
 int serve(const ServeArguments& arguments) {
   const Installation installation = this_installation();
+  const Placement placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
+  if (placement.ranks == 0)
+    throw std::runtime_error("how many nodes? Give -n N, or --hostfile FILE with the hosts that they run on");
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
   const RunFolder folder = arguments.folder.empty() ? RunFolder() : RunFolder(arguments.folder);
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
@@ -49,7 +56,7 @@ int serve(const ServeArguments& arguments) {
   }
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  NodeGroup nodes(installation, {arguments.nodes, socket, folder.path(), arguments.exchange, arguments.pixels,
+  NodeGroup nodes(installation, {placement, socket, folder.path(), arguments.exchange, arguments.pixels,
                                  arguments.backend, arguments.gpu_memory, arguments.balance});
   bool announced = false;
   while (!is_over(arguments)) {
@@ -61,7 +68,7 @@ int serve(const ServeArguments& arguments) {
     if (announced || !nodes.ready()) continue;
     announced = true;
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
-               arguments.nodes, socket.string(), socket.string());
+               nodes.ranks(), socket.string(), socket.string());
     std::fflush(stdout);
   }
   return 0;
@@ -73,9 +80,13 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<ServeArguments>();
   arguments->socket = runtime_directory() / "understudy-nodes.sock";
   CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
-  subcommand->add_option("-n,--nodes", arguments->nodes, "MPI ranks on this machine")
-      ->required()
+  subcommand
+      ->add_option(
+          "-n,--nodes", arguments->nodes,
+          "MPI ranks, on this machine or on those of --hostfile; without: as many as that has slots, or "
+          "a Slurm allocation tasks")
       ->check(CLI::Range(1, spu::max_nodes));
+  add_hostfile_option(*subcommand, arguments->hostfile);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);

@@ -81,6 +81,39 @@ class UnderstudyRun : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("understudy-run-test-" + std::to_string(getpid()));
 };
 
+TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
+  const auto file = [&](const std::string& text) {
+    std::ofstream(folder_ / "hosts") << text;
+    return (folder_ / "hosts").string();
+  };
+  const auto refused = [&](const std::string& hostfile, const std::string& why) {
+    const fs::path mark = folder_ / "started";
+    for (const std::string& command :
+         {"run --hostfile " + hostfile + " -- touch " + mark.string(),
+          "serve --hostfile " + hostfile + " --socket " + (folder_ / "sock").string(),
+          "render synthetic:8x8x8 --hostfile " + hostfile + " --out " + mark.string()}) {
+      const Result result = understudy(command);
+      EXPECT_NE(result.status, 0) << command;
+      EXPECT_THAT(result.output, HasSubstr(why)) << command;
+      EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1) << result.output;
+    }
+    EXPECT_FALSE(fs::exists(mark));
+    EXPECT_TRUE(nothing_is_left());
+  };
+  refused("/nowhere/hosts", "cannot be read: No such file or directory; expected a host a line");
+  refused(folder_.string(), "cannot be read: Is a directory");
+  refused(file("# nobody\n"), "names no host");
+  refused(file("localhost slots=-2\n"), "the slots of 'localhost' are no number from 1 to 256");
+  refused(file("localhost\n\x01\x02\n"), "line 2: this is no name or address of a host");
+  refused(file("192.0.2.7 slots=2\n"), "not this machine");
+}
+
+TEST_F(UnderstudyRun, NodesAreWantedByNumberOrByHosts) {
+  const Result result = understudy("serve --socket " + (folder_ / "sock").string());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.output, HasSubstr("Give -n N, or --hostfile FILE"));
+}
+
 TEST_F(UnderstudyRun, ReturnsTheViewersOwnExitStatusAndLeavesNothing) {
   for (const int status : {0, 7, 255}) {
     const Result result = understudy("run -- sh -c 'exit " + std::to_string(status) + "'");

@@ -1,0 +1,78 @@
+#include "apps/understudy/hosts/mpirun_command.h"
+
+#include <sstream>
+
+namespace understudy::launcher {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
+
+Words how_to_launch(const Placement& placement, const std::filesystem::path& folder) {
+  switch (placement.launch) {
+    case Launch::this_machine:
+      return {// No remote shell is looked for, no network device is needed.
+              "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
+              // Nor are ranks put onto the nodes of an allocation, of which a login node is none.
+              "--mca", "ras", "^slurm",
+              // Its session files go when the run's folder goes, whatever happens to it.
+              "--mca", "orte_tmpdir_base", folder.string()};
+    case Launch::remote_shell:
+      return {"--mca", "plm", "rsh", "--mca", "btl", "self,vader,tcp",
+              // A host that is cut off says nothing: it is missed after three seconds of silence and three
+              // questions, where the default is minutes.
+              "--mca", "oob_tcp_keepalive_time", "3", "--mca", "oob_tcp_keepalive_intvl", "1", "--mca",
+              "oob_tcp_keepalive_probes", "3"};
+    case Launch::slurm:
+      return {"--mca", "btl", "self,vader,tcp"};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::filesystem::path own_hostfile(const std::filesystem::path& folder) {
+  return folder / "hosts";
+}
+
+Words mpirun_words(const Placement& placement, const std::filesystem::path& folder) {
+  Words words{"mpirun", "-n", std::to_string(placement.ranks),
+              // More ranks than cores are usual here, and each rank uses all the cores it finds.
+              "--oversubscribe", "--bind-to", "none",
+              // Ranks that wait must not keep the others from their cores.
+              "--mca", "mpi_yield_when_idle", "1"};
+  if (placement.launch != Launch::this_machine) {
+    // Host after host, in the order of the file: rank 0 on the first, which is this one.
+    append(words, {"--map-by", "slot"});
+    if (!placement.hosts.empty()) append(words, {"--hostfile", own_hostfile(folder).string()});
+  }
+  append(words, how_to_launch(placement, folder));
+  return words;
+}
+
+Environment mpirun_environment(Environment nodes, const Placement& placement,
+                               const std::filesystem::path& folder) {
+  // As orte_tmpdir_base, but for this machine alone: others have no such folder, and use their own.
+  if (placement.launch == Launch::remote_shell) nodes["TMPDIR"] = folder.string();
+  return nodes;
+}
+
+Words launch_agent(const Environment& environment, bool (*is_there)(const std::string&)) {
+  const auto set = environment.find("OMPI_MCA_plm_rsh_agent");
+  std::istringstream alternatives(set == environment.end() || set->second.empty() ? "ssh : rsh" : set->second);
+  Words first;
+  for (std::string alternative; std::getline(alternatives, alternative, ':');) {
+    std::istringstream stream(alternative);
+    Words words;
+    for (std::string word; stream >> word;) words.push_back(word);
+    if (words.empty()) continue;
+    if (is_there(words.front())) return words;
+    if (first.empty()) first = words;
+  }
+  return first;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,28 @@
+// Open MPI's command for a node group, from where its ranks are to be.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/environment.h"
+#include "apps/understudy/hosts/placement.h"
+
+namespace understudy::launcher {
+
+/// mpirun and its options, for the node's program and its arguments to follow. `folder` is the run's: session
+/// files of this machine lie in it, and the file `hosts` that hostfile_text() made.
+std::vector<std::string> mpirun_words(const Placement& placement, const std::filesystem::path& folder);
+
+/// Of the environment that nodes run in, what mpirun needs.
+Environment mpirun_environment(Environment nodes, const Placement& placement,
+                               const std::filesystem::path& folder);
+
+/// The file in a run's folder that mpirun_words() names.
+std::filesystem::path own_hostfile(const std::filesystem::path& folder);
+
+/// What starts a program on another host: OMPI_MCA_plm_rsh_agent's words, or those of Open MPI's usual agents.
+/// The first of its alternatives ("ssh : rsh") that `is_there`; the first one when none is.
+std::vector<std::string> launch_agent(const Environment& environment, bool (*is_there)(const std::string&));
+
+}  // namespace understudy::launcher

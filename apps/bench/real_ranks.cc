@@ -117,7 +117,7 @@ void measure(const Settings& settings, const std::vector<Scene>& scenes, const W
              WayMeasured& measured) {
   measured.scenes.resize(scenes.size());
   launcher::OwnNodes nodes;
-  nodes.nodes = way.ranks;
+  nodes.placement.ranks = way.ranks;
   nodes.exchange = compositor::name_of(way.algorithm);
   nodes.home = name_of(way.home);
   launcher::with_own_nodes(nodes, [&](const std::string& socket) {

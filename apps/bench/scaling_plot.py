@@ -45,7 +45,7 @@ def plain(axis):
 def gains(axes, below, cases, most):
     """Speed-up and efficiency of cases: name -> (runs by partition, colour)."""
     axes.plot([1, most], [1, most], color="0.75", linewidth=1)
-    axes.annotate("ideal", (most / 4, most / 4), textcoords="offset points", xytext=(-6, 6), ha="right", fontsize=8,
+    axes.annotate("ideal", (most / 4, most / 4), textcoords="offset points", xytext=(-4, 2), ha="right", fontsize=8,
                   color="0.5")
     for name, (by_partition, colour) in cases.items():
         for partition, style in PARTITIONS.items():

@@ -178,34 +178,38 @@ class Player {
   // Row by row, so that what is blended stays in the nearest cache and a picture is written once.
   void blend_anew(std::span<Contribution> contributions, const Rect& afterwards) {
     const std::size_t floats = 4 * std::size_t(afterwards.width);
-    std::vector<float> blank(floats, volume::neutral_value(op_)), row(floats);
+    const float neutral = volume::neutral_value(op_);
     // This rank's own part of a row has been blended when the row is written.
     const bool in_place = image_.rect == afterwards;
     Image result;
-    if (!in_place) result.rgba.reserve(4 * afterwards.pixels());
+    result.rgba.reserve(in_place ? floats : 4 * afterwards.pixels());
     for (int y = afterwards.y; y < afterwards.y + afterwards.height; ++y) {
-      row = blank;
-      bool first = true;
-      for (Contribution& contribution : contributions) {
-        if (!has_row(contribution.rect, y)) continue;
-        const std::span<float> here = std::span(row).subspan(
-            4 * std::size_t(contribution.rect.x - afterwards.x), 4 * std::size_t(contribution.rect.width));
-        if (contribution.arrived && first)
-          contribution.arrived->read_row(here);
-        else if (contribution.arrived)
-          contribution.arrived->blend_row_behind(op_, here);
-        else
-          blend(op_, here, {image_.at(contribution.rect.x, y), here.size()});
-        first = false;
-      }
-      if (in_place)
-        std::ranges::copy(row, image_.at(afterwards.x, y));
-      else
-        result.rgba.insert(result.rgba.end(), row.begin(), row.end());
+      if (in_place) result.rgba.clear();
+      result.rgba.resize(result.rgba.size() + floats, neutral);
+      const std::span<float> row = std::span(result.rgba).last(floats);
+      blend_row(contributions, y, afterwards.x, row);
+      if (in_place) std::ranges::copy(row, image_.at(afterwards.x, y));
     }
     if (in_place) return;
     result.rect = afterwards;
     image_ = std::move(result);
+  }
+
+  // All contributions to a row that begins at x, behind nothing.
+  void blend_row(std::span<Contribution> contributions, int y, int x, std::span<float> row) {
+    bool first = true;
+    for (Contribution& contribution : contributions) {
+      const Rect& rect = contribution.rect;
+      if (!has_row(rect, y)) continue;
+      const std::span<float> here = row.subspan(4 * std::size_t(rect.x - x), 4 * std::size_t(rect.width));
+      if (contribution.arrived && first)
+        contribution.arrived->read_row(here);
+      else if (contribution.arrived)
+        contribution.arrived->blend_row_behind(op_, here);
+      else
+        blend(op_, here, {image_.at(rect.x, y), here.size()});
+      first = false;
+    }
   }
 
   static bool has_row(const Rect& rect, int y) { return y >= rect.y && y < rect.y + rect.height; }

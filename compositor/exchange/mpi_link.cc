@@ -22,12 +22,13 @@ constexpr std::size_t max_bytes_per_message = std::size_t(1) << 30;
 constexpr int picture_tag = 1;
 constexpr int note_tag = 2;
 
+constexpr auto patience = std::chrono::microseconds(100);
+
 // OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
 // ranks that still work: first it only yields, then it sleeps for a sixteenth of the time it has waited so far
 // (so the wait grows by a sixteenth at most), a millisecond at most.
 template <class Done>
-void wait_until(Done done) {
-  constexpr auto only_yield = std::chrono::microseconds(100);
+void wait_until(Done done, std::chrono::microseconds only_yield = patience) {
   constexpr auto longest_sleep = std::chrono::microseconds(1000);
   const auto start = Clock::now();
   while (!done()) {
@@ -39,12 +40,15 @@ void wait_until(Done done) {
   }
 }
 
-void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE) {
-  wait_until([&] {
-    int done = 0;
-    MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
-    return done != 0;
-  });
+void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE,
+              std::chrono::microseconds only_yield = patience) {
+  wait_until(
+      [&] {
+        int done = 0;
+        MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
+        return done != 0;
+      },
+      only_yield);
 }
 
 template <class Span, class Call>
@@ -96,7 +100,13 @@ void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incom
                 &requests.emplace_back());
     });
   std::vector<MPI_Status> statuses(requests.size());
-  complete(requests, statuses.data());
+  // Long messages move in pieces that both sides must ask for: who sleeps in between holds the other up. So
+  // ranks stay awake for as long as a slow machine takes to copy that much.
+  std::size_t bytes = 0;
+  for (const Outgoing& message : outgoing) bytes += message.bytes.size();
+  for (const Incoming& message : incoming) bytes += message.bytes.size();
+  constexpr std::size_t bytes_per_microsecond = 500;
+  complete(requests, statuses.data(), patience + std::chrono::microseconds(bytes / bytes_per_microsecond));
   for (std::size_t i = 0; i < incoming.size(); ++i) {
     if (incoming[i].received == nullptr) continue;
     *incoming[i].received = incoming[i].bytes.size();

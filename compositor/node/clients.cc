@@ -13,9 +13,11 @@ Clients::Clients(const std::string& control_path, int ranks, std::chrono::millis
       ranks_(ranks),
       stall_patience_(stall_patience) {
   launcher_.send(MessageType::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
+  heartbeat_.emplace(launcher_);
 }
 
 Clients::Event Clients::next() {
+  heartbeat_->end();
   for (;;) {
     if (!departed_.empty()) {
       const Departed departed{departed_.front()};
@@ -46,6 +48,9 @@ Clients::Event Clients::next() {
       if (fds[i + 1].revents != 0) {
         if (std::optional<Message> message = hear(numbers[i], client)) {
           last_heard_ = numbers[i];
+          // A step of a load takes what it takes.
+          if (message->type != MessageType::load_volume && message->type != MessageType::continue_load)
+            heartbeat_->begin(client.connection.fd());
           return Request{numbers[i], std::move(*message)};
         }
       } else if (client.connection.stalled(stall_patience_)) {
@@ -146,6 +151,7 @@ std::span<float> Clients::image_memory(std::uint64_t client) const {
 
 void Clients::drop(std::uint64_t number, const std::string& why) {
   if (!why.empty()) fmt::print(stderr, "understudy-node: dropped application {}: {}\n", number, why);
+  heartbeat_->end();
   clients_.erase(number);
   departed_.push_back(number);
 }

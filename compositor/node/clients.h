@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 
+#include "compositor/node/heartbeat.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
 
@@ -55,6 +57,7 @@ class Clients {
   void drop(std::uint64_t number, const std::string& why);
 
   Connection launcher_;
+  std::optional<Heartbeat> heartbeat_;  // begins behind the hello
   int ranks_;
   std::chrono::milliseconds stall_patience_;
   std::map<std::uint64_t, Client> clients_;

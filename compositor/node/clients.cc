@@ -13,9 +13,11 @@ Clients::Clients(const std::string& control_path, int ranks, std::chrono::millis
       ranks_(ranks),
       stall_patience_(stall_patience) {
   launcher_.send(MessageType::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
+  heartbeat_.emplace(launcher_);
 }
 
 Clients::Event Clients::next() {
+  heartbeat_->end();
   for (;;) {
     if (!departed_.empty()) {
       const Departed departed{departed_.front()};
@@ -46,6 +48,11 @@ Clients::Event Clients::next() {
       if (fds[i + 1].revents != 0) {
         if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
+          // A step of a load takes what it takes.
+          if (const auto* request = std::get_if<Request>(&*event);
+              request != nullptr && request->message.type != MessageType::load_volume &&
+              request->message.type != MessageType::continue_load)
+            heartbeat_->begin(connection.fd());
           return std::move(*event);
         }
       } else if (connection.stalled(stall_patience_)) {
@@ -139,6 +146,7 @@ void Clients::reply(const Request& request, MessageType type, Bytes payload) {
 
 void Clients::drop(std::uint64_t number, const std::string& why) {
   if (!why.empty()) fmt::print(stderr, "understudy-node: dropped application {}: {}\n", number, why);
+  heartbeat_->end();
   clients_.erase(number);
   departed_.push_back(number);
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <variant>
 
+#include "compositor/node/heartbeat.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/image_memory.h"
 
@@ -52,6 +53,7 @@ class Clients {
   void drop(std::uint64_t number, const std::string& why);
 
   Connection launcher_;
+  std::optional<Heartbeat> heartbeat_;  // begins behind the hello
   int ranks_;
   std::chrono::milliseconds stall_patience_;
   std::map<std::uint64_t, Connection> clients_;

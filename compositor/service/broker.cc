@@ -30,11 +30,8 @@ bool stirs(const Connection& connection) {
 
 }  // namespace
 
-Broker::Broker(std::string path, Say say, std::chrono::milliseconds hello_patience)
-    : path_(std::move(path)),
-      say_(std::move(say)),
-      hello_patience_(hello_patience),
-      listener_(listen_at(path_)) {
+Broker::Broker(std::string path, Say say, const BrokerPatience& patience)
+    : path_(std::move(path)), say_(std::move(say)), patience_(patience), listener_(listen_at(path_)) {
   if (!say_) say_ = [](const std::string& line) { fmt::print(stderr, "understudy: {}\n", line); };
   struct stat file {};
   if (::lstat(path_.c_str(), &file) == 0) {
@@ -85,7 +82,7 @@ void Broker::accept_all() {
       send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
       continue;
     }
-    newcomers_.push_back({std::move(connection), Clock::now() + hello_patience_});
+    newcomers_.push_back({std::move(connection), Clock::now() + patience_.hello});
   }
 }
 
@@ -115,6 +112,7 @@ void Broker::welcome(Peer peer, const Message& hello) {
     const int ranks = decode_hello(hello.payload).ranks;
     if (!nodes_.empty()) return say_(fmt::format("sent a second node group of {} ranks away", ranks));
     nodes_.push_back(std::move(peer.connection));
+    nodes_heard_at_ = Clock::now();
     ranks_ = ranks;
     lost_ = false;
     turned_away_.clear();
@@ -134,17 +132,34 @@ void Broker::hear_waiting() {
 }
 
 void Broker::hear_nodes() {
-  // A node group says nothing after its hello.
-  if (!nodes_.empty() && stirs(nodes_.front())) lose_nodes("the node group closed its connection");
+  if (nodes_.empty()) return;
+  try {
+    // All that is there, first: this process may have been held up itself.
+    while (const std::optional<Message> message = nodes_.front().receive_some()) {
+      if (message->type != MessageType::alive) return lose_nodes("rank 0 spoke out of turn");
+      nodes_heard_at_ = Clock::now();
+      const std::chrono::milliseconds unwanted(decode_alive(message->payload).unwanted_ms);
+      if (unwanted > patience_.unwanted)
+        return lose_nodes(fmt::format("they hang: a request is not done {} s after its application left",
+                                      std::chrono::duration_cast<std::chrono::seconds>(unwanted).count()));
+    }
+  } catch (const ConnectionLost&) {
+    return lose_nodes("the node group closed its connection");
+  } catch (const MalformedMessage& error) {
+    return lose_nodes(error.what());
+  }
+  if (Clock::now() > nodes_heard_at_ + patience_.silence)
+    lose_nodes(fmt::format("they hang: rank 0 has said nothing for {} s",
+                           std::chrono::duration_cast<std::chrono::seconds>(patience_.silence).count()));
 }
 
 void Broker::hand_over() {
   while (!nodes_.empty() && !waiting_.empty()) {
     try {
       nodes_.front().send(MessageType::client, 0, Bytes{}, Connection::now_or_never(), waiting_.front().fd());
-    } catch (const ConnectionLost& lost) {
-      if (stirs(nodes_.front())) lose_nodes(fmt::format("the node group {}", lost.what()));
-      return;  // busy: the next step tries again
+    } catch (const ConnectionLost&) {
+      // Busy: the next step tries again, and finds out if it has gone.
+      return;
     }
     waiting_.erase(waiting_.begin());
     ++handed_over_;

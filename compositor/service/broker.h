@@ -2,7 +2,9 @@
 //
 // It outlives node groups, because MPI ends a whole job when one rank dies. Applications that come while no
 // group is there are held; when rank 0 of a group has said hello, their connections are handed to it
-// (SCM_RIGHTS), and from then on application and rank 0 talk without the launcher.
+// (SCM_RIGHTS), and from then on application and rank 0 talk without the launcher. What the launcher hears of
+// rank 0 then is that it lives, once a second; a group that no longer says so, or that cannot get on with a
+// request that nobody waits for any longer, hangs and is given up.
 #pragma once
 
 #include <poll.h>
@@ -16,14 +18,20 @@
 
 namespace understudy::compositor {
 
+/// How long the launcher waits before it gives a peer up.
+struct BrokerPatience {
+  std::chrono::milliseconds hello = limits::hello_patience;
+  std::chrono::milliseconds silence = limits::silence_patience;
+  std::chrono::milliseconds unwanted = limits::unwanted_patience;
+};
+
 class Broker {
  public:
   using Say = std::function<void(const std::string&)>;
 
   /// Listens at `path` (mode 0600). `say` gets one line about everything that goes wrong later; by default it
   /// is written to stderr. Throws std::runtime_error when the path is taken or cannot be.
-  explicit Broker(std::string path, Say say = {},
-                  std::chrono::milliseconds hello_patience = limits::hello_patience);
+  explicit Broker(std::string path, Say say = {}, const BrokerPatience& patience = {});
   /// Closes all connections, which ends the node group, and removes the socket file.
   ~Broker();
   Broker(const Broker&) = delete;
@@ -39,7 +47,7 @@ class Broker {
   bool node_group_ready() const { return !nodes_.empty(); }
   /// How many ranks the group has; 0 without a group.
   int ranks() const { return nodes_.empty() ? 0 : ranks_; }
-  /// A node group was there and is gone: start another. False again once that one has said hello.
+  /// A node group was there and is gone, or hangs: start another. False again once that one has said hello.
   bool lost() const { return lost_; }
   /// Asks the group to end: its applications lose their connections. That is no loss in the sense of lost().
   void dismiss_node_group();
@@ -67,7 +75,7 @@ class Broker {
 
   std::string path_;
   Say say_;
-  std::chrono::milliseconds hello_patience_;
+  BrokerPatience patience_;
   FileDescriptor listener_;
   dev_t device_ = 0;  // of the socket file, so that only our own is removed
   ino_t inode_ = 0;
@@ -75,6 +83,7 @@ class Broker {
   std::vector<Peer> newcomers_;      // have not said hello
   std::vector<Connection> waiting_;  // applications
   std::vector<Connection> nodes_;    // the group: one or none
+  Deadline nodes_heard_at_{};
   int ranks_ = 0;
   bool lost_ = false;
   std::string turned_away_;

@@ -40,10 +40,14 @@ constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and serve
 
 // Patience. A peer that is silent between two messages may be so for ever (a viewer that nobody turns); within
 // a message, or when an answer is due, it may not.
-constexpr milliseconds hello_patience{5'000};    ///< from accept to a complete hello
-constexpr milliseconds stall_patience{10'000};   ///< between two pieces of one message
-constexpr milliseconds send_patience{10'000};    ///< until a message has left
-constexpr milliseconds reply_patience{30'000};   ///< an answer to anything but a request for a picture
-constexpr milliseconds render_patience{20'000};  ///< a picture
+constexpr milliseconds hello_patience{5'000};      ///< from accept to a complete hello
+constexpr milliseconds alive_interval{1'000};      ///< between two words of rank 0 that it lives
+constexpr milliseconds silence_patience{10'000};   ///< without such a word: rank 0 is stopped, or its machine
+constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose application has gone: the ranks hang
+constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
+constexpr milliseconds stall_patience{10'000};     ///< between two pieces of one message
+constexpr milliseconds send_patience{10'000};      ///< until a message has left
+constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
+constexpr milliseconds render_patience{20'000};    ///< a picture
 
 }  // namespace understudy::compositor::limits

@@ -36,7 +36,11 @@ class LinkedService : public LoadingService {
           fmt::format("{}: start the launcher again; the application draws by itself", error.what()));
     }
     const Message welcome = conversation([&] {
-      connection_->send(MessageType::hello_client, ++sequence_, Bytes{}, deadline);
+      try {
+        connection_->send(MessageType::hello_client, ++sequence_, Bytes{}, deadline);
+      } catch (const ConnectionLost&) {
+        // Who turns applications away does not hear them out, and has said why.
+      }
       if (!wait_until_ready(connection_->fd(), POLLIN, deadline))
         throw ConnectionLost(fmt::format("was not there within {} ms", patience_.connect.count()));
       return connection_->receive(Clock::now() + patience_.reply);

@@ -286,6 +286,19 @@ Hello decode_hello(std::span<const std::byte> payload) {
   return hello;
 }
 
+std::vector<std::byte> encode(const Alive& alive) {
+  Writer out;
+  out.integer(alive.unwanted_ms);
+  return out.bytes();
+}
+
+Alive decode_alive(std::span<const std::byte> payload) {
+  Reader in("alive", payload);
+  const Alive alive{in.small("unwanted", 0, limits::max_unwanted_ms)};
+  in.end();
+  return alive;
+}
+
 std::vector<std::byte> encode(const VolumeDescription& volume) {
   Writer out;
   out.integer(std::int64_t(volume.id));

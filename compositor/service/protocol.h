@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 7;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 8;         ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -45,7 +45,9 @@ enum class MessageType : std::uint16_t {
   // what pixels would show without a step (integral_parts.h)
   integrals,   ///< from an application to rank 0
   integrated,  ///< the reply
-  last = integrated
+  // from rank 0 to the launcher, once a second
+  alive,  ///< payload: Alive
+  last = alive
 };
 
 struct MessageHeader {
@@ -63,6 +65,11 @@ void check(const MessageHeader& header, std::uint64_t max_payload);
 
 struct Hello {
   int ranks = 0;
+};
+
+/// How long rank 0 has been at a request whose application has gone; limits::max_unwanted_ms if longer.
+struct Alive {
+  int unwanted_ms = 0;
 };
 
 struct Change {
@@ -89,6 +96,7 @@ struct RenderedReply {
 };
 
 std::vector<std::byte> encode(const Hello& hello);
+std::vector<std::byte> encode(const Alive& alive);
 std::vector<std::byte> encode(const volume::VolumeDescription& volume);
 /// Everything but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
 std::vector<std::byte> encode_texels_head(const Texels& texels);
@@ -103,6 +111,7 @@ std::vector<std::byte> encode_text(const std::string& text);  ///< cut at limits
 
 // All of these throw MalformedMessage. What comes back keeps within limits.h.
 Hello decode_hello(std::span<const std::byte> payload);
+Alive decode_alive(std::span<const std::byte> payload);
 volume::VolumeDescription decode_volume(std::span<const std::byte> payload);
 Change decode_change(std::span<const std::byte> payload);
 Texels decode_texels(std::span<const std::byte> payload);

@@ -52,7 +52,8 @@ class BrokerTest : public ::testing::Test {
   std::string path_ = folder_ / "control";
   std::vector<std::string> said_;
   std::unique_ptr<Broker> broker_ = std::make_unique<Broker>(
-      path_, [this](const std::string& line) { said_.push_back(line); }, std::chrono::milliseconds(300));
+      path_, [this](const std::string& line) { said_.push_back(line); },
+      BrokerPatience{std::chrono::milliseconds(300)});
 };
 
 TEST_F(BrokerTest, ItsSocketIsPrivateAndGoesWithIt) {

@@ -72,8 +72,9 @@ inline double largest_difference(const volume::Image& a, const volume::Image& b)
 /// The launcher's part, on a thread of its own.
 class Launcher {
  public:
-  explicit Launcher(const std::string& path)
-      : broker_(path, [this](const std::string& line) { said_.push_back(line); }),
+  explicit Launcher(const std::string& path, const BrokerPatience& patience = {})
+      : broker_(
+            path, [this](const std::string& line) { said_.push_back(line); }, patience),
         thread_([this](const std::stop_token& stop) {
           while (!stop.stop_requested()) {
             const std::lock_guard lock(mutex_);
@@ -85,6 +86,10 @@ class Launcher {
   auto ask(Ask ask) {
     const std::lock_guard lock(mutex_);
     return ask(broker_);
+  }
+  std::vector<std::string> said() {
+    const std::lock_guard lock(mutex_);
+    return said_;
   }
   bool wait_for_group() {
     return eventually([&] { return ask([](Broker& b) { return b.node_group_ready(); }); });

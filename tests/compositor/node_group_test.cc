@@ -836,6 +836,15 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
       [](Connection& c, const Message& m) { c.send(MessageType::done, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message& m) { c.send(MessageType::rendered, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message&) { ::send(c.fd(), "x marks the spot, not a header", 30, MSG_NOSIGNAL); },
+      // Nothing more, in the midst of a picture; half an answer, and nothing more.
+      [](Connection& c, const Message&) { ::shutdown(c.fd(), SHUT_RDWR); },
+      [](Connection& c, const Message& m) {
+        MessageHeader header{.type = MessageType::rendered};
+        header.sequence = m.sequence;
+        header.payload_bytes = 100;
+        ::send(c.fd(), &header, sizeof header, MSG_NOSIGNAL);
+        ::shutdown(c.fd(), SHUT_RDWR);
+      },
   };
   for (const auto& lie : lies) {
     std::jthread liar([&] {

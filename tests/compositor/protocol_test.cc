@@ -113,6 +113,7 @@ std::vector<Kind> all_kinds() {
   const auto request = [](std::span<const std::byte> b) { return encode(decode_request(b)); };
   return {
       {"hello", encode(Hello{7}), [](auto b) { return encode(decode_hello(b)); }},
+      {"alive", encode(Alive{1500}), [](auto b) { return encode(decode_alive(b)); }},
       {"volume", encode(some_volume()), [](auto b) { return encode(decode_volume(b)); }},
       {"change", encode(Change{4, 2}), [](auto b) { return encode(decode_change(b)); }},
       {"texels", texels_message({4, {{{1, 2, 3}, {2, 4, 5}}, {{0, 0, 0}, {3, 3, 1}}}, texels}),

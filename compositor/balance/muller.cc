@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "compositor/balance/balancer.h"
@@ -24,6 +25,7 @@ class MullerBalancer : public Balancer {
     Partition partition = input.partition;
     if (input.work.empty()) return partition;
     factors_.resize(partition.splits.size(), {settings_.hysteresis, settings_.hysteresis});
+    std::vector<std::optional<std::size_t>> moved(partition.splits.size());  // and which way
     walk_splits(partition, input.lattice, [&](std::size_t i, const TexelBox& box) {
       Partition::Split& split = partition.splits[i];
       const auto axis = std::size_t(split.axis);
@@ -42,17 +44,22 @@ class MullerBalancer : public Balancer {
       slice.high[axis] = std::min(box.high[axis], box.low[axis] + block);
       const auto blocks = double(blocks_in(slice));
       const double ms_per_block = (low_sum + high_sum) / double(blocks_in(box));
-      std::array<double, 2>& factor = factors_[i];
+      const std::array<double, 2>& factor = factors_[i];
       const double cost = blocks * ms_per_block + blocks * factor[towards] * input.ms_per_block;
       if (!(cost < std::abs(low_ms - high_ms))) return;
       const int cut =
           allowed_cut(partition, i, box, input.lattice, block, split.cut + (towards == 0 ? -block : block));
       if (cut == split.cut) return;
       split.cut = cut;
-      factor[1 - towards] += settings_.raised_by;
-      factor[towards] = std::max(0.0, factor[towards] - settings_.lowered_by);
+      moved[i] = towards;
     });
-    return with_room(input.partition, partition, input.lattice, input.most_blocks);
+    partition = with_room(input.partition, partition, input.lattice, input.most_blocks);
+    for (std::size_t i = 0; i < factors_.size(); ++i) {
+      if (!moved[i] || partition.splits[i].cut == input.partition.splits[i].cut) continue;
+      factors_[i][1 - *moved[i]] += settings_.raised_by;
+      factors_[i][*moved[i]] = std::max(0.0, factors_[i][*moved[i]] - settings_.lowered_by);
+    }
+    return partition;
   }
 
  private:

@@ -19,7 +19,9 @@ struct Work {
 ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link) {
   ExchangeCost result;
   std::vector<std::uint64_t> sent(schedule.position.size(), 0);
+  bool written = false;
   for (const Round& round : schedule.rounds) {
+    written = std::ranges::any_of(round.pieces, &Piece::written);
     std::vector<Work> work(schedule.position.size());
     for (const Piece& piece : round.pieces) {
       Work& to = work[std::size_t(piece.to)];
@@ -34,8 +36,12 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
         if (piece.from != piece.to) result.bytes_sent += head_bytes;
         continue;
       }
-      to.blended += piece.rect.pixels();
-      ++to.contributions;
+      if (written) {
+        to.written += piece.rect.pixels();
+      } else {
+        to.blended += piece.rect.pixels();
+        ++to.contributions;
+      }
       if (piece.from == piece.to) continue;
       from.pixels_out += piece.rect.pixels();
       to.pixels_in += piece.rect.pixels();
@@ -53,6 +59,8 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
     }
     result.seconds += slowest;
   }
+  // Rank 0 then writes all of it.
+  if (!written) result.seconds += link.per_pixel * double(schedule.whole.pixels());
   if (!sent.empty()) result.most_pixels_sent = *std::ranges::max_element(sent);
   return result;
 }

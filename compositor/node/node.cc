@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/crop.h"
 #include "compositor/exchange/cost.h"
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/measure_link.h"
@@ -52,6 +53,7 @@ struct Outcome {
   volume::Rect footprint;
   volume::FrameCounts counts;
   std::uint32_t notes = 0;  ///< of opaque tiles, to every rank behind
+  std::uint64_t note_messages = 0, note_bytes = 0;
   RankLoad load;
 
   void refuse(const char* why) {
@@ -84,6 +86,7 @@ class Node {
   void receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes);
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
+  void clear_hidden(std::vector<Outcome>& outcomes);
   std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
   Schedule schedule_of(std::span<const volume::Rect> footprints, const std::vector<bool>& reached_by);
   const ExchangeCost& cost_of_whole_windows();
@@ -166,6 +169,7 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
       Order order{Step::share_memory, {}, given->client, 0, 0, 0};
       link_.broadcast(0, bytes_of(order));
       memories_.share(order.client, std::move(given->memory));
+      priced_window_ = {};  // what is written home may be other parts
     } else {
       Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0, 0, 0};
       link_.broadcast(0, bytes_of(order));
@@ -432,7 +436,11 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         image_ =
             renderer_.render(order.client, request, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
         mine.footprint = image_.rect;
-        if (opaque_tiles_) mine.notes = opaque_tiles_->tell_rest();
+        if (opaque_tiles_) {
+          mine.notes = opaque_tiles_->tell_rest();
+          mine.note_messages = opaque_tiles_->messages();
+          mine.note_bytes = opaque_tiles_->bytes();
+        }
         break;
       }
       case MessageType::integrals: {
@@ -450,6 +458,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
     mine.refuse(error.what());
   }
   std::vector<Outcome> outcomes = agree(mine, filling);
+  if (order.type == MessageType::render && !first_refusal(outcomes)) clear_hidden(outcomes);
   if (rebalancer_ && order.type == MessageType::render && !first_refusal(outcomes)) {
     std::vector<RankWork> work;
     work.reserve(outcomes.size());
@@ -460,6 +469,20 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
   if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*filling);
   return outcomes;
+}
+
+// What this rank has drawn behind opaque tiles of others, before it heard of them, must not change footprints:
+// the picture would depend on when notes came.
+void Node::clear_hidden(std::vector<Outcome>& outcomes) {
+  if (std::ranges::all_of(outcomes, [](const Outcome& outcome) { return outcome.notes == 0; })) return;
+  std::vector<std::uint32_t> notes;
+  notes.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
+  opaque_tiles_->clear_hidden(image_, notes);
+  crop_to_content(image_, op_);
+  std::vector<volume::Rect> footprints(outcomes.size());
+  link_.gather_to_all(bytes_of(image_.rect), std::as_writable_bytes(std::span(footprints)));
+  for (std::size_t rank = 0; rank < outcomes.size(); ++rank) outcomes[rank].footprint = footprints[rank];
 }
 
 // What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
@@ -500,12 +523,6 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
-  if (opaque_tiles_) {
-    std::vector<std::uint32_t> notes;
-    notes.reserve(outcomes.size());
-    for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
-    opaque_tiles_->clear_hidden(image_, notes);
-  }
   const PictureMemories::Memory& memory = memories_.of(rendered_.client);
   if (!link_cost_) link_cost_ = measure_link(link_);
   Schedule chosen = schedule_of(footprints, memory.reached_by);
@@ -516,6 +533,10 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
   if (link_.rank() == 0) {
     const ExchangeCost& whole = cost_of_whole_windows();
     counts.bytes_exchanged += exchanged.bytes;
+    for (const Outcome& outcome : outcomes) {
+      counts.bytes_exchanged += outcome.note_bytes;
+      counts.messages += outcome.note_messages;
+    }
     counts.bytes_of_whole_windows += whole.bytes_sent;
     counts.messages += cost(chosen, layout_, LinkCost()).messages;
     counts.messages_of_whole_windows += whole.messages;

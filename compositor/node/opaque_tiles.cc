@@ -30,8 +30,6 @@ OpaqueTiles::OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderR
       window_(intersection(request.window, request.viewport)),
       tiles_(volume::tiles_touched(window_)),
       hidden_(tiles_.pixels()),
-      covered_(tiles_.pixels()),
-      told_(tiles_.pixels()),
       notes_heard_(footprints.size()) {
   // Notes go where footprints share a tile.
   const Rect mine = volume::tiles_touched(footprints[std::size_t(link.rank())]);
@@ -48,7 +46,8 @@ bool OpaqueTiles::hides(const Rect& pixels) {
   // Only one thread may use the link.
   if (std::this_thread::get_id() == thread_) {
     while (const std::optional<Note> note = link_.take_note()) hear(*note);
-    tell();
+    constexpr std::size_t worth_a_note = 8;
+    tell(worth_a_note);
   }
   if (nearer_.empty()) return false;
   const Rect touched = volume::tiles_touched(intersection(pixels, window_));
@@ -64,27 +63,26 @@ void OpaqueTiles::cover(const Rect& pixels) {
   for (int row = touched.y; row < touched.y + touched.height; ++row)
     for (int column = touched.x; column < touched.x + touched.width; ++column) {
       if (!contains(pixels, intersection(window_, pixels_of_tile(column, row)))) continue;
-      covered_[index_of(column, row)].store(1, std::memory_order_relaxed);
-      covered_more_.store(true, std::memory_order_release);
+      const std::lock_guard lock(mutex_);
+      covered_.push_back(std::uint32_t(index_of(column, row)));
     }
 }
 
-void OpaqueTiles::tell() {
-  if (!covered_more_.exchange(false, std::memory_order_acquire)) return;
-  std::vector<std::uint32_t> note{number_};
-  const auto send = [&] {
-    if (note.size() == 1) return;
+void OpaqueTiles::tell(std::size_t least) {
+  std::vector<std::uint32_t> tiles;
+  {
+    const std::lock_guard lock(mutex_);
+    if (covered_.size() < std::max<std::size_t>(least, 1)) return;
+    tiles.swap(covered_);
+  }
+  for (std::size_t i = 0; i < tiles.size(); i += tiles_per_note) {
+    std::vector<std::uint32_t> note{number_};
+    const auto some = std::span(tiles).subspan(i, std::min(tiles_per_note, tiles.size() - i));
+    note.insert(note.end(), some.begin(), some.end());
     for (const Rank rank : farther_) link_.post(rank, std::as_bytes(std::span(note)));
     ++notes_told_;
-    note.resize(1);
-  };
-  for (std::size_t i = 0; i < covered_.size(); ++i) {
-    if (told_[i] != 0 || covered_[i].load(std::memory_order_relaxed) == 0) continue;
-    told_[i] = 1;
-    note.push_back(std::uint32_t(i));
-    if (note.size() > tiles_per_note) send();
+    bytes_told_ += std::as_bytes(std::span(note)).size();
   }
-  send();
 }
 
 void OpaqueTiles::hear(const Note& note) {
@@ -98,7 +96,7 @@ void OpaqueTiles::hear(const Note& note) {
 }
 
 std::uint32_t OpaqueTiles::tell_rest() {
-  tell();
+  tell(1);
   return notes_told_;
 }
 

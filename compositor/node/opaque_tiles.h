@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <thread>
 #include <vector>
@@ -31,7 +32,10 @@ class OpaqueTiles final : public volume::Occlusion {
 
   /// When this rank has drawn: tells what it has not told yet. Returns how many notes each rank behind it got.
   std::uint32_t tell_rest();
-  /// When all ranks have, with what they returned: clears the pixels of `image` that are hidden.
+  /// Of all notes that this rank has sent.
+  std::uint64_t messages() const { return std::uint64_t(notes_told_) * farther_.size(); }
+  std::uint64_t bytes() const { return bytes_told_ * farther_.size(); }
+  /// When all ranks have, with what their tell_rest() returned: clears the pixels of `image` that are hidden.
   void clear_hidden(volume::Image& image, std::span<const std::uint32_t> notes_of_ranks);
 
  private:
@@ -40,7 +44,7 @@ class OpaqueTiles final : public volume::Occlusion {
   std::size_t index_of(int column, int row) const {
     return std::size_t(row - tiles_.y) * std::size_t(tiles_.width) + std::size_t(column - tiles_.x);
   }
-  void tell();
+  void tell(std::size_t least);
   void hear(const Note& note);
 
   Link& link_;
@@ -49,10 +53,11 @@ class OpaqueTiles final : public volume::Occlusion {
   volume::Rect window_;
   volume::Rect tiles_;  ///< of the window
   std::vector<Rank> nearer_, farther_;
-  Tiles hidden_, covered_;
-  std::atomic<bool> covered_more_ = false;  ///< than was told
-  std::vector<std::uint8_t> told_;
+  Tiles hidden_;
+  std::mutex mutex_;
+  std::vector<std::uint32_t> covered_;  ///< tiles that are not told of yet
   std::uint32_t notes_told_ = 0;
+  std::uint64_t bytes_told_ = 0;            ///< to every rank behind
   std::vector<std::uint32_t> notes_heard_;  ///< by rank
 };
 

@@ -5,9 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -50,12 +48,13 @@ Place place_of(const ImageMemory& memory) {
 ImageMemory reached(const Place& place) {
   if (place.machine != this_machine() || place.machine.front() == 0) return {};
   const std::string path = fmt::format("/proc/{}/fd/{}", place.process, place.descriptor);
-  FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  // Another container has other processes under the same numbers, whose files must not so much as be opened.
+  const FileDescriptor found(::open(path.c_str(), O_PATH | O_CLOEXEC));
   struct stat status {};
-  // Another container has other processes under the same numbers.
-  if (!file || ::fstat(file.get(), &status) != 0 || status.st_dev != place.device ||
+  if (!found || ::fstat(found.get(), &status) != 0 || status.st_dev != place.device ||
       status.st_ino != place.file)
     return {};
+  FileDescriptor file(::open(fmt::format("/proc/self/fd/{}", found.get()).c_str(), O_RDWR | O_CLOEXEC));
   try {
     return ImageMemory::map(std::move(file), place.bytes);
   } catch (const std::runtime_error&) {

@@ -88,6 +88,8 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   std::optional<BlockCosts> costs;
   std::vector<float> mine, all;
   std::vector<TexelBox> boxes;
+  std::size_t most_here = 0;
+  std::vector<std::size_t> most_blocks;
   Volume* volume = nullptr;
   std::exception_ptr trouble;
   try {
@@ -108,6 +110,10 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
     volume::add_expected_samples(bricks, *request, *costs);
     std::size_t most = 0;
     for (const TexelBox& box : boxes) most = std::max(most, volume::texels_in(cubes_touched(*costs, box)));
+    if (volume->most_blocks.empty()) {
+      most_here = most_blocks_here(bricks);
+      most_blocks.resize(boxes.size());
+    }
     mine.resize(most);
     all.resize(most * boxes.size());
     std::size_t next = 0;
@@ -120,8 +126,10 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   if (trouble) std::rethrow_exception(trouble);
   if (!agreed) return std::move(*request);  // another rank refuses it
 
-  if (volume->most_blocks.empty())
-    volume->most_blocks = most_blocks_of_ranks(renderer_.bricks(client, *request));
+  if (volume->most_blocks.empty()) {
+    link_.gather_to_all(bytes_of(most_here), std::as_writable_bytes(std::span(most_blocks)));
+    volume->most_blocks = std::move(most_blocks);
+  }
   link_.gather_to_all(std::as_bytes(std::span(mine)), std::as_writable_bytes(std::span(all)));
   std::ranges::fill(costs->values(), 0.0);
   for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
@@ -145,15 +153,13 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   return std::move(*request);
 }
 
-// What each rank holds, and what more it has memory for.
-std::vector<std::size_t> Rebalancer::most_blocks_of_ranks(const BrickStore& bricks) {
+// What this rank holds, and what more it has memory for if all blocks take as much as they can: those of one
+// value take next to none.
+std::size_t Rebalancer::most_blocks_here(const BrickStore& bricks) const {
   // A block that comes is in a message, unpacked, and in the store for a while.
   constexpr std::size_t copies = 3;
   const std::size_t block_bytes = BrickStore::block_texels * bytes_per_texel(bricks.description().type);
-  std::size_t mine = bricks.blocks() + settings_.memory_left() / (copies * block_bytes);
-  std::vector<std::size_t> all(std::size_t(link_.size()));
-  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(all)));
-  return all;
+  return bricks.blocks() + settings_.memory_left() / (copies * block_bytes);
 }
 
 void Rebalancer::after_picture(VolumeKey key, std::span<const RankWork> work) {
@@ -180,6 +186,7 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
        difference(blocks_kept(description, before[me]), blocks_kept(description, after[me])))
     for_each_place(given, [&](const BlockPlace& place) { volume.given_away.put(place, bricks.packed(place)); });
   renderer_.divide(key, next, [&](const BlockPlace& place) { return std::move(received.at(place)); });
+  volume.most_blocks.clear();  // asked for anew
   figures.ms = ms_since(start);
   // The slowest rank's, so that all reckon with the same.
   std::vector<double> times(std::size_t(link_.size()));

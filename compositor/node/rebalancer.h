@@ -35,7 +35,7 @@ struct BalanceSettings {
   std::function<void(const MoveFigures&)> moved = [](const MoveFigures&) {};
   /// Of blocks that were given away, kept by each rank for each volume.
   std::size_t cache_bytes = std::size_t(64) << 20;
-  /// Bytes that this rank may still fill, asked before a volume's first picture.
+  /// Bytes that this rank may still fill, asked before a volume's first picture and after each move.
   std::function<std::size_t()> memory_left = [] { return std::numeric_limits<std::size_t>::max(); };
 };
 
@@ -63,7 +63,7 @@ class Rebalancer {
     BlockCache given_away;
     std::vector<RankWork> work;
     double ms_per_block = 0;
-    std::vector<std::size_t> most_blocks;  ///< by rank
+    std::vector<std::size_t> most_blocks;  ///< by rank; empty: to be asked for
   };
 
   void move(VolumeKey key, Volume& volume, const volume::RenderRequest& request, const volume::Partition& next);
@@ -71,7 +71,7 @@ class Rebalancer {
                    std::span<const volume::TexelBox> after,
                    std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures);
   bool all_agree(bool mine);
-  std::vector<std::size_t> most_blocks_of_ranks(const volume::BrickStore& bricks);
+  std::size_t most_blocks_here(const volume::BrickStore& bricks) const;
 
   Link& link_;
   RankRenderer& renderer_;

@@ -233,6 +233,41 @@ TEST_F(NodeGroupTest, PartsGoHomeDirectlyOrGathered) {
   }
 }
 
+TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
+  const Texture texture = some_texture();
+  volume::RenderRequest request =
+      volume::testing::request_for(texture, volume::testing::usual_camera(640, 480), 640, 480, 50);
+  for (volume::Rgba& entry : std::get<volume::TransferFunction>(request.classification).entries)
+    entry[3] = 0.9F;
+  for (const int ranks : {3, 5}) {
+    const Group& group = start(ranks);
+    const auto linked = connect();
+    upload(*linked, texture);
+    request.termination = 0;
+    const Rendered all = linked->render(request);
+    const std::uint64_t bytes = all.counts.bytes_exchanged, samples = all.counts.samples;
+    const volume::Image picture = whole_picture(all, request);
+    request.termination = 5e-6F;
+    std::optional<volume::Image> first;
+    for (int i = 0; i < 5; ++i) {
+      const Rendered rendered = linked->render(request);
+      EXPECT_LT(rendered.counts.bytes_exchanged, bytes);
+      EXPECT_EQ(rendered.counts.samples, samples);
+      EXPECT_GT(rendered.counts.samples_hidden, 0U);
+      const volume::Image image = whole_picture(rendered, request);
+      EXPECT_LE(largest_difference(image, picture), 1e-5);
+      if (!first) first = image;
+      EXPECT_EQ(image.rgba, first->rgba) << "whenever notes come";
+      // One that is refused leaves no note that counts.
+      volume::RenderRequest wrong = request;
+      wrong.version = 99;
+      EXPECT_THROW(linked->render(wrong), RequestRefused);
+    }
+    launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
+    EXPECT_TRUE(eventually([&] { return group.ended(); }));
+  }
+}
+
 TEST_F(NodeGroupTest, PartsMayTravelAsHalves) {
   start(3);
   const auto linked = connect();

@@ -66,6 +66,27 @@ TEST(OpaqueTiles, WhatIsBehindThemIsCleared) {
   });
 }
 
+TEST(OpaqueTiles, WindowsMayBeginLeftOfAndBelowTheOrigin) {
+  RenderRequest request;
+  request.window = request.viewport = {-50, -40, 120, 100};
+  const std::array<Rank, 2> order{1, 0};
+  const std::array<Rect, 2> footprints{request.window, Rect{-50, -40, 50, 40}};
+  run_ranks(2, [&](Link& link) {
+    OpaqueTiles tiles(link, 1, request, order, footprints);
+    Image image = opaque_image(footprints[std::size_t(link.rank())]);
+    cover_opaque_tiles(image, request, tiles);
+    std::uint32_t mine = tiles.tell_rest();
+    std::vector<std::uint32_t> notes(2);
+    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
+    tiles.clear_hidden(image, notes);
+    if (link.rank() == 0) {
+      EXPECT_TRUE(is_clear(image, footprints[1]));
+      EXPECT_FALSE(is_clear(image, {0, -40, 1, 1}));
+      EXPECT_FALSE(is_clear(image, {-50, 0, 1, 1}));
+    }
+  });
+}
+
 TEST(OpaqueTiles, TilesEndAtTheWindow) {
   // The window's last tiles are 8 pixels wide and 26 high.
   const RenderRequest request = wide_request(200, 90);

@@ -132,7 +132,7 @@ HWY_INLINE void unpack_one(const std::uint32_t* from, Word& last, float* to) {
     const Word negative = hn::Sub(hn::Zero(d), hn::And(value, hn::Set(d, 1)));
     last = hn::Add(last, hn::Xor(hn::ShiftRight<1>(value), negative));
     if constexpr (bits_of(layout) < 32)
-      last = hn::And(last, hn::Set(d, (std::uint32_t(1) << bits_of(layout)) - 1));
+      last = hn::And(last, hn::Set(d, ~std::uint32_t(0) >> (32 - bits_of(layout))));
   }
   store_floats<layout>(last, to + lanes * i);
 }

@@ -53,7 +53,8 @@ std::optional<Names> names_of_entry(std::string_view entry) {
   if (numbers->size() * ends.size() > most_names) return {};
   Names names;
   for (const std::string& middle : *numbers)
-    for (const std::string& end : ends) names.push_back(std::string(entry.substr(0, open)) + middle + end);
+    for (const std::string& end : ends)
+      names.push_back(fmt::format("{}{}{}", entry.substr(0, open), middle, end));
   return names;
 }
 

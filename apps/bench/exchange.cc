@@ -126,8 +126,9 @@ class Ours {
         .compose =
             [this, algorithm, layout, &order] {
               const std::vector<Rect> footprints = footprints_of(image_.rect, link_);
-              const compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
-                                                          : cheapest(order, footprints, layout, cost_);
+              compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
+                                                    : cheapest(order, footprints, layout, cost_);
+              plan.packed = true;  // as on lines between machines
               picture_ =
                   compositor::exchange(std::move(image_), plan, volume::Operator::over, layout, link_).picture;
             },

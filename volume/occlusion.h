@@ -20,8 +20,8 @@ class Occlusion {
   virtual bool hides(const Rect& pixels) = 0;
   /// These pixels are drawn, and opaque. Tiles of the window that lie in them as a whole now hide others.
   virtual void cover(const Rect& pixels) = 0;
-  /// Whether to draw the last tiles first: of two ranks, one behind the other and equally fast, one would always
-  /// be told too late if both began at the same end.
+  /// Whether to draw the last tiles first: of two ranks, one behind the other and equally fast, one would
+  /// always be told too late if both began at the same end.
   virtual bool from_the_end() const = 0;
 
  protected:

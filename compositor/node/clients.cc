@@ -49,9 +49,9 @@ Clients::Event Clients::next() {
         if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
           // A step of a load takes what it takes.
-          if (const auto* request = std::get_if<Request>(&*event);
-              request != nullptr && request->message.type != MessageType::load_volume &&
-              request->message.type != MessageType::continue_load)
+          const auto* request = std::get_if<Request>(&*event);
+          if (request == nullptr || (request->message.type != MessageType::load_volume &&
+                                     request->message.type != MessageType::continue_load))
             heartbeat_->begin(connection.fd());
           return std::move(*event);
         }

@@ -109,7 +109,7 @@ double exchange_time(Algorithm algorithm, int ranks, Costs costs) {
 }
 
 TEST(FrameTime, OfMessagesIsThatOfLogGp) {
-  const double bytes = 12 + 16 * 100;
+  const double bytes = compositor::head_bytes + compositor::bytes_per_run + 16 * 100;
   Costs costs = only_samples();
   costs.latency = 1000;
   EXPECT_DOUBLE_EQ(exchange_time(Algorithm::serial, 8, costs), 1000);  // all at once

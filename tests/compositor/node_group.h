@@ -1,0 +1,83 @@
+// A whole node group in one process, for tests: ranks are threads, sockets are real.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "compositor/exchange/thread_link.h"
+#include "compositor/node/node.h"
+#include "compositor/service/connection.h"
+#include "compositor/service/linked.h"
+#include "tests/compositor/group_scene.h"
+
+namespace understudy::compositor::testing {
+
+using std::chrono::milliseconds;
+
+inline Deadline soon() {
+  return Clock::now() + std::chrono::seconds(20);
+}
+
+// Ranks on threads, which end when the launcher closes its connection.
+class Group {
+ public:
+  using Wrap = std::function<void(Link&, const std::function<void(Link&)>&)>;
+
+  Group(int ranks, const std::string& path, milliseconds stall_patience = limits::stall_patience,
+        Wrap wrap = {}, ExchangeSettings exchange = {})
+      : thread_([=, this] {
+          try {
+            run_ranks(ranks, [&](Link& link) {
+              const auto run = [&](Link& l) { run_node(l, path, stall_patience, exchange); };
+              wrap ? wrap(link, run) : run(link);
+            });
+          } catch (const std::exception& error) {
+            std::printf("node group: %s\n", error.what());
+          }
+          ended_ = true;
+        }) {}
+  bool ended() const { return ended_; }
+
+ private:
+  std::atomic<bool> ended_ = false;
+  std::jthread thread_;
+};
+
+class NodeGroupTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    // The launcher goes first: its groups then end, and are joined.
+    launcher_.reset();
+    groups_.clear();
+  }
+
+  Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {},
+               const ExchangeSettings& exchange = {}) {
+    groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap, exchange));
+    EXPECT_TRUE(launcher_->wait_for_group());
+    return *groups_.back();
+  }
+  std::unique_ptr<RenderService> connect() { return linked_service(path_, 20'000); }
+  // An application that knows the protocol but has no manners.
+  std::unique_ptr<Connection> raw_client() {
+    auto result = std::make_unique<Connection>(connect_to(path_, soon()));
+    result->send(MessageType::hello_client, 1, Bytes{}, soon());
+    EXPECT_EQ(result->receive(soon()).type, MessageType::welcome);
+    return result;
+  }
+
+  ScratchFolder folder_;
+  std::string path_ = folder_ / "control";
+  std::unique_ptr<Launcher> launcher_ = std::make_unique<Launcher>(path_);
+  std::vector<std::unique_ptr<Group>> groups_;
+};
+
+}  // namespace understudy::compositor::testing

@@ -106,6 +106,14 @@ constexpr std::array rows{
     Row{{"--pixels", "UNDERSTUDY_PIXELS", "NAME", "float",
          "what travels between nodes: float (exact), half (rounds to 1/2048 of a value), byte (to 1/510)"},
         set_name<&Options::pixels, compositor::set_layout>},
+    Row{{"--home", "UNDERSTUDY_HOME", "WAY", "direct",
+         "how parts of a picture come to the viewer: direct (every node of this machine writes its own into "
+         "the "
+         "viewer's memory) or gathered (by one node)"},
+        set_name<&Options::home, compositor::set_home>},
+    Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
+         "composite parts of a picture while others are drawn: on, off, or auto, where that was faster"},
+        set_name<&Options::overlap, compositor::set_overlap>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
          "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
          "of "

@@ -26,6 +26,8 @@ struct Options {
   std::string save_frames;        ///< folder for PFM files; empty: none
   std::string exchange = "auto";  ///< name of compositor::set_algorithm
   std::string pixels = "float";   ///< name of compositor::set_layout
+  std::string home = "direct";    ///< name of compositor::set_home
+  std::string overlap = "auto";   ///< name of compositor::set_overlap
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application

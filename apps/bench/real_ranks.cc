@@ -119,8 +119,9 @@ void measure(const Settings& settings, const std::vector<Scene>& scenes, const W
   measured.scenes.resize(scenes.size());
   launcher::OwnNodes nodes;
   nodes.placement.ranks = way.ranks;
-  nodes.exchange = compositor::name_of(way.algorithm);
-  nodes.home = name_of(way.home);
+  nodes.choices.exchange = compositor::name_of(way.algorithm);
+  nodes.choices.home = name_of(way.home);
+  nodes.choices.overlap = "off";
   launcher::with_own_nodes(nodes, [&](const std::string& socket) {
     constexpr std::chrono::minutes patience{5};
     const auto service =

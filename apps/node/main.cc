@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   choice("--exchange", set_algorithm, "How partial images become one");
   choice("--pixels", set_layout, "What numbers travel between ranks");
   choice("--home", set_home, "How the parts of a picture come to the application");
+  choice("--overlap", set_overlap, "Whether pictures are composited while they are drawn");
   std::string backend = "cpu";
   app.add_option("--backend", backend, "Who casts the rays")->check([](const std::string& name) -> std::string {
     if (volume::glsl::backend_of(name)) return {};

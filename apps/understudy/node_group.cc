@@ -70,12 +70,9 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
                        const Placement& placement) {
   Command command;
   command.arguments = mpirun_words(placement, plan.folder);
-  for (const std::string& word :
-       {installation.node().string(), std::string("--control"), plan.socket.string(), std::string("--exchange"),
-        plan.exchange, std::string("--pixels"), plan.pixels, std::string("--home"), plan.home,
-        std::string("--backend"), plan.backend, std::string("--gpu-memory"), plan.gpu_memory,
-        std::string("--balance"), plan.balance})
+  for (const std::string& word : {installation.node().string(), std::string("--control"), plan.socket.string()})
     command.arguments.push_back(word);
+  for (const std::string& word : plan.choices.words()) command.arguments.push_back(word);
   command.environment =
       mpirun_environment(node_environment(current_environment(), installation), placement, plan.folder);
   command.output = log_of(plan);

@@ -18,6 +18,7 @@
 #include "apps/understudy/hosts/host_probe.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/installation.h"
+#include "apps/understudy/node_choices.h"
 #include "compositor/service/broker.h"
 
 namespace understudy::launcher {
@@ -31,12 +32,7 @@ struct NodeGroupPlan {
   Placement placement{Launch::this_machine, 1, {}};
   std::filesystem::path socket;
   std::filesystem::path folder;  ///< for the nodes' log and mpirun's own files; must exist
-  std::string exchange = "auto";
-  std::string pixels = "float";
-  std::string backend = "cpu";  ///< who casts the nodes' rays, as understudy-node takes it
-  std::string gpu_memory = "auto";
-  std::string balance = "off";  ///< who gets how much of a volume, as understudy-node takes it
-  std::string home = "direct";  ///< how the parts of a picture come to the viewer, as understudy-node takes it
+  NodeChoices choices;
 };
 
 /// Why no nodes can be started here, with the fix, in one line; empty when they can.

@@ -26,9 +26,11 @@ void add_node_option(CLI::App& subcommand, const std::string& flag, std::string&
 
 }  // namespace
 
-void add_exchange_options(CLI::App& subcommand, std::string& exchange, std::string& pixels) {
-  add_node_option(subcommand, "--exchange", exchange);
-  add_node_option(subcommand, "--pixels", pixels);
+void add_exchange_options(CLI::App& subcommand, NodeChoices& choices) {
+  add_node_option(subcommand, "--exchange", choices.exchange);
+  add_node_option(subcommand, "--pixels", choices.pixels);
+  add_node_option(subcommand, "--home", choices.home);
+  add_node_option(subcommand, "--overlap", choices.overlap);
 }
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) {

@@ -1,15 +1,17 @@
-// Options of commands that start nodes: `--exchange` and `--pixels`, how partial pictures become one, and
-// `--hostfile`, where the ranks are.
+// Options of commands that start nodes: `--exchange`, `--pixels`, `--home` and `--overlap`, how partial
+// pictures become one, and `--hostfile`, where the ranks are.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
+#include "apps/understudy/node_choices.h"
+
 namespace understudy::launcher {
 
 /// As spu/options.h has them; their variables count too, for viewers that start nodes of their own.
-void add_exchange_options(CLI::App& subcommand, std::string& exchange, std::string& pixels);
+void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile);
 

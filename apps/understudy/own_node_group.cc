@@ -53,14 +53,10 @@ std::vector<std::string> with_own_nodes(const OwnNodes& own,
   const RunFolder folder;
   const std::string socket = folder.path() / "nodes.sock";
   std::optional<NodeGroup> group;
-  group.emplace(installation, NodeGroupPlan{.placement = own.placement,
-                                            .socket = socket,
-                                            .folder = folder.path(),
-                                            .exchange = own.exchange,
-                                            .pixels = own.pixels,
-                                            .backend = own.backend,
-                                            .gpu_memory = own.gpu_memory,
-                                            .home = own.home});
+  group.emplace(
+      installation,
+      NodeGroupPlan{
+          .placement = own.placement, .socket = socket, .folder = folder.path(), .choices = own.choices});
 
   const FileDescriptor job_over = checked(eventfd(0, EFD_CLOEXEC));
   const FileDescriptor events = either({inbox.descriptor(), job_over.get()});

@@ -6,16 +6,13 @@
 #include <vector>
 
 #include "apps/understudy/hosts/placement.h"
+#include "apps/understudy/node_choices.h"
 
 namespace understudy::launcher {
 
 struct OwnNodes {
   Placement placement{Launch::this_machine, 1, {}};
-  std::string exchange = "auto";
-  std::string pixels = "float";
-  std::string backend = "cpu";
-  std::string gpu_memory = "auto";
-  std::string home = "direct";
+  NodeChoices choices;
 };
 
 /// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks

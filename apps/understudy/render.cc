@@ -51,10 +51,7 @@ struct RenderArguments {
   std::optional<int> nodes;
   std::filesystem::path hostfile;
   std::string connect;  ///< a socket of nodes that run already
-  std::string exchange = "auto";
-  std::string pixels = "float";
-  std::string backend = "cpu";
-  std::string gpu_memory = "auto";
+  NodeChoices choices;
   ShadingArguments shading;
   std::string table = "grey";
   std::string camera = "30,20,4";
@@ -257,11 +254,11 @@ int render(const RenderArguments& arguments) {
   Placement placement;  // without ranks: in this process
   if (arguments.connect.empty())
     placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
-  if (placement.ranks == 0 && arguments.backend != "cpu")
+  if (placement.ranks == 0 && arguments.choices.backend != "cpu")
     throw std::invalid_argument(
         fmt::format("--backend {} is for nodes of this rendering: give -n N as well, or give it to "
                     "understudy serve",
-                    arguments.backend));
+                    arguments.choices.backend));
   Scene scene = scene_of(arguments);
   RenderFigures figures;
   std::vector<std::string> backends;
@@ -274,9 +271,7 @@ int render(const RenderArguments& arguments) {
     if (!arguments.connect.empty())
       with_linked(arguments.connect);
     else if (placement.ranks > 0)
-      backends = with_own_nodes(
-          {placement, arguments.exchange, arguments.pixels, arguments.backend, arguments.gpu_memory},
-          with_linked);
+      backends = with_own_nodes({placement, arguments.choices}, with_linked);
     else
       figures = render_with(*compositor::embedded_loading_service(), scene, arguments);
   } catch (const compositor::ServiceLost& lost) {
@@ -312,9 +307,9 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("SOCKET")
       ->excludes(nodes)
       ->excludes(render_command->get_option("--hostfile"));
-  add_backend_option(*render_command, arguments->backend);
-  add_gpu_memory_option(*render_command, arguments->gpu_memory);
-  add_exchange_options(*render_command, arguments->exchange, arguments->pixels);
+  add_backend_option(*render_command, arguments->choices.backend);
+  add_gpu_memory_option(*render_command, arguments->choices.gpu_memory);
+  add_exchange_options(*render_command, arguments->choices);
   render_command->add_option("--out", arguments->out, "the picture, over black")
       ->type_name("P.png")
       ->required();

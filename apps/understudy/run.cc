@@ -199,9 +199,16 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   const RunFolder folder;
   std::optional<NodeGroupPlan> plan;
   if (placement.ranks > 0 && may_have_nodes) {
-    plan = NodeGroupPlan{
-        placement,         folder.path() / "nodes.sock", folder.path(),    options.exchange, options.pixels,
-        arguments.backend, arguments.gpu_memory,         arguments.balance};
+    plan = NodeGroupPlan{placement,
+                         folder.path() / "nodes.sock",
+                         folder.path(),
+                         {.exchange = options.exchange,
+                          .pixels = options.pixels,
+                          .home = options.home,
+                          .overlap = options.overlap,
+                          .backend = arguments.backend,
+                          .gpu_memory = arguments.gpu_memory,
+                          .balance = arguments.balance}};
   } else if (arguments.backend != "cpu") {
     say(fmt::format(
         "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "

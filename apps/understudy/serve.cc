@@ -28,13 +28,9 @@ namespace {
 struct ServeArguments {
   std::optional<int> nodes;
   std::filesystem::path hostfile;
-  std::string backend = "cpu";
-  std::string gpu_memory = "auto";
-  std::string balance = "off";
+  NodeChoices choices;
   std::string socket;
-  std::string folder;  ///< empty: one of its own
-  std::string exchange = "auto";
-  std::string pixels = "float";
+  std::string folder;       ///< empty: one of its own
   pid_t while_process = 0;  ///< 0: until asked to end
 };
 
@@ -56,8 +52,7 @@ int serve(const ServeArguments& arguments) {
   }
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  NodeGroup nodes(installation, {placement, socket, folder.path(), arguments.exchange, arguments.pixels,
-                                 arguments.backend, arguments.gpu_memory, arguments.balance});
+  NodeGroup nodes(installation, {placement, socket, folder.path(), arguments.choices});
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
@@ -87,16 +82,16 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
           "a Slurm allocation tasks")
       ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(*subcommand, arguments->hostfile);
-  add_backend_option(*subcommand, arguments->backend);
-  add_gpu_memory_option(*subcommand, arguments->gpu_memory);
-  add_balance_option(*subcommand, arguments->balance);
+  add_backend_option(*subcommand, arguments->choices.backend);
+  add_gpu_memory_option(*subcommand, arguments->choices.gpu_memory);
+  add_balance_option(*subcommand, arguments->choices.balance);
   subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
   subcommand
       ->add_option("--folder", arguments->folder,
                    "take over DIR, with the socket in it, and remove it at the end")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
-  add_exchange_options(*subcommand, arguments->exchange, arguments->pixels);
+  add_exchange_options(*subcommand, arguments->choices);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

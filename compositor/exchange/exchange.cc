@@ -89,7 +89,9 @@ class Player {
       if (kept != nullptr) write_part(kept->rect);
       for (std::size_t i = 0; i < arriving.size(); ++i)
         if (!arriving[i]->written) write_arrived(PixelReader(arrived[i], arriving[i]->rect, layout_));
-      clear_between(round);
+      std::vector<Rect> pieces;
+      for (const Piece& piece : round.pieces) pieces.push_back(piece.rect);
+      clear_between(pieces);
       written_ = true;
       return;
     }
@@ -106,7 +108,10 @@ class Player {
   Exchanged finish() && {
     if (link_.rank() != 0) return {};
     if (memory_.empty()) return {std::move(image_), bytes_to_tell_};
-    if (!written_ && !schedule_.whole.empty()) write_part(image_.rect);
+    if (!written_ && !schedule_.whole.empty()) {
+      write_part(image_.rect);
+      clear_between({&image_.rect, 1});
+    }
     return {{}, bytes_to_tell_};
   }
 
@@ -139,12 +144,12 @@ class Player {
     arrived.end();
   }
 
-  /// What no piece of the last round covers has been reached by no sample.
-  void clear_between(const Round& round) {
+  /// What none of these covers has been reached by no sample.
+  void clear_between(std::span<const Rect> covered) {
     std::vector<Rect> bare{schedule_.whole};
-    for (const Piece& piece : round.pieces) {
+    for (const Rect& hole : covered) {
       std::vector<Rect> left;
-      for (const Rect& rect : bare) add_around(rect, piece.rect, left);
+      for (const Rect& rect : bare) add_around(rect, hole, left);
       bare = std::move(left);
     }
     for (const Rect& rect : bare)

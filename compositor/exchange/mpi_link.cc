@@ -70,8 +70,9 @@ MpiLink::MpiLink(int& argc, char**& argv) {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc allows
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
   int provided = 0;
-  // Other threads of a rank ray-cast, but only the main one talks.
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+  // Other threads of a rank ray-cast; one at a time talks, the main one but for pictures that are composited
+  // while they are drawn.
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
   MPI_Comm machine = MPI_COMM_NULL;

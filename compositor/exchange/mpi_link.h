@@ -9,7 +9,7 @@ namespace understudy::compositor {
 
 class MpiLink : public Link {
  public:
-  /// Starts MPI; one object per process, on the thread that will make all calls.
+  /// Starts MPI; one object per process, made on its main thread and used by one thread at a time.
   MpiLink(int& argc, char**& argv);
   ~MpiLink() override;
   MpiLink(const MpiLink&) = delete;

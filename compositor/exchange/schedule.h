@@ -40,7 +40,8 @@ struct Schedule {
   std::vector<int> position;
   bool clear_pixels_travel = false;  ///< also those that no sample has reached, to see what they cost
   bool packed = false;               ///< pixels travel packed, which takes time and saves bytes
-  volume::Rect whole;  ///< the picture that rank 0 ends with: the smallest rectangle that holds all footprints
+  volume::Rect whole;  ///< the picture that rank 0 ends with: the smallest rectangle that holds all footprints.
+                       ///< Where memory is given for it, any other that holds them will do
 };
 
 /// `order` holds all ranks, front first; `footprints` are by rank, empty where there is nothing to show. Ranks

@@ -35,4 +35,10 @@ bool set_home(ExchangeSettings& settings, std::string_view name) {
   return true;
 }
 
+bool set_overlap(ExchangeSettings& settings, std::string_view name) {
+  if (name != "auto" && name != "on" && name != "off") return false;
+  settings.overlap = name == "auto" ? Overlap::automatic : name == "on" ? Overlap::on : Overlap::off;
+  return true;
+}
+
 }  // namespace understudy::compositor

@@ -17,10 +17,14 @@ enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
 /// memory writes its own there, or all send theirs to rank 0.
 enum class Home : std::uint8_t { direct, gathered };
 
+/// Whether parts of a picture are composited while others are still drawn; automatic: where that is faster.
+enum class Overlap : std::uint8_t { automatic, on, off };
+
 struct ExchangeSettings {
   std::optional<Algorithm> algorithm;  ///< none: for each picture the one that costs least
   Layout layout = Layout::rgba32f;
   Home home = Home::direct;
+  Overlap overlap = Overlap::automatic;
 };
 
 /// "auto", or an algorithm's name as in name_of(): "direct-send". False, with `settings` unchanged, for any
@@ -30,5 +34,7 @@ bool set_algorithm(ExchangeSettings& settings, std::string_view name);
 bool set_layout(ExchangeSettings& settings, std::string_view name);
 /// "direct" or "gathered". False, with `settings` unchanged, for any other.
 bool set_home(ExchangeSettings& settings, std::string_view name);
+/// "auto", "on" or "off". False, with `settings` unchanged, for any other.
+bool set_overlap(ExchangeSettings& settings, std::string_view name);
 
 }  // namespace understudy::compositor

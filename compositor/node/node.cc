@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "compositor/crop.h"
-#include "compositor/exchange/cost.h"
-#include "compositor/exchange/exchange.h"
-#include "compositor/exchange/measure_link.h"
 #include "compositor/node/clients.h"
+#include "compositor/node/compositing.h"
 #include "compositor/node/opaque_tiles.h"
+#include "compositor/node/overlap.h"
 #include "compositor/node/picture_memory.h"
 #include "compositor/node/rebalancer.h"
 #include "compositor/service.h"
@@ -44,6 +43,7 @@ struct Order {
   std::uint64_t payload_bytes = 0;
   volume::VolumeId volume = 0;
   std::uint64_t boxes = 0;
+  bool overlapped = false;  ///< a picture is composited while it is drawn
 };
 
 // What every rank tells every other about its part in a request.
@@ -67,10 +67,11 @@ class Node {
   Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer,
        const BalanceSettings& balance)
       : link_(link),
-        exchange_(exchange),
         renderer_(link.rank(), link.size(), make_renderer),
         loads_(renderer_, link.rank()),
-        memories_(link, exchange.home) {
+        memories_(link, exchange.home),
+        compositing_(link, exchange),
+        overlap_(exchange.overlap) {
     if (balance.balance != Balance::off && link.size() > 1) rebalancer_.emplace(link, renderer_, balance);
   }
 
@@ -86,20 +87,21 @@ class Node {
   void receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes);
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
+  void begin_picture(std::uint64_t client);
+  void draw(Outcome& mine);
+  void draw_in_bands(Outcome& mine);
   void clear_hidden(std::vector<Outcome>& outcomes);
   std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
-  Schedule schedule_of(std::span<const volume::Rect> footprints, const std::vector<bool>& reached_by);
-  const ExchangeCost& cost_of_whole_windows();
   std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
 
   Link& link_;
-  ExchangeSettings exchange_;
-  std::optional<LinkCost> link_cost_;  // measured before the first picture that needs a choice
   RankRenderer renderer_;
   Loads loads_;
   std::optional<Rebalancer> rebalancer_;  // where there is something to balance
   PictureMemories memories_;
+  Compositing compositing_;
+  OverlapChoice overlap_;  // rank 0's word counts
   /// By application, and there by place.
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
@@ -107,23 +109,25 @@ class Node {
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
   VolumeKey rendered_;
-  volume::Operator op_{};
-  volume::Rect window_;          // that all samples lie in
-  Layout layout_{};              // that its parts travel in
-  bool only_footprints_ = true;  // travel
-  std::vector<Rank> visible_order_;
+  volume::RenderRequest request_;
+  PictureTask task_;
+  std::vector<volume::Rect> footprints_;  // by rank: what it could show at most
+  volume::Rect whole_;                    // what all of them could
+  volume::FrameCounts travelled_;         // while the picture was drawn
   volume::Image image_;
   std::uint32_t pictures_ = 0;  // that were asked for, this one too
   std::optional<OpaqueTiles> opaque_tiles_;
-  // What pictures of a window cost without footprints.
-  volume::Rect priced_window_;
-  Layout priced_layout_{};
-  std::uint64_t priced_client_ = 0;
-  ExchangeCost price_;
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
+  std::vector<Rank> integral_order_;
   std::size_t integrated_ = 0;  // the first of them are known
 };
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 bool is_load(MessageType type) {
   return type == MessageType::load_volume || type == MessageType::continue_load;
@@ -166,17 +170,16 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
     if (auto* asked = std::get_if<Clients::Request>(&event)) {
       request(*clients, std::move(*asked));
     } else if (auto* given = std::get_if<Clients::MemoryGiven>(&event)) {
-      Order order{Step::share_memory, {}, given->client, 0, 0, 0};
+      Order order{.step = Step::share_memory, .client = given->client};
       link_.broadcast(0, bytes_of(order));
       memories_.share(order.client, std::move(given->memory));
-      priced_window_ = {};  // what is written home may be other parts
     } else {
-      Order order{Step::forget_client, {}, std::get<Clients::Departed>(event).client, 0, 0, 0};
+      Order order{.step = Step::forget_client, .client = std::get<Clients::Departed>(event).client};
       link_.broadcast(0, bytes_of(order));
       forget_client(order.client);
     }
   }
-  Order order{Step::end, {}, 0, 0, 0, 0};
+  Order order{.step = Step::end};
   link_.broadcast(0, bytes_of(order));
   return clients.has_value();
 }
@@ -202,7 +205,7 @@ void Node::follow() {
     if (!receive_payload(order, {})) continue;
     const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
     if (first_refusal(outcomes)) continue;
-    if (order.type == MessageType::render) {
+    if (order.type == MessageType::render && !order.overlapped) {
       volume::FrameCounts counts;
       composite(outcomes, counts);
     }
@@ -323,15 +326,24 @@ void Node::request(Clients& clients, Clients::Request request) {
     } catch (const MalformedMessage& error) {
       return clients.reply(request, MessageType::refused, encode_text(error.what()));
     }
-    Order order{Step::texels,          request.message.type, request.client,
-                message.texels.size(), message.volume,       message.boxes.size()};
+    Order order{.step = Step::texels,
+                .type = request.message.type,
+                .client = request.client,
+                .payload_bytes = message.texels.size(),
+                .volume = message.volume,
+                .boxes = message.boxes.size()};
     link_.broadcast(0, bytes_of(order));
     const std::vector<Outcome> outcomes = texels(order, message.boxes, message.texels);
     if (const Outcome* refusal = first_refusal(outcomes))
       return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
     return clients.reply(request, MessageType::done, {});
   }
-  Order order{Step::request, request.message.type, request.client, request.message.payload.size(), 0, 0};
+  const auto start = Clock::now();
+  Order order{.step = Step::request,
+              .type = request.message.type,
+              .client = request.client,
+              .payload_bytes = request.message.payload.size(),
+              .overlapped = request.message.type == MessageType::render && link_.size() > 1 && overlap_.next()};
   link_.broadcast(0, bytes_of(order));
   if (!receive_payload(order, request.message.payload))
     return clients.reply(request, MessageType::refused,
@@ -351,14 +363,23 @@ void Node::request(Clients& clients, Clients::Request request) {
   if (order.type != MessageType::render) return clients.reply(request, MessageType::done, {});
 
   RenderedReply rendered;
-  rendered.counts = sum(outcomes);
-  const auto start = std::chrono::steady_clock::now();
-  const std::optional<volume::Rect> rect = composite(outcomes, rendered.counts);
-  rendered.counts.composite_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  volume::FrameCounts& counts = rendered.counts;
+  counts = sum(outcomes);
+  std::optional<volume::Rect> rect = whole_;
+  if (order.overlapped) {
+    counts.bytes_exchanged += travelled_.bytes_exchanged;
+    counts.messages += travelled_.messages;
+    counts.composite_ms = std::max(0.0, milliseconds_since(start) - counts.render_ms);
+  } else {
+    const auto drawn = Clock::now();
+    rect = composite(outcomes, counts);
+    counts.composite_ms = milliseconds_since(drawn);
+  }
   if (!rect)
     return clients.reply(request, MessageType::refused,
                          encode_text("there is no image memory for this picture"));
+  compositing_.add_cost_of_whole_windows(task_, memories_.of(task_.client), counts);
+  overlap_.took(order.overlapped, counts.samples, milliseconds_since(start), counts.composite_ms);
   rendered.rect = *rect;
   clients.reply(request, MessageType::rendered, encode(rendered));
 }
@@ -367,6 +388,7 @@ void Node::request(Clients& clients, Clients::Request request) {
 std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   Outcome mine;
   std::optional<VolumeKey> filling;  // the volume whose texels this order concerns
+  if (order.type == MessageType::render) compositing_.prepare();
   try {
     switch (order.type) {
       case MessageType::begin_volume: {
@@ -421,31 +443,14 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         ++pictures_;
         opaque_tiles_.reset();
         const auto decode = [&] { return decode_request(payload, pair_tables_[order.client]); };
-        const volume::RenderRequest request =
-            rebalancer_ ? rebalancer_->before_picture(order.client, decode) : decode();
-        rendered_ = {order.client, request.volume};
-        op_ = request.op;
-        window_ = intersection(request.window, request.viewport);
-        layout_ = request.may_travel_as_halves && exchange_.layout == Layout::rgba32f ? Layout::rgba16f
-                                                                                      : exchange_.layout;
-        only_footprints_ = request.leave_out.footprints;
-        visible_order_ = renderer_.visibility_order(order.client, request);
-        if (link_.size() > 1 && only_footprints_ && volume::can_occlude(request))
-          opaque_tiles_.emplace(link_, pictures_, request, visible_order_,
-                                renderer_.footprints(order.client, request));
-        image_ =
-            renderer_.render(order.client, request, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
-        mine.footprint = image_.rect;
-        if (opaque_tiles_) {
-          mine.notes = opaque_tiles_->tell_rest();
-          mine.note_messages = opaque_tiles_->messages();
-          mine.note_bytes = opaque_tiles_->bytes();
-        }
+        request_ = rebalancer_ ? rebalancer_->before_picture(order.client, decode) : decode();
+        begin_picture(order.client);
+        if (!order.overlapped) draw(mine);
         break;
       }
       case MessageType::integrals: {
         const IntegralQuestion question = decode_integral_question(payload);
-        visible_order_ = renderer_.visibility_order(order.client, question.request);
+        integral_order_ = renderer_.visibility_order(order.client, question.request);
         integrals_ = renderer_.integrals(order.client, question.request, question.pixels, question.most_ms);
         integrated_ = integrals_.size();
         integrals_.resize(question.pixels.size());
@@ -457,6 +462,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   } catch (const std::exception& error) {
     mine.refuse(error.what());
   }
+  if (order.overlapped) draw_in_bands(mine);
   std::vector<Outcome> outcomes = agree(mine, filling);
   if (order.type == MessageType::render && !first_refusal(outcomes)) clear_hidden(outcomes);
   if (rebalancer_ && order.type == MessageType::render && !first_refusal(outcomes)) {
@@ -471,6 +477,59 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   return outcomes;
 }
 
+// What all ranks know of the picture before they draw it.
+void Node::begin_picture(std::uint64_t client) {
+  rendered_ = {client, request_.volume};
+  task_ = {client,
+           request_.op,
+           intersection(request_.window, request_.viewport),
+           compositing_.layout(request_.may_travel_as_halves),
+           request_.leave_out.footprints,
+           renderer_.visibility_order(client, request_)};
+  footprints_ = renderer_.footprints(client, request_);
+  whole_ = task_.window;
+  if (!task_.only_footprints) return;
+  whole_ = {};
+  for (const volume::Rect& footprint : footprints_) whole_ = bounding(whole_, footprint);
+}
+
+void Node::draw(Outcome& mine) {
+  if (link_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
+    opaque_tiles_.emplace(link_, pictures_, request_, task_.order, footprints_);
+  image_ = renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
+  mine.footprint = image_.rect;
+  if (!opaque_tiles_) return;
+  mine.notes = opaque_tiles_->tell_rest();
+  mine.note_messages = opaque_tiles_->messages();
+  mine.note_bytes = opaque_tiles_->bytes();
+}
+
+// Whatever becomes of this rank's part, the others wait for its word on every band until all have given up.
+void Node::draw_in_bands(Outcome& mine) {
+  const PictureMemories::Memory& memory = memories_.of(task_.client);
+  if (!mine.refused && 4 * whole_.pixels() > memory.floats)
+    mine.refuse("there is no image memory for this picture");
+  if (mine.refused) return refuse_to_draw(link_);
+  travelled_ = {};
+  const auto draw_band = [&](const volume::Rect& band) -> std::optional<volume::Image> {
+    if (mine.refused) return std::nullopt;
+    try {
+      volume::FrameCounts counts;
+      volume::Image image = renderer_.render(task_.client, request_, counts, nullptr, band);
+      mine.footprint = bounding(mine.footprint, image.rect);
+      // The blocks are those of the whole picture each time.
+      counts.blocks -= mine.counts.blocks;
+      counts.blocks_empty -= mine.counts.blocks_empty;
+      mine.counts += counts;
+      return image;
+    } catch (const std::exception& error) {
+      mine.refuse(error.what());
+      return std::nullopt;
+    }
+  };
+  draw_and_composite(link_, compositing_, task_, memory, whole_, draw_band, travelled_);
+}
+
 // What this rank has drawn behind opaque tiles of others, before it heard of them, must not change footprints:
 // the picture would depend on when notes came.
 void Node::clear_hidden(std::vector<Outcome>& outcomes) {
@@ -479,7 +538,7 @@ void Node::clear_hidden(std::vector<Outcome>& outcomes) {
   notes.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
   opaque_tiles_->clear_hidden(image_, notes);
-  crop_to_content(image_, op_);
+  crop_to_content(image_, task_.op);
   std::vector<volume::Rect> footprints(outcomes.size());
   link_.gather_to_all(bytes_of(image_.rect), std::as_writable_bytes(std::span(footprints)));
   for (std::size_t rank = 0; rank < outcomes.size(); ++rank) outcomes[rank].footprint = footprints[rank];
@@ -498,50 +557,19 @@ std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<Vol
   return outcomes;
 }
 
-Schedule Node::schedule_of(std::span<const volume::Rect> footprints, const std::vector<bool>& reached_by) {
-  if (!exchange_.algorithm) return cheapest(visible_order_, footprints, layout_, *link_cost_, reached_by);
-  Schedule chosen = schedule(*exchange_.algorithm, visible_order_, footprints);
-  write_home(chosen, reached_by);
-  return chosen;
-}
-
-// What the picture in hand would cost if every rank sent the window whole.
-const ExchangeCost& Node::cost_of_whole_windows() {
-  if (window_ != priced_window_ || layout_ != priced_layout_ || rendered_.client != priced_client_) {
-    const std::vector<volume::Rect> windows(std::size_t(link_.size()), window_);
-    price_ = cost(schedule_of(windows, memories_.of(rendered_.client).reached_by), layout_, LinkCost());
-    priced_window_ = window_;
-    priced_layout_ = layout_;
-    priced_client_ = rendered_.client;
-  }
-  return price_;
-}
-
 // The picture goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
 // ranks, when there is no room for them. Adds to the counts, on rank 0, what travelled.
 std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts) {
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
-  const PictureMemories::Memory& memory = memories_.of(rendered_.client);
-  if (!link_cost_) link_cost_ = measure_link(link_);
-  Schedule chosen = schedule_of(footprints, memory.reached_by);
-  if (4 * chosen.whole.pixels() > memory.floats) return std::nullopt;
-  chosen.clear_pixels_travel = !only_footprints_;
-  chosen.packed = packing_pays(*link_cost_);
-  const Exchanged exchanged = exchange(std::move(image_), chosen, op_, layout_, link_, memory.here);
   if (link_.rank() == 0) {
-    const ExchangeCost& whole = cost_of_whole_windows();
-    counts.bytes_exchanged += exchanged.bytes;
     for (const Outcome& outcome : outcomes) {
       counts.bytes_exchanged += outcome.note_bytes;
       counts.messages += outcome.note_messages;
     }
-    counts.bytes_of_whole_windows += whole.bytes_sent;
-    counts.messages += cost(chosen, layout_, LinkCost()).messages;
-    counts.messages_of_whole_windows += whole.messages;
   }
-  return chosen.whole;
+  return compositing_.composite(task_, std::move(image_), footprints, memories_.of(task_.client), counts);
 }
 
 // The whole integrals, from the parts of all ranks.
@@ -558,7 +586,7 @@ std::vector<volume::PixelIntegral> Node::compose_integrals() {
   std::vector<std::vector<IntegralPart>> parts;
   for (auto part = all.begin(); part != all.end(); part += std::ptrdiff_t(pixels))
     parts.emplace_back(part, part + std::ptrdiff_t(pixels));
-  return composed_integrals(parts, visible_order_);
+  return composed_integrals(parts, integral_order_);
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ void RankRenderer::forget_client(std::uint64_t client) {
 }
 
 Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts,
-                           Occlusion* occlusion) {
+                           Occlusion* occlusion, const std::optional<Rect>& part) {
   const auto start = std::chrono::steady_clock::now();
   Volume& volume = find_complete(client, request);
   Image image = refusing([&] {
@@ -219,13 +219,15 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     if (request.window.pixels() > limits::max_window_pixels)
       throw RequestRefused(fmt::format("a picture of {} pixels is over the limit of {}",
                                        request.window.pixels(), limits::max_window_pixels));
-    Image result(request.leave_out.footprints ? footprint(request, description, volume.tree.box(rank_))
-                                              : intersection(request.window, request.viewport));
+    const Rect everything = request.leave_out.footprints
+                                ? footprint(request, description, volume.tree.box(rank_))
+                                : intersection(request.window, request.viewport);
+    Image result(part ? intersection(everything, *part) : everything);
     volume.renderer->render(request, result, counts, occlusion);
     return result;
   });
   if (request.leave_out.footprints) crop_to_content(image, request.op);
-  counts.render_ms =
+  counts.render_ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return image;
 }

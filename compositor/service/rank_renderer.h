@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,10 +54,11 @@ class RankRenderer {
   void forget_client(std::uint64_t client);
   std::size_t volumes() const { return volumes_.size(); }
 
-  /// This rank's image, cropped to what shows; adds to `counts`, time included. Of what `occlusion` hides,
-  /// nothing need be there.
+  /// This rank's image, cropped to what shows, of the pixels in `part` alone where one is given; adds to
+  /// `counts`, time included. Of what `occlusion` hides, nothing need be there.
   volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts,
-                       volume::Occlusion* occlusion = nullptr);
+                       volume::Occlusion* occlusion = nullptr,
+                       const std::optional<volume::Rect>& part = std::nullopt);
   /// By rank: outside it a rank's image is clear whatever its texels.
   std::vector<volume::Rect> footprints(std::uint64_t client, const volume::RenderRequest& request) const;
   /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals()).

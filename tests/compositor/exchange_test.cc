@@ -559,6 +559,12 @@ TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {
   EXPECT_TRUE(set_layout(settings, "half"));
   EXPECT_FALSE(set_layout(settings, ""));
   EXPECT_EQ(settings.layout, Layout::rgba16f);
+  EXPECT_TRUE(set_home(settings, "gathered"));
+  EXPECT_FALSE(set_home(settings, "away"));
+  EXPECT_EQ(settings.home, Home::gathered);
+  EXPECT_TRUE(set_overlap(settings, "off"));
+  EXPECT_FALSE(set_overlap(settings, "perhaps"));
+  EXPECT_EQ(settings.overlap, Overlap::off);
 }
 
 /// What a message says of its rectangle, over pixels that are all `blank`.

@@ -88,6 +88,7 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
       {{"--exchange", "direct-send"}, 1e-5},
       {{"--exchange", "binary-swap"}, 1e-5},
       {{"--exchange", "radix-k"}, 1e-5},
+      {{"--exchange", "radix-k", "--overlap", "on"}, 1e-5},
       {{"--exchange", "tree", "--pixels", "half"}, 6.0 / 2048},
       {{"--exchange", "auto", "--pixels", "byte"}, 6.0 / 510}};
   for (const auto& [options, bound] : ways) {
@@ -125,7 +126,7 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
       const ScratchFolder folder;
       const std::string path = folder / "control";
       Launcher launcher(path);
-      MpiGroup group(ranks, path, {"--exchange", name, "--home", way});
+      MpiGroup group(ranks, path, {"--exchange", name, "--home", way, "--overlap", "off"});
       const auto linked = linked_service(path, 60'000);
       upload(*linked, texture);
       for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {

@@ -1,0 +1,24 @@
+// How the ranks of a node group go about their work, as understudy-node takes it on its command line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace understudy::launcher {
+
+struct NodeChoices {
+  std::string exchange = "auto";  ///< how partial pictures become one
+  std::string pixels = "float";   ///< what travels between ranks
+  std::string home = "direct";    ///< how the parts of a picture come to the viewer
+  std::string overlap = "auto";   ///< whether pictures are composited while they are drawn
+  std::string backend = "cpu";    ///< who casts rays
+  std::string gpu_memory = "auto";
+  std::string balance = "off";  ///< who gets how much of a volume
+
+  std::vector<std::string> words() const {
+    return {"--exchange", exchange,    "--pixels", pixels,         "--home",   home,        "--overlap",
+            overlap,      "--backend", backend,    "--gpu-memory", gpu_memory, "--balance", balance};
+  }
+};
+
+}  // namespace understudy::launcher

@@ -1,0 +1,58 @@
+// Compositing while drawing: a picture is drawn in bands of rows, and each band is composited while the next
+// one is drawn, so that a slow network costs little more than its last band. Nearer ranks do not tell farther
+// ones of opaque tiles meanwhile: all draw the same band at the same time, and notes would come too late.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "compositor/exchange/link.h"
+#include "compositor/node/compositing.h"
+#include "compositor/node/picture_memory.h"
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+/// `rect` from the bottom up, in at most 8 bands of 64 Ki pixels or more, which begin at multiples of 16 rows
+/// from its lowest.
+std::vector<volume::Rect> bands_of(const volume::Rect& rect);
+
+/// Draws and composites a picture band by band; collective. `draw` gives this rank's image of a band, or
+/// nothing where it cannot go on: then all ranks give up after the same band. `whole` is the rectangle that the
+/// memory holds afterwards, the same on all ranks; all that is drawn lies in it. Returns whether the picture is
+/// there; adds to `travelled` as Compositing::composite() does. The link is used by other threads than the
+/// caller's meanwhile, one at a time. Throws what an exchange throws: then this rank is out of step with the
+/// others, and must not go on.
+bool draw_and_composite(Link& link, Compositing& compositing, const PictureTask& task,
+                        const PictureMemories::Memory& memory, const volume::Rect& whole,
+                        const std::function<std::optional<volume::Image>(const volume::Rect& band)>& draw,
+                        volume::FrameCounts& travelled);
+
+/// What a rank does instead that cannot even begin.
+void refuse_to_draw(Link& link);
+
+/// Whether the next picture is drawn in bands: measured, not predicted. What is not done is tried now and then,
+/// where compositing takes a part of the time that is worth it.
+class OverlapChoice {
+ public:
+  explicit OverlapChoice(Overlap wish) : wish_(wish) {}
+
+  bool next() const;
+  /// `seconds` from the order to the picture, of these `composite_seconds` after the slowest rank had drawn.
+  void took(bool overlapped, std::uint64_t samples, double seconds, double composite_seconds);
+
+ private:
+  struct Way {
+    std::optional<double> seconds_per_sample;
+    int pictures_ago = 0;
+  };
+
+  Overlap wish_;
+  Way apart_, overlapped_;
+  double composite_share_ = 0;  ///< of pictures that were drawn first
+};
+
+}  // namespace understudy::compositor

@@ -114,6 +114,10 @@ constexpr std::array rows{
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
          "composite parts of a picture while others are drawn: on, off, or auto, where that was faster"},
         set_name<&Options::overlap, compositor::set_overlap>},
+    Row{{"--pipeline", "UNDERSTUDY_PIPELINE", "FRAMES", "0",
+         "1: while the camera moves, show the picture of the frame before, so that nodes work while the viewer "
+         "does; once it rests, viewers that have a window are asked to draw again"},
+        set_number<&Options::pipeline, 0, 1>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
          "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
          "of "

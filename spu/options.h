@@ -28,6 +28,7 @@ struct Options {
   std::string pixels = "float";   ///< name of compositor::set_layout
   std::string home = "direct";    ///< name of compositor::set_home
   std::string overlap = "auto";   ///< name of compositor::set_overlap
+  int pipeline = 0;               ///< frames that pictures of a moving camera may be behind
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
     least.latency = std::min(least.latency, again.latency);
     least.per_byte = std::min(least.per_byte, again.per_byte);
     least.per_pixel = std::min(least.per_pixel, again.per_pixel);
+    least.ranks_at_once = std::max(least.ranks_at_once, again.ranks_at_once);
   }
   if (link.rank() != 0) return 0;
 
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
   const nlohmann::ordered_json row{{"latency", least.latency},
                                    {"per_byte", least.per_byte},
                                    {"per_pixel_blended", least.per_pixel},
+                                   {"ranks_at_once", least.ranks_at_once},
                                    {"per_byte_packed", pack / double(message.size())},
                                    {"per_byte_unpacked", unpack / double(message.size())},
                                    {"per_pixel_written", write / double(image.rect.pixels())}};

@@ -121,7 +121,7 @@ void measure(const Settings& settings, const std::vector<Scene>& scenes, const W
   nodes.placement.ranks = way.ranks;
   nodes.choices.exchange = compositor::name_of(way.algorithm);
   nodes.choices.home = name_of(way.home);
-  nodes.choices.overlap = "off";
+  nodes.choices.overlap = nodes.choices.packed = "off";
   launcher::with_own_nodes(nodes, [&](const std::string& socket) {
     constexpr std::chrono::minutes patience{5};
     const auto service =

@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   choice("--pixels", set_layout, "What numbers travel between ranks");
   choice("--home", set_home, "How the parts of a picture come to the application");
   choice("--overlap", set_overlap, "Whether pictures are composited while they are drawn");
+  choice("--packed", set_packed, "Whether pixels are packed for their way");
   std::string backend = "cpu";
   app.add_option("--backend", backend, "Who casts the rays")->check([](const std::string& name) -> std::string {
     if (volume::glsl::backend_of(name)) return {};

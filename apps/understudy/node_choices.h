@@ -11,13 +11,14 @@ struct NodeChoices {
   std::string pixels = "float";   ///< what travels between ranks
   std::string home = "direct";    ///< how the parts of a picture come to the viewer
   std::string overlap = "auto";   ///< whether pictures are composited while they are drawn
+  std::string packed = "auto";    ///< whether pixels are packed for their way
   std::string backend = "cpu";    ///< who casts rays
   std::string gpu_memory = "auto";
   std::string balance = "off";  ///< who gets how much of a volume
 
   std::vector<std::string> words() const {
-    return {"--exchange", exchange,    "--pixels", pixels,         "--home",   home,        "--overlap",
-            overlap,      "--backend", backend,    "--gpu-memory", gpu_memory, "--balance", balance};
+    return {"--exchange", exchange, "--pixels",  pixels,  "--home",       home,       "--packed",  packed,
+            "--overlap",  overlap,  "--backend", backend, "--gpu-memory", gpu_memory, "--balance", balance};
   }
 };
 

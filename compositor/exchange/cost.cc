@@ -49,15 +49,17 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
       result.bytes_sent += bytes_of_all_pixels(piece.rect, layout);
       sent[std::size_t(piece.from)] += piece.rect.pixels();
     }
-    double slowest = 0;
+    double slowest = 0, together = 0;
     for (const Work& mine : work) {
-      const double blended = mine.contributions > 1 ? double(mine.blended) : 0;
+      const double per_moved = link.per_byte * double(bytes_per_pixel(layout));
+      const double drawn = link.per_pixel * double((mine.contributions > 1 ? mine.blended : 0) + mine.written);
       slowest = std::max(slowest, link.latency * double(std::max(mine.messages_out, mine.messages_in)) +
-                                      link.per_byte * double(bytes_per_pixel(layout)) *
-                                          double(std::max(mine.pixels_out, mine.pixels_in)) +
-                                      link.per_pixel * (blended + double(mine.written)));
+                                      per_moved * double(std::max(mine.pixels_out, mine.pixels_in)) + drawn);
+      // What moves is half the sender's work and half the receiver's.
+      together += link.latency / 2 * double(mine.messages_out + mine.messages_in) +
+                  per_moved / 2 * double(mine.pixels_out + mine.pixels_in) + drawn;
     }
-    result.seconds += slowest;
+    result.seconds += std::max(slowest, together / link.ranks_at_once);
   }
   // Rank 0 then writes all of it.
   if (!written) result.seconds += link.per_pixel * double(schedule.whole.pixels());

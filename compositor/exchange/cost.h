@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,11 +12,13 @@
 namespace understudy::compositor {
 
 /// A LogP-like model: a rank spends `latency` on each message, `per_byte` on each byte in the busier direction,
-/// and `per_pixel` on each pixel that it blends or writes into the picture's memory, in seconds.
+/// and `per_pixel` on each pixel that it blends or writes into the picture's memory, in seconds. Ranks share
+/// processors and lines: what all of them do in a round takes no less than if `ranks_at_once` of them got on.
 struct LinkCost {
   double latency = 20e-6;
   double per_byte = 0.2e-9;
   double per_pixel = 2e-9;
+  double ranks_at_once = std::numeric_limits<double>::infinity();
 };
 
 /// Whether packed pixels (pixel_numbers.h) arrive sooner: where lines take longer for what packing saves, about
@@ -29,7 +32,7 @@ struct ExchangeCost {
   std::uint64_t pixels_sent = 0;       ///< that travel, when all pixels of the rectangles do
   std::uint64_t bytes_sent = 0;        ///< in which these do
   std::uint64_t most_pixels_sent = 0;  ///< by any one rank
-  double seconds = 0;                  ///< rounds one after the other, each as long as its slowest rank
+  double seconds = 0;                  ///< rounds one after the other
 };
 
 ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link);

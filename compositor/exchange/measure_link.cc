@@ -39,6 +39,26 @@ double one_way(Link& link, Rank other, std::vector<std::byte>& bytes) {
   return shortest;
 }
 
+/// The shortest way of `bytes` from every rank to the next, all at once.
+double all_ways(Link& link, std::vector<std::byte>& bytes, std::vector<std::byte>& room) {
+  constexpr int rounds = 4;
+  const Rank next = (link.rank() + 1) % link.size();
+  const Rank previous = (link.rank() + link.size() - 1) % link.size();
+  double shortest = std::numeric_limits<double>::max();
+  for (int round = 0; round < rounds; ++round) {
+    const auto start = Clock::now();
+    const Outgoing there{next, bytes};
+    const Incoming here{previous, room};
+    link.transfer({&there, 1}, {&here, 1});
+    // A rank is done when its neighbours are; the round, when all are.
+    double slowest = seconds_since(start);
+    std::vector<double> all(std::size_t(link.size()));
+    link.gather_to_all(bytes_of(slowest), std::as_writable_bytes(std::span(all)));
+    shortest = std::min(shortest, *std::ranges::max_element(all));
+  }
+  return shortest;
+}
+
 double seconds_per_blended_pixel() {
   constexpr std::size_t pixels = 1 << 16;
   std::vector<float> front(4 * pixels, 0.0F);
@@ -65,6 +85,9 @@ LinkCost measure_link(Link& link) {
     measured.latency = latency;
     measured.per_byte = std::max(0.0, transfer - latency) / double(large);
     measured.per_pixel = seconds_per_blended_pixel();
+    std::vector<std::byte> room(large);
+    measured.ranks_at_once = std::clamp(double(link.size()) * transfer / all_ways(link, large_message, room),
+                                        1.0, double(link.size()));
     link.broadcast(0, bytes_of(measured));
   }
   return measured;

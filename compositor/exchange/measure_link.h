@@ -6,8 +6,9 @@
 
 namespace understudy::compositor {
 
-/// Collective: measured between rank 0 and the last rank, and the same on all ranks afterwards. Takes a few
-/// milliseconds. A single rank has the defaults.
+/// Collective: measured between rank 0 and the last rank, and then between all ranks at once; the same on all
+/// ranks afterwards. Takes a few milliseconds, more where many ranks share a processor. A single rank has the
+/// defaults.
 LinkCost measure_link(Link& link);
 
 }  // namespace understudy::compositor

@@ -41,4 +41,11 @@ bool set_overlap(ExchangeSettings& settings, std::string_view name) {
   return true;
 }
 
+bool set_packed(ExchangeSettings& settings, std::string_view name) {
+  if (name != "auto" && name != "on" && name != "off") return false;
+  settings.packed.reset();
+  if (name != "auto") settings.packed = name == "on";
+  return true;
+}
+
 }  // namespace understudy::compositor

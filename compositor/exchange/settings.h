@@ -25,6 +25,7 @@ struct ExchangeSettings {
   Layout layout = Layout::rgba32f;
   Home home = Home::direct;
   Overlap overlap = Overlap::automatic;
+  std::optional<bool> packed;  ///< pixels travel packed; none: where that is faster (packing_pays())
 };
 
 /// "auto", or an algorithm's name as in name_of(): "direct-send". False, with `settings` unchanged, for any
@@ -36,5 +37,7 @@ bool set_layout(ExchangeSettings& settings, std::string_view name);
 bool set_home(ExchangeSettings& settings, std::string_view name);
 /// "auto", "on" or "off". False, with `settings` unchanged, for any other.
 bool set_overlap(ExchangeSettings& settings, std::string_view name);
+/// Likewise.
+bool set_packed(ExchangeSettings& settings, std::string_view name);
 
 }  // namespace understudy::compositor

@@ -32,7 +32,7 @@ std::optional<volume::Rect> Compositing::composite(const PictureTask& task, volu
   if (whole) chosen.whole = *whole;
   if (4 * chosen.whole.pixels() > memory.floats) return std::nullopt;
   chosen.clear_pixels_travel = !task.only_footprints;
-  chosen.packed = packing_pays(*link_cost_);
+  chosen.packed = settings_.packed.value_or(packing_pays(*link_cost_));
   const Exchanged exchanged = exchange(std::move(mine), chosen, task.op, task.layout, link_, memory.here);
   if (link_.rank() == 0) {
     counts.bytes_exchanged += exchanged.bytes;

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 
+#include "interceptor/body/redraw_request.h"
 #include "spu/assemble.h"
 #include "spu/chain.h"
 #include "spu/options.h"
@@ -24,18 +27,23 @@ namespace {
 class Body {
  public:
   Body(const DoorServices& door, spu::Options options)
-      : door_(door), options_(options), session_(std::make_shared<spu::RenderSession>(std::move(options))) {}
+      : door_(door), options_(options), session_(std::make_shared<spu::RenderSession>(std::move(options))) {
+    if (options_.pipeline > 0)
+      redraw_.emplace([] { spu::process_counters().windows_asked.fetch_add(1, std::memory_order_relaxed); });
+  }
 
   const DoorServices& door() const { return door_; }
 
-  void context_current(std::uintptr_t context, std::uintptr_t share, bool desktop_gl) {
+  void context_current(std::uintptr_t context, std::uintptr_t share, bool desktop_gl, std::uintptr_t window) {
     ThreadState& thread = *door_.thread_state();
     thread.calls = spu::thread_call_counter();
     if (!desktop_gl) {
       thread.table = thread.driver;
       return;
     }
-    spu::Chain& chain = chain_of(context, share, *thread.driver);
+    Member& member = member_of(context, share, *thread.driver);
+    member.window = window;
+    spu::Chain& chain = member.chain;
     chain.make_current();
     // Contexts that share objects with it may have brought volumes since its last frame.
     chain.frame_ended(spu::FrameEnd::make_current);
@@ -54,7 +62,10 @@ class Body {
   }
 
   void frame_ended(spu::FrameEnd kind) {
-    if (spu::Chain* chain = spu::Chain::current()) chain->frame_ended(kind);
+    if (spu::Chain* chain = spu::Chain::current()) {
+      chain->frame_ended(kind);
+      if (redraw_ && kind == spu::FrameEnd::swap) window_shown(window_of(*chain));
+    }
     if (reports_itself()) spu::write_report_when_due(options_.report);
   }
 
@@ -82,9 +93,10 @@ class Body {
   struct Member {
     std::shared_ptr<spu::ShareGroup> group;
     spu::Chain chain;
+    std::atomic<std::uintptr_t> window = 0;  ///< that it draws into: an X window's number, or 0
   };
 
-  spu::Chain& chain_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
+  Member& member_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
     const std::scoped_lock lock(mutex_);
     auto& member = contexts_[context];
     if (!member) {
@@ -96,7 +108,20 @@ class Body {
         fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
       }
     }
-    return member->chain;
+    return *member;
+  }
+
+  std::uintptr_t window_of(const spu::Chain& chain) {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [context, member] : contexts_)
+      if (member && &member->chain == &chain) return member->window;
+    return 0;
+  }
+
+  void window_shown(std::uintptr_t window) {
+    if (getpid() != process_) return session_->window_can_be_asked(false);
+    session_->window_can_be_asked(redraw_->can_ask(window));
+    redraw_->frame_shown(window, session_->take_behind());
   }
 
   static void install(const spu::DispatchTable* table);
@@ -107,6 +132,7 @@ class Body {
   std::shared_ptr<spu::RenderSession> session_;
   std::mutex mutex_;
   std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
+  std::optional<RedrawRequest> redraw_;  ///< where pictures may be behind
 };
 
 /// The per-process body. Never destroyed: the application may call OpenGL until its very last instruction.
@@ -130,9 +156,10 @@ void guarded(Action action) noexcept {
   }
 }
 
-void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem, bool desktop_gl,
-                     std::uintptr_t) {
-  guarded([&] { body->context_current(context, share, desktop_gl); });
+void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
+                     std::uintptr_t drawable) {
+  guarded(
+      [&] { body->context_current(context, share, desktop_gl, system == WindowSystem::glx ? drawable : 0); });
 }
 
 void context_leaving() {

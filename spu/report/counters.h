@@ -126,7 +126,9 @@ struct ProcessCounters {
   volume::FrameCounts total;                      ///< over all frames; the ring below forgets
   Amounts total_amounts;                          ///< likewise
   ReasonCount done_because[omission_count][max_counted_omission_reasons];
-  std::int32_t nodes;  ///< 0: embedded
+  std::int32_t nodes;                          ///< 0: embedded
+  std::atomic<std::uint64_t> pictures_behind;  ///< shown one frame late, and of these
+  std::atomic<std::uint64_t> windows_asked;    ///< how often the window was asked to draw again
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   std::atomic<std::uint32_t> volumes;

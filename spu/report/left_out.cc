@@ -92,8 +92,7 @@ std::vector<std::string> lines_about(const Amounts& in_process, const volume::Fr
     if (!because.empty()) lines.back() += fmt::format("; not {}: {}", done, because);
   }
   for (const char* const never :
-       {"blocks behind what other nodes show: no node waits for another's picture",
-        "whether the window can be seen at all: to ask X would cost every frame a round trip",
+       {"whether the window can be seen at all: to ask X would cost every frame a round trip",
         "memory of blocks that show nothing: other colours may show them in the next frame"})
     lines.push_back(fmt::format("not looked for: {}", never));
   return lines;

@@ -238,6 +238,8 @@ struct Totals {
   std::uint64_t frames_substituted = 0;
   std::uint64_t frames_left = 0;
   std::int32_t nodes = 0;
+  std::uint64_t pictures_behind = 0;
+  std::uint64_t windows_asked = 0;
   std::size_t volumes = 0;
   volume::FrameCounts counts;
   Amounts amounts{};
@@ -254,6 +256,8 @@ Totals totals_of(Processes processes) {
     totals.frames_left += process->frames_left.load();
     // Not a sum: all processes of a run share one node group.
     totals.nodes = std::max(totals.nodes, process->nodes);
+    totals.pictures_behind += process->pictures_behind.load();
+    totals.windows_asked += process->windows_asked.load();
     totals.counts += process->total;
     totals.amounts += process->total_amounts;
     for (std::size_t i = 0; i < omission_count; ++i)
@@ -332,6 +336,8 @@ std::string report_json(Processes processes) {
               {report_key::frames_left, totals.frames_left},
               {report_key::nodes, totals.nodes},
               {report_key::remote, false},
+              {report_key::pictures_behind, totals.pictures_behind},
+              {report_key::windows_asked, totals.windows_asked},
               {report_key::processes, Json::array()},
               {report_key::time_ms, median_times(processes)},
               {report_key::left_out, left_out(totals.counts, items_of(totals))},

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "spu/report/counters.h"
 #include "spu/volume/last_picture.h"
 #include "spu/volume/own_nodes.h"
 
@@ -31,6 +32,12 @@ compositor::RenderService& RenderSession::service() {
   try {
     service_ = with_last_picture(connect(), !never_left_out(Omission::unchanged_pictures),
                                  [this](std::string_view why) { heard_of_picture(why); });
+    // The ray caster of this process is the viewer's own time.
+    if (options_.pipeline > 0 && service_->nodes() > 0) {
+      auto pipeline = std::make_unique<OneFrameBehind>(std::move(service_));
+      pipeline_ = pipeline.get();
+      service_ = std::move(pipeline);
+    }
   } catch (const compositor::ServiceLost& unreachable) {
     if (!connected_once_ && !launcher_tells()) {
       fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());
@@ -51,6 +58,16 @@ void RenderSession::heard_of_picture(std::string_view why_cast) {
     ++(cast ? pictures.done : pictures.left_out);
   });
   if (cast) count_done(Omission::unchanged_pictures, why_cast);
+}
+
+void RenderSession::allow_behind(bool allowed) {
+  if (pipeline_ != nullptr) pipeline_->allow(allowed && window_can_be_asked_);
+}
+
+void RenderSession::note_shown() {
+  if (pipeline_ == nullptr || !pipeline_->is_behind()) return;
+  behind_shown_ = true;
+  process_counters().pictures_behind.fetch_add(1, std::memory_order_relaxed);
 }
 
 std::unique_ptr<compositor::RenderService> RenderSession::connect() {
@@ -78,6 +95,7 @@ void RenderSession::lost(const std::string& what) {
   if (!launcher_tells()) {
     fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
   }
+  pipeline_ = nullptr;
   service_.reset();
   not_before_ = std::chrono::steady_clock::now() + retry_after;
 }

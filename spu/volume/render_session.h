@@ -13,6 +13,7 @@
 #include "compositor/service.h"
 #include "spu/options.h"
 #include "spu/volume/frame_ledger.h"
+#include "spu/volume/one_frame_behind.h"
 
 namespace understudy::spu {
 
@@ -35,6 +36,18 @@ class RenderSession {
 
   /// Grows whenever a new service begins, which knows no volumes yet.
   std::uint64_t generation() const { return generation_; }
+
+  /// Told at frame ends: whether this thread's window is one that can be asked to draw itself again. Only then
+  /// pictures may be behind.
+  void window_can_be_asked(bool can) { window_can_be_asked_ = can; }
+  bool window_can_be_asked() const { return window_can_be_asked_; }
+  /// Whether the next pictures may be those of the frame before (`--pipeline`); without nodes they never are.
+  /// Needs the lock.
+  void allow_behind(bool allowed);
+  /// The latest picture is to be shown: counted where it is behind. Needs the lock.
+  void note_shown();
+  /// Whether one has been shown that was behind since this was last asked.
+  bool take_behind() { return behind_shown_.exchange(false); }
 
   /// The service failed: explained once, and the next call of service() connects anew. Needs the lock.
   void lost(const std::string& what);
@@ -60,6 +73,9 @@ class RenderSession {
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;
+  OneFrameBehind* pipeline_ = nullptr;  ///< the service, where pictures may be behind
+  std::atomic<bool> window_can_be_asked_ = false;
+  std::atomic<bool> behind_shown_ = false;
   std::uint64_t generation_ = 0;
   volume::VolumeId last_volume_ = 0;
   bool connected_once_ = false;

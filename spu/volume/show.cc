@@ -42,10 +42,24 @@ bool VolumeUnit::is_finished_here(const Substitution& s) {
   return s.proxy && (needs_finish(*s.volume.march) || s.cuts.parts.size() > 1);
 }
 
+bool VolumeUnit::may_be_behind(const Substitution& s) {
+  const Options& options = session_->options();
+  if (options.pipeline == 0 || options.has_budget() || !options.save_frames.empty()) return false;
+  // What is compared with this frame's request, or shown together with another picture, belongs to this frame.
+  if (to_be_verified(s) || is_finished_here(s) || s.pipeline.blending.alpha_stands_apart()) return false;
+  // Framebuffer objects may be kept, and no window shows them again.
+  GLint framebuffer = 0;
+  context().gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  return framebuffer == 0;
+}
+
 void VolumeUnit::cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture) {
   {
     const TimedShare timed(clock_, &FrameShares::render);
+    session_->allow_behind(may_be_behind(s));
     const compositor::Rendered rendered = service.render(s.request);
+    session_->allow_behind(false);
+    session_->note_shown();
     picture.shown = rendered.image;
     picture.counts += rendered.counts;
   }

@@ -142,6 +142,7 @@ class VolumeUnit final : public Unit {
                            const std::function<void(const volume::ImageView&)>& check);
   /// Not every picture of the nodes is what the application shows of it.
   static bool is_finished_here(const Substitution& s);
+  bool may_be_behind(const Substitution& s);
   void cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture);
   /// With samples as the error or the time that was asked for wants them; false where they must be the
   /// application's own.

@@ -422,9 +422,25 @@ TEST(Exchange, AutoTakesFewMessagesWhereLatencyRulesAndFewBytesWhereBandwidthDoe
                 cost(schedule_of(scene, Algorithm(a)), Layout::rgba32f, link).seconds);
     return cost(best, Layout::rgba32f, link);
   };
-  const ExchangeCost slow_start = chosen({1, 0, 0}), narrow = chosen({0, 1, 0});
+  const ExchangeCost slow_start = chosen({.latency = 1, .per_byte = 0, .per_pixel = 0}),
+                     narrow = chosen({.latency = 0, .per_byte = 1, .per_pixel = 0});
   EXPECT_LT(slow_start.messages, narrow.messages);
   EXPECT_LT(narrow.most_pixels_sent, slow_start.most_pixels_sent + 1);
+}
+
+TEST(Exchange, AutoMovesLeastInAllWhereRanksShareOneProcessor) {
+  Scene scene;
+  for (int rank = 0; rank < 8; ++rank) {
+    scene.footprints.push_back({0, 0, 256, 256});
+    scene.order.push_back(rank);
+  }
+  const auto sent = [&](double ranks_at_once) {
+    const LinkCost link{1e-6, 1e-9, 1e-9, ranks_at_once};
+    return cost(cheapest(scene.order, scene.footprints, Layout::rgba32f, link), Layout::rgba32f, link)
+        .pixels_sent;
+  };
+  EXPECT_EQ(sent(1), 7U * 256 * 256) << "every image once, as serial and tree do";
+  EXPECT_GT(sent(8), 7U * 256 * 256) << "in strips, and these once more";
 }
 
 TEST(Exchange, CostOfAFullPictureIsThatOfThePapers) {
@@ -565,6 +581,11 @@ TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {
   EXPECT_TRUE(set_overlap(settings, "off"));
   EXPECT_FALSE(set_overlap(settings, "perhaps"));
   EXPECT_EQ(settings.overlap, Overlap::off);
+  EXPECT_TRUE(set_packed(settings, "on"));
+  EXPECT_FALSE(set_packed(settings, ""));
+  EXPECT_EQ(settings.packed, true);
+  EXPECT_TRUE(set_packed(settings, "auto"));
+  EXPECT_FALSE(settings.packed);
 }
 
 /// What a message says of its rectangle, over pixels that are all `blank`.

@@ -126,7 +126,7 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
       const ScratchFolder folder;
       const std::string path = folder / "control";
       Launcher launcher(path);
-      MpiGroup group(ranks, path, {"--exchange", name, "--home", way, "--overlap", "off"});
+      MpiGroup group(ranks, path, {"--exchange", name, "--home", way, "--overlap", "off", "--packed", "off"});
       const auto linked = linked_service(path, 60'000);
       upload(*linked, texture);
       for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {

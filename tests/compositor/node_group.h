@@ -27,7 +27,7 @@ inline Deadline soon() {
 }
 
 /// So that what travels does not depend on what was faster a moment ago.
-constexpr ExchangeSettings drawn_first{.overlap = Overlap::off};
+constexpr ExchangeSettings drawn_first{.overlap = Overlap::off, .packed = false};
 
 // Ranks on threads, which end when the launcher closes its connection.
 class Group {

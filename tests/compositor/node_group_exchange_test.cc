@@ -71,8 +71,8 @@ TEST_F(NodeGroupTest, PartsGoHomeDirectlyOrGathered) {
   for (const Algorithm algorithm : {Algorithm::serial, Algorithm::tree, Algorithm::direct_send,
                                     Algorithm::binary_swap, Algorithm::radix_k}) {
     std::uint64_t direct = 0, gathered = 0;
-    EXPECT_EQ(rendered_by({algorithm, Layout::rgba32f, Home::direct, Overlap::off}, direct).rgba,
-              rendered_by({algorithm, Layout::rgba32f, Home::gathered, Overlap::off}, gathered).rgba);
+    EXPECT_EQ(rendered_by({algorithm, Layout::rgba32f, Home::direct, Overlap::off, false}, direct).rgba,
+              rendered_by({algorithm, Layout::rgba32f, Home::gathered, Overlap::off, false}, gathered).rgba);
     std::printf("%s: %llu bytes directly, %llu gathered\n", std::string(name_of(algorithm)).c_str(),
                 static_cast<unsigned long long>(direct), static_cast<unsigned long long>(gathered));
     // One rank has all of a tree's picture in the end, and it may be rank 0.

@@ -139,7 +139,7 @@ void Budget::prove(compositor::RenderService& service) {
     std::vector<Pixel> pixels = suspects_;
     const std::vector<Pixel> spread = spread_over(shown.image.rect, spread_, proving_spread);
     pixels.insert(pixels.end(), spread.begin(), spread.end());
-    const auto integrals = service.integrals(meaning_.request, pixels, proving_ms);
+    const auto integrals = integrals_of(service, meaning_.request, pixels, suspects_.size(), proving_ms);
     spread_ += proving_spread;
     worst_ = greatest_error(shown.image, pixels, integrals);
   } while (worst_ > room_when_proven * asked_.error && go_finer());
@@ -164,7 +164,7 @@ void Budget::try_halves(compositor::RenderService& service) {
   std::vector<Pixel> pixels = suspects_;
   const std::vector<Pixel> spread = spread_over(in_halves.image.rect, spread_, proving_spread);
   pixels.insert(pixels.end(), spread.begin(), spread.end());
-  const auto integrals = service.integrals(meaning_.request, pixels, proving_ms);
+  const auto integrals = integrals_of(service, meaning_.request, pixels, suspects_.size(), proving_ms);
   const double worst = greatest_error(in_halves.image, pixels, integrals);
   if (worst > room_when_proven * asked_.error) return;
   as_halves_ = true;

@@ -30,6 +30,9 @@ constexpr double small_picture = 80.0 * 80.0;
 /// Finer settings are not tried after this.
 constexpr double patience_ms = 400;
 constexpr double integrals_ms = 250;
+constexpr std::size_t least_integrals = 64;
+/// For what must be integrated, whatever time it takes: beyond this the nodes hang, or are asked too much.
+constexpr double patience_with_integrals_ms = 5000;
 constexpr std::size_t spread_pixels = 64;
 constexpr std::size_t worst_pixels = 8;  ///< of each setting
 
@@ -115,6 +118,20 @@ std::vector<Pixel> spread_over(const volume::Rect& rect, std::size_t first, std:
   return pixels;
 }
 
+std::vector<PixelIntegral> integrals_of(compositor::RenderService& service,
+                                        const volume::RenderRequest& request, std::span<const Pixel> pixels,
+                                        std::size_t at_least, double usual_ms) {
+  const auto start = Clock::now();
+  std::vector<PixelIntegral> integrals;
+  do {
+    const auto more = service.integrals(request, pixels.subspan(integrals.size()), usual_ms);
+    if (more.empty()) break;
+    integrals.insert(integrals.end(), more.begin(), more.end());
+  } while (integrals.size() < std::min(at_least, pixels.size()) &&
+           milliseconds_since(start) < patience_with_integrals_ms);
+  return integrals;
+}
+
 double greatest_error(const ImageView& picture, std::span<const Pixel> pixels,
                       std::span<const PixelIntegral> integrals) {
   double greatest = 0;
@@ -165,7 +182,8 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   pixels.insert(pixels.end(), spread.begin(), spread.end());
   // If time is up before all are integrated, then those of some settings are not all that are missing.
   std::shuffle(pixels.begin(), pixels.end(), std::minstd_rand());
-  const std::vector<PixelIntegral> integrals = service.integrals(small.request, pixels, integrals_ms);
+  const std::vector<PixelIntegral> integrals =
+      integrals_of(service, small.request, pixels, least_integrals, integrals_ms);
 
   std::vector<Measured> measured;
   measured.reserve(tried.size());

@@ -33,6 +33,14 @@ std::vector<volume::Pixel> most_different(const volume::ImageView& a, const volu
 /// Pixels all over a rectangle, the `first`-th of an endless sequence and those after it.
 std::vector<volume::Pixel> spread_over(const volume::Rect& rect, std::size_t first, std::size_t count);
 
+/// Of the first pixels, in order: as many as the nodes integrate in `usual_ms`, but `at_least` so many, which
+/// on a machine with other work may take longer. A budget is judged by few rays as it is: time must not make
+/// them fewer.
+std::vector<volume::PixelIntegral> integrals_of(compositor::RenderService& service,
+                                                const volume::RenderRequest& request,
+                                                std::span<const volume::Pixel> pixels, std::size_t at_least,
+                                                double usual_ms);
+
 /// The greatest difference of a channel between a picture and the first integrals of `pixels`. Pixels beside
 /// the picture show nothing.
 double greatest_error(const volume::ImageView& picture, std::span<const volume::Pixel> pixels,

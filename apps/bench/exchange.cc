@@ -119,16 +119,16 @@ class Ours {
   Ours(Link& link, compositor::LinkCost cost) : link_(link), cost_(cost) {}
 
   Way way(std::string name, std::optional<compositor::Algorithm> algorithm, compositor::Layout layout,
-          const std::vector<int>& order) {
+          const std::vector<int>& order, bool packed = true) {
     return {
         .name = std::move(name),
         .prepare = [this](const Image& mine) { image_ = mine; },
         .compose =
-            [this, algorithm, layout, &order] {
+            [this, algorithm, layout, packed, &order] {
               const std::vector<Rect> footprints = footprints_of(image_.rect, link_);
               compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
                                                     : cheapest(order, footprints, layout, cost_);
-              plan.packed = true;  // as on lines between machines
+              plan.packed = packed;
               picture_ =
                   compositor::exchange(std::move(image_), plan, volume::Operator::over, layout, link_).picture;
             },
@@ -199,6 +199,8 @@ void run(const Settings& settings, Link& link) {
         ways.push_back(ours.way(std::string(name_of(compositor::Algorithm(a))), compositor::Algorithm(a),
                                 compositor::Layout::rgba32f, mine.order));
       ways.push_back(ours.way("auto", {}, compositor::Layout::rgba32f, mine.order));
+      // As nodes choose where all ranks are on one machine.
+      ways.push_back(ours.way("auto, unpacked", {}, compositor::Layout::rgba32f, mine.order, false));
       ways.push_back(ours.way("auto, half", {}, compositor::Layout::rgba16f, mine.order));
       ways.push_back(ours.way("auto, byte", {}, compositor::Layout::rgba8, mine.order));
 #ifdef UNDERSTUDY_ICET

@@ -52,6 +52,13 @@ layout(location = 1) out vec2 taken;  // samples, negative when the ray became o
 #endif
 
 vec3 start, step_;
+float last;  // sample
+#if !defined(NEAREST) && !defined(OWN_FILTER) && !defined(BRICKED)
+vec3 start_in_texture, step_in_texture;
+#endif
+#if !defined(COLOURS) && !defined(OWN_FILTER)
+float table_step, table_begin;  // in the table's texture: from one value to the next, and its first entry
+#endif
 
 #ifdef BRICKED
 ivec3 brick;           // the one that is sampled
@@ -102,7 +109,7 @@ TEXEL sample_field(float k) {
   TEXEL inside = textureLod(field, (clamp(free, vec3(0.0), top) - first_of_brick + in_atlas + 0.5) * texture_scale, 0.0).SWIZZLE;
 #else
   // Beyond its outermost texels the texture repeats them, as the lattice does.
-  TEXEL inside = textureLod(field, k * (step_ * texture_scale) + (start - texture_origin + 0.5) * texture_scale, 0.0).SWIZZLE;
+  TEXEL inside = textureLod(field, k * step_in_texture + start_in_texture, 0.0).SWIZZLE;
 #endif
 #ifdef BORDERED
   vec3 beyond = abs(free - clamp(free, vec3(0.0), top)) * has_border;
@@ -121,14 +128,21 @@ vec4 classified(TEXEL value) {
   colour.rgb *= mix(1.0, colour.a, multiply_by_alpha);
   return colour;
 #else
-  float place = clamp((value - table_low) * table_scale, 0.0, table_last);
 #ifdef OWN_FILTER
+  float place = clamp((value - table_low) * table_scale, 0.0, table_last);
   int entry = min(int(place), int(table_last) - 1);
   return mix(texelFetch(table, entry, 0), texelFetch(table, entry + 1, 0), place - float(entry));
 #else
-  return textureLod(table, (place + 0.5) / (table_last + 1.0), 0.0);
+  // Beyond its ends the texture repeats them.
+  return textureLod(table, (value - table_low) * table_step + table_begin, 0.0);
 #endif
 #endif
+}
+
+vec4 colour_at(float k, TEXEL value) {
+  vec4 colour = classified(value);
+  if (k > last) colour = vec4(NEUTRAL);
+  return colour;
 }
 
 void main() {
@@ -136,7 +150,16 @@ void main() {
   vec4 along = texelFetch(ray_steps, ivec2(gl_FragCoord.xy), 0);
   start = from.xyz;
   step_ = along.xyz;
-  float k = from.w, last = along.w;
+  float k = from.w;
+  last = along.w;
+#if !defined(NEAREST) && !defined(OWN_FILTER) && !defined(BRICKED)
+  start_in_texture = (start - texture_origin + 0.5) * texture_scale;
+  step_in_texture = step_ * texture_scale;
+#endif
+#if !defined(COLOURS) && !defined(OWN_FILTER)
+  table_step = table_scale / (table_last + 1.0);
+  table_begin = 0.5 / (table_last + 1.0);
+#endif
   vec3 speed = max(abs(step_), vec3(1e-20));
   vec4 sum = vec4(NEUTRAL);
   float count = 0.0, hidden = 0.0;
@@ -176,19 +199,30 @@ void main() {
     }
     first_of_brick = vec3(brick) * brick_cells + texture_origin;
     in_atlas = vec3(page.rgb) * (brick_cells + 1.0);
-#endif
     for (int i = 0; i < 8; ++i) {
       float here = k + float(i);
-#ifdef BRICKED
       if (brick_at(min(here, last)) != brick) {
         many = float(i);
         break;
       }
-#endif
-      vec4 colour = classified(sample_field(min(here, last)));
-      if (here > last) colour = vec4(NEUTRAL);
-      COMPOSE
+      vec4 colour = colour_at(here, sample_field(min(here, last)));
+      COMPOSE(colour)
     }
+#else
+    // All four values, then all four colours: a software rasteriser's code keeps this order, in which none waits
+    // for the one before.
+    for (int i = 0; i < 8; i += 4) {
+      float k0 = k + float(i), k1 = k0 + 1.0, k2 = k0 + 2.0, k3 = k0 + 3.0;
+      TEXEL value0 = sample_field(min(k0, last)), value1 = sample_field(min(k1, last));
+      TEXEL value2 = sample_field(min(k2, last)), value3 = sample_field(min(k3, last));
+      vec4 colour0 = colour_at(k0, value0), colour1 = colour_at(k1, value1);
+      vec4 colour2 = colour_at(k2, value2), colour3 = colour_at(k3, value3);
+      COMPOSE(colour0)
+      COMPOSE(colour1)
+      COMPOSE(colour2)
+      COMPOSE(colour3)
+    }
+#endif
     count += min(many, last - k + 1.0);
     k += many;
 #ifdef ENDS
@@ -244,7 +278,7 @@ std::string defines(const MarchVariant& variant) {
   // The largest float, without a literal that some compilers would round up to infinity.
   define(variant.op == Operator::min, "NEUTRAL uintBitsToFloat(0x7f7fffffu)");
   define(variant.op != Operator::min, "NEUTRAL 0.0");
-  return text + fmt::format("#define COMPOSE {}\n", composition(variant.op));
+  return text + fmt::format("#define COMPOSE(colour) {}\n", composition(variant.op));
 }
 
 /// A shader or program that goes when linking ends, in whatever way.

@@ -48,7 +48,7 @@ bool answers(CallId call) {
 }
 
 /// What a context answers in the same way for ever.
-bool is_constant(CallId call, GLenum name) {
+bool is_constant(CallId call, const std::uint64_t* words) {
   switch (call) {
     case CallId::GetIntegerv:
     case CallId::GetInteger64v:
@@ -59,6 +59,7 @@ bool is_constant(CallId call, GLenum name) {
     default:
       return false;
   }
+  const auto name = GLenum(words[0]);
   constexpr std::array<GLenum, 5> others = {GL_MAJOR_VERSION, GL_MINOR_VERSION, GL_NUM_EXTENSIONS,
                                             GL_CONTEXT_FLAGS, GL_CONTEXT_PROFILE_MASK};
   if (std::find(others.begin(), others.end(), name) != others.end()) return true;
@@ -178,7 +179,7 @@ std::optional<std::uint64_t> Link::constant(CallId call, const std::uint64_t* wo
     if (found == texts_.end()) return std::nullopt;
     return reinterpret_cast<std::uintptr_t>(found->second);
   }
-  if (!is_constant(call, GLenum(words[0]))) return std::nullopt;
+  if (!is_constant(call, words)) return std::nullopt;
   const auto found = constants_.find({call, words[0]});
   if (found == constants_.end() || words[1] == 0) return std::nullopt;
   std::memcpy(address(words[1]), found->second.data(), found->second.size());
@@ -313,7 +314,7 @@ void Link::write_output(const PackedCall& call, const AnsweredOutput& output) {
           : pointee_bytes(call.call, output.parameter, call.words).value_or(most_unknown_bytes);
   const std::size_t bytes = std::min(room, output.bytes.size());
   std::memcpy(address(to), output.bytes.data(), bytes);
-  if (is_constant(call.call, GLenum(call.words[0])))
+  if (is_constant(call.call, call.words))
     constants_[{call.call, call.words[0]}].assign(output.bytes.begin(), output.bytes.begin() + std::ptrdiff_t(bytes));
 }
 

@@ -19,6 +19,7 @@
 
 #include "apps/understudy/frame_changes.h"
 #include "apps/understudy/offscreen_contexts.h"
+#include "apps/understudy/signal_inbox.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/limits.h"
 #include "spu/link/stage_protocol.h"
@@ -43,7 +44,7 @@ namespace limits = compositor::limits;
 
 constexpr std::chrono::seconds patience_with_start{10};
 /// For the processes of applications that have just ended.
-constexpr std::chrono::seconds patience_with_ends{3};
+constexpr std::chrono::seconds patience_with_ends{1};
 /// Different faults of a stream that are said.
 constexpr std::size_t most_faults_told = 20;
 
@@ -156,15 +157,6 @@ int perform(FileDescriptor socket) {
   return 0;
 }
 
-volatile sig_atomic_t asked_to_end = 0;
-
-/// Without SA_RESTART: accept() returns.
-void note_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { asked_to_end = 1; };
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaction(number, &action, nullptr);
-}
-
 void reap(std::set<pid_t>& performers) {
   for (auto performer = performers.begin(); performer != performers.end();) {
     const bool ended = ::waitpid(*performer, nullptr, WNOHANG) != 0;
@@ -177,9 +169,9 @@ pid_t start_performer(FileDescriptor& application, int listener) {
   const pid_t listening = ::getpid();
   const pid_t child = ::fork();
   if (child != 0) return child;
-  struct sigaction usual {};
-  usual.sa_handler = SIG_DFL;
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaction(number, &usual, nullptr);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != listening) ::_exit(1);
   ::close(listener);
@@ -188,14 +180,23 @@ pid_t start_performer(FileDescriptor& application, int listener) {
   ::_exit(status);
 }
 
+/// Whether a signal asks for the end.
+bool asked_to_end(SignalInbox& inbox, std::set<pid_t>& performers) {
+  while (const std::optional<ReceivedSignal> received = inbox.next()) {
+    if (received->number != SIGCHLD) return true;
+    reap(performers);
+  }
+  return false;
+}
+
 int listen(const std::string& socket) {
-  note_signals();
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
   const FileDescriptor listener = compositor::listen_at(socket);
   std::set<pid_t> performers;
-  while (asked_to_end == 0) {
-    const bool came = compositor::wait_until_ready(listener.get(), POLLIN, Clock::now() + std::chrono::seconds(1));
-    reap(performers);
-    if (!came) continue;
+  while (!asked_to_end(inbox, performers)) {
+    std::array<pollfd, 2> waiting = {{{listener.get(), POLLIN, 0}, {inbox.descriptor(), POLLIN, 0}}};
+    ::poll(waiting.data(), waiting.size(), -1);
+    if (waiting[0].revents == 0) continue;
     FileDescriptor application(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!application) continue;
     if (performers.size() >= limits::max_clients) {

@@ -82,7 +82,9 @@ class LinkTest : public ::testing::Test {
   }
 
   void TearDown() override {
-    if (installed != nullptr && !link_->lost()) EXPECT_EQ(gl().GetError(), GLenum(GL_NO_ERROR));
+    if (installed != nullptr && !link_->lost()) {
+      EXPECT_EQ(gl().GetError(), GLenum(GL_NO_ERROR));
+    }
     Chain::release_current();
     chains_.clear();
     link_.reset();

@@ -38,6 +38,7 @@ constexpr std::uint32_t body_abi = 3;
 struct RemoteContextFormat {
   std::int32_t version = 0;   ///< 100 * major + 10 * minor
   std::uint32_t profile = 0;  ///< GL_CONTEXT_PROFILE_MASK
+  std::int32_t alpha = 0;
   std::int32_t depth = 0;
   std::int32_t stencil = 0;
   std::int32_t samples = 0;

@@ -34,6 +34,7 @@ class DoorFront final : public spu::FrontEnd {
     door_.remote_context_format(&format);
     return {.version = format.version,
             .profile = format.profile,
+            .alpha = format.alpha,
             .depth = format.depth,
             .stencil = format.stencil,
             .samples = format.samples,

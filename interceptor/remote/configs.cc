@@ -10,7 +10,7 @@
 namespace understudy::interceptor {
 namespace {
 
-constexpr int most_configs = 16;  ///< 2 depths of visuals, 8 kinds each
+constexpr int most_configs = 24;  ///< visuals of 24 bits with and without alpha, of 32 bits with, 8 kinds each
 
 struct Screen {
   Display* display;
@@ -28,21 +28,21 @@ bool takes_pictures(const XVisualInfo& visual) {
          visual.blue_mask == 0xff;
 }
 
-void add_visual(Screen& screen, VisualID visual, int depth) {
+void add_visual(Screen& screen, VisualID visual, int depth, int alpha) {
   for (const int samples : {0, 4}) {
     for (const int with_depth : {1, 0}) {
       for (const int double_buffered : {1, 0}) {
         if (screen.count == most_configs) return;
         RemoteConfig& config = screen.configs[screen.count++];
-        config = {screen.count,  screen.number, visual, depth, double_buffered, with_depth * 24, with_depth * 8,
-                  samples};
+        config = {screen.count,    screen.number, visual, depth, alpha, double_buffered, with_depth * 24,
+                  with_depth * 8, samples};
       }
     }
   }
 }
 
 void fill(Screen& screen) {
-  if (screen.display == nullptr) return add_visual(screen, 0, 32);
+  if (screen.display == nullptr) return add_visual(screen, 0, 32, 8);
   const Xlib* x = xlib();
   if (x == nullptr) return;
   XVisualInfo wanted{};
@@ -57,7 +57,9 @@ void fill(Screen& screen) {
       if (visuals[i].depth != depth || !takes_pictures(visuals[i])) continue;
       if (best == nullptr || visuals[i].visualid == usual) best = &visuals[i];
     }
-    if (best != nullptr) add_visual(screen, best->visualid, depth);
+    // Toolkits that do not ask for alpha would take it for a window to look through.
+    if (best != nullptr && depth == 24) add_visual(screen, best->visualid, depth, 0);
+    if (best != nullptr) add_visual(screen, best->visualid, depth, 8);
   }
   x->free(visuals);
 }

@@ -1,5 +1,5 @@
 // The framebuffer configurations that remote GLX and EGL offer: for each kind of window that the X server has
-// and that pictures can be put into, with and without a second buffer, depth and samples. What is drawn lies on
+// and that pictures can be put into, with and without alpha, a second buffer, depth and samples. What is drawn lies on
 // the stage, which can have all of these.
 #pragma once
 
@@ -13,6 +13,7 @@ struct RemoteConfig {
   int screen;
   VisualID visual;   ///< 0: without an X server, for pbuffers alone
   int visual_depth;  ///< 24, or 32 with an alpha that the screen shows
+  int alpha;  ///< 0 or 8 bits
   int double_buffered;
   int depth;
   int stencil;

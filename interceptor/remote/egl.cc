@@ -147,13 +147,15 @@ const char* QueryString(EGLDisplay display, EGLint name) {
 bool attribute_of(const RemoteConfig& config, EGLint attribute, EGLint* value) {
   switch (attribute) {
     case EGL_BUFFER_SIZE:
-      *value = 32;
+      *value = 24 + config.alpha;
       return true;
     case EGL_RED_SIZE:
     case EGL_GREEN_SIZE:
     case EGL_BLUE_SIZE:
-    case EGL_ALPHA_SIZE:
       *value = 8;
+      return true;
+    case EGL_ALPHA_SIZE:
+      *value = config.alpha;
       return true;
     case EGL_DEPTH_SIZE:
       *value = config.depth;

@@ -65,13 +65,15 @@ int attribute_of(const RemoteConfig& config, int attribute, int* value) {
       *value = config.id;
       return Success;
     case GLX_BUFFER_SIZE:
-      *value = 32;
+      *value = 24 + config.alpha;
       return Success;
     case GLX_RED_SIZE:
     case GLX_GREEN_SIZE:
     case GLX_BLUE_SIZE:
-    case GLX_ALPHA_SIZE:
       *value = 8;
+      return Success;
+    case GLX_ALPHA_SIZE:
+      *value = config.alpha;
       return Success;
     case GLX_DOUBLEBUFFER:
       *value = config.double_buffered;

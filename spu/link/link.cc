@@ -67,6 +67,10 @@ bool is_constant(CallId call, const std::uint64_t* words) {
   return text != nullptr && std::string_view(text).starts_with("GL_MAX_");
 }
 
+bool is_integer_query(CallId call) {
+  return call == CallId::GetIntegerv || call == CallId::GetBooleanv;
+}
+
 bool is_text(CallId call) {
   return call == CallId::GetString || call == CallId::GetStringi;
 }
@@ -196,6 +200,12 @@ std::optional<std::uint64_t> Link::known(CallId call, const std::uint64_t* words
     const auto found = mappings_.find(mapped_buffer(call, words));
     if (words[2] != 0)
       *reinterpret_cast<void**>(address(words[2])) = found == mappings_.end() ? nullptr : found->second.data();
+    return 0;
+  }
+  if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
+    // What stands for a window on the stage may have one buffer.
+    if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(address(words[1])) = context_.double_buffered;
+    if (call == CallId::GetBooleanv) *reinterpret_cast<GLboolean*>(address(words[1])) = context_.double_buffered;
     return 0;
   }
   std::uint64_t result = 0;

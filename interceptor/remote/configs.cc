@@ -42,7 +42,11 @@ void add_visual(Screen& screen, VisualID visual, int depth, int alpha) {
 }
 
 void fill(Screen& screen) {
-  if (screen.display == nullptr) return add_visual(screen, 0, 32, 8);
+  if (screen.display == nullptr) {
+    add_visual(screen, 0, 0, 0);
+    add_visual(screen, 0, 0, 8);
+    return;
+  }
   const Xlib* x = xlib();
   if (x == nullptr) return;
   XVisualInfo wanted{};

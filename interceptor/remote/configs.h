@@ -12,7 +12,7 @@ struct RemoteConfig {
   int id;  ///< GLX_FBCONFIG_ID, EGL_CONFIG_ID: from 1
   int screen;
   VisualID visual;   ///< 0: without an X server, for pbuffers alone
-  int visual_depth;  ///< 24, or 32 with an alpha that the screen shows
+  int visual_depth;  ///< 24, or 32 with an alpha that the screen shows; 0 without one
   int alpha;  ///< 0 or 8 bits
   int double_buffered;
   int depth;

@@ -68,7 +68,7 @@ class Performance {
         return;
       }
       if (message->type != MessageType::calls) throw MalformedMessage("spoke out of turn");
-      play(spu::decode_calls(message->payload));
+      play(spu::decode_calls(message->payload, chunks_));
     }
   }
 
@@ -127,6 +127,7 @@ class Performance {
   Connection& connection_;
   OffscreenContexts windows_;
   spu::Player player_;
+  spu::ChunkReceiver chunks_;
   FrameChanges changes_;
   std::optional<spu::PictureChange> shown_;
   std::set<std::string> told_;

@@ -66,12 +66,15 @@ void StageLink::lose(const std::string& why) {
 
 void StageLink::transmit(const Records& records, StageReply reply) {
   const CallsHead head{thread_number(), reply, records.words().size(), records.payload().size()};
-  const std::array<compositor::Bytes, 3> parts = {std::as_bytes(std::span(&head, 1)),
-                                                  std::as_bytes(records.words()),
-                                                  std::as_bytes(records.payload())};
+  chunks_.clear();
+  chunks_.add(records.words(), records.payload());
+  const std::uint64_t count = chunks_.heads().size();
+  const std::array<compositor::Bytes, 4> parts = {
+      std::as_bytes(std::span(&head, 1)), std::as_bytes(std::span(&count, 1)), std::as_bytes(chunks_.heads()),
+      std::as_bytes(chunks_.data())};
   connection_->send(MessageType::calls, 0, parts, Clock::now() + limits::stage_patience);
-  counters().bytes_up +=
-      sizeof(MessageHeader) + sizeof head + records.words().size_bytes() + records.payload().size_bytes();
+  counters().bytes_up += sizeof(MessageHeader);
+  for (const compositor::Bytes& part : parts) counters().bytes_up += part.size();
   if (reply != StageReply::none) ++counters().round_trips;
 }
 

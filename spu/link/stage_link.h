@@ -51,6 +51,7 @@ class StageLink {
   std::mutex mutex_;
   std::optional<compositor::Connection> connection_;
   StageVersions versions_;
+  ChunkSender chunks_;
   std::atomic<bool> lost_ = false;
   std::map<std::uint64_t, std::pair<Extent2D, std::vector<std::uint8_t>>> pictures_;  ///< by drawable
   std::set<std::string> texts_;

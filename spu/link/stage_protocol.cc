@@ -33,19 +33,24 @@ StageVersions decode_versions(std::span<const std::byte> payload) {
   return versions;
 }
 
-Calls decode_calls(std::span<const std::byte> payload) {
+Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks) {
   Calls calls;
   if (payload.size() < sizeof calls.head) throw MalformedMessage("calls: shorter than their head");
   std::memcpy(&calls.head, payload.data(), sizeof calls.head);
-  const std::size_t words = (payload.size() - sizeof calls.head) / sizeof(std::uint64_t);
-  if (calls.head.record_words > words || calls.head.payload_words != words - calls.head.record_words ||
-      payload.size() % sizeof(std::uint64_t) != 0) {
-    throw MalformedMessage("calls: not as many words as announced");
-  }
   if (calls.head.reply > StageReply::picture) throw MalformedMessage("calls: want a reply of no kind");
-  const auto* first = reinterpret_cast<const std::uint64_t*>(payload.data() + sizeof calls.head);
-  calls.records = {first, calls.head.record_words};
-  calls.payload = {first + calls.head.record_words, calls.head.payload_words};
+  constexpr std::uint64_t most = compositor::limits::max_stage_message_bytes / sizeof(std::uint64_t);
+  if (calls.head.record_words > most || calls.head.payload_words > most - calls.head.record_words ||
+      payload.size() % sizeof(std::uint64_t) != 0) {
+    throw MalformedMessage("calls: more words than any application sends at once");
+  }
+  const std::uint64_t announced = calls.head.record_words + calls.head.payload_words;
+  const std::span<const std::uint64_t> words =
+      chunks.receive({reinterpret_cast<const std::uint64_t*>(payload.data() + sizeof calls.head),
+                      (payload.size() - sizeof calls.head) / sizeof(std::uint64_t)},
+                     announced);
+  if (words.size() != announced) throw MalformedMessage("calls: fewer words than announced");
+  calls.records = words.first(calls.head.record_words);
+  calls.payload = words.subspan(calls.head.record_words);
   return calls;
 }
 

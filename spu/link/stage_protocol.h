@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "spu/link/chunks.h"
 #include "spu/player/window_system.h"
 
 namespace understudy::spu {
@@ -23,7 +24,7 @@ enum class StageReply : std::uint64_t {
   picture,  ///< the last record is a `frame` event
 };
 
-/// Records (spu/stream/record.h) of one thread, behind this head in the message.
+/// Before the chunks (chunks.h) that make the records (spu/stream/record.h) of one thread, and their payload.
 struct CallsHead {
   std::uint64_t thread = 0;
   StageReply reply = StageReply::none;
@@ -53,9 +54,11 @@ std::vector<std::byte> encode(const StageVersions& versions);
 /// The message is this, then the pixels.
 std::vector<std::byte> encode_head(const PictureChange& change);
 
-// All of these throw compositor::MalformedMessage; spans lead into `payload`, which must be aligned for words.
+// All of these throw compositor::MalformedMessage.
 StageVersions decode_versions(std::span<const std::byte> payload);
-Calls decode_calls(std::span<const std::byte> payload);
+/// `payload` must be aligned for words; what comes back lies in `chunks`, until the next message.
+Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks);
+/// What comes back leads into `payload`.
 PictureChange decode_picture(std::span<const std::byte> payload);
 
 }  // namespace understudy::spu

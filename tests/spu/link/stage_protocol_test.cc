@@ -16,23 +16,83 @@ namespace {
 
 using compositor::MalformedMessage;
 
-std::vector<std::byte> calls_message(const CallsHead& head, std::size_t words) {
-  std::vector<std::byte> bytes(sizeof head + words * 8);
-  std::memcpy(bytes.data(), &head, sizeof head);
-  return bytes;
+/// One message of calls, as it travels.
+std::vector<std::byte> calls_message(CallsHead head, std::span<const std::uint64_t> words) {
+  std::vector<std::uint64_t> all(sizeof head / 8);
+  std::memcpy(all.data(), &head, sizeof head);
+  all.insert(all.end(), words.begin(), words.end());
+  const auto bytes = std::as_bytes(std::span(all));
+  return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::uint64_t> chunks_of(ChunkSender& sender, std::span<const std::uint64_t> records,
+                                     std::span<const std::uint64_t> payload) {
+  sender.clear();
+  sender.add(records, payload);
+  std::vector<std::uint64_t> words = {sender.heads().size()};
+  words.insert(words.end(), sender.heads().begin(), sender.heads().end());
+  words.insert(words.end(), sender.data().begin(), sender.data().end());
+  return words;
+}
+
+/// Records of three words each.
+std::vector<std::uint64_t> some_records(std::size_t count, std::uint64_t seed) {
+  std::vector<std::uint64_t> words;
+  for (std::size_t i = 0; i < count; ++i) words.insert(words.end(), {std::uint64_t(3) << 32 | 7, i, seed + i});
+  return words;
 }
 
 TEST(StageProtocol, CallsHaveAsManyWordsAsTheySay) {
-  const auto message = calls_message({3, StageReply::answer, 5, 2}, 7);
-  const Calls calls = decode_calls(message);
+  const std::vector<std::uint64_t> records = {1, 2, 3, 4, 5};
+  const std::vector<std::uint64_t> payload = {6, 7};
+  ChunkSender sender;
+  const auto chunks = chunks_of(sender, records, payload);
+  ChunkReceiver receiver;
+  const auto message = calls_message({3, StageReply::answer, 5, 2}, chunks);
+  const Calls calls = decode_calls(message, receiver);
   EXPECT_EQ(calls.head.thread, 3U);
-  EXPECT_EQ(calls.records.size(), 5U);
-  EXPECT_EQ(calls.payload.size(), 2U);
-  EXPECT_THROW(decode_calls(calls_message({3, StageReply::answer, 5, 2}, 6)), MalformedMessage);
-  EXPECT_THROW(decode_calls(calls_message({3, StageReply::answer, 5, 2}, 8)), MalformedMessage);
-  EXPECT_THROW(decode_calls(calls_message({3, StageReply::answer, ~std::uint64_t(0), 8}, 7)), MalformedMessage);
-  EXPECT_THROW(decode_calls(calls_message({3, StageReply(9), 5, 2}, 7)), MalformedMessage);
-  EXPECT_THROW(decode_calls(std::span(message).first(12)), MalformedMessage);
+  EXPECT_EQ(std::vector(calls.records.begin(), calls.records.end()), records);
+  EXPECT_EQ(std::vector(calls.payload.begin(), calls.payload.end()), payload);
+  const auto refused = [&](const CallsHead& head, std::span<const std::uint64_t> words) {
+    ChunkReceiver fresh;
+    EXPECT_THROW(decode_calls(calls_message(head, words), fresh), MalformedMessage);
+  };
+  refused({3, StageReply::answer, 5, 1}, chunks);
+  refused({3, StageReply::answer, 6, 2}, chunks);
+  refused({3, StageReply::answer, ~std::uint64_t(0), 8}, chunks);
+  refused({3, StageReply(9), 5, 2}, chunks);
+  for (std::size_t words = 0; words < chunks.size(); ++words)
+    refused({3, StageReply::answer, 5, 2}, std::span(chunks).first(words));
+  // Chunks that were never sent are nobody's.
+  const auto again = chunks_of(sender, records, payload);
+  EXPECT_LT(again.size(), chunks.size());
+  refused({3, StageReply::answer, 5, 2}, again);
+  EXPECT_EQ(decode_calls(calls_message({3, StageReply::answer, 5, 2}, again), receiver).records.size(), 5U);
+}
+
+TEST(Chunks, WhatIsTheSameDoesNotTravelAgain) {
+  ChunkSender sender;
+  ChunkReceiver receiver;
+  auto records = some_records(20000, 1);
+  const std::vector<std::uint64_t> payload(5000, 9);
+  const auto travels = [&] {
+    const auto words = chunks_of(sender, records, payload);
+    const auto received = receiver.receive(words, records.size() + payload.size());
+    std::vector<std::uint64_t> sent = records;
+    sent.insert(sent.end(), payload.begin(), payload.end());
+    EXPECT_EQ(std::vector(received.begin(), received.end()), sent);
+    return words.size();
+  };
+  EXPECT_GT(travels(), 60000U);
+  EXPECT_LT(travels(), 400U);
+  records[30001] = 5;
+  EXPECT_LT(travels(), 700U);
+  EXPECT_LT(travels(), 400U);
+  // More than the slots hold, many times over: both ends still agree.
+  for (std::uint64_t seed = 2; seed < 60; ++seed) {
+    records = some_records(50000, seed * 1'000'000);
+    EXPECT_GT(travels(), 150000U);
+  }
 }
 
 TEST(StageProtocol, VersionsArrive) {

@@ -198,6 +198,11 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say(error.what());
     return usage_error;
   }
+  if (arguments.remote && options.disable) {
+    say("--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
+        "unset one of them");
+    return usage_error;
+  }
   const bool may_have_nodes = options.connect.empty() && !options.disable;
   Placement placement;
   try {

@@ -101,6 +101,7 @@ Link::Link(Chain& chain, StageLink& stage)
       pack_(*chain.find<Pack>()),
       question_encoder_(link_driver(), [] {}) {
   pack_.hand_to(*this);
+  question_encoder_.hide_addresses();
 }
 
 void Link::introduce() {

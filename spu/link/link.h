@@ -42,7 +42,7 @@ class Link final : public Unit, public RecordTaker {
   std::optional<std::uint64_t> known(CallId call, const std::uint64_t* words) override;
   void before(CallId call, const std::uint64_t* words, Records& to) override;
   HandOn when(CallId call, bool inside_begin) override;
-  bool answers_follow_calls() const override { return false; }
+  bool in_this_process() const override { return false; }
   std::uint64_t take(const Records& records, const PackedCall* last) override;
 
   /// A question of the encoder.

@@ -22,7 +22,7 @@ constexpr UnitOption options[] = {{.name = "block",
 
 Pack::Pack(Chain& chain, std::size_t block_words)
     : block_words_(block_words), encoder_(chain.driver(), [this] {
-        if (taker_->answers_follow_calls()) hand_on();
+        if (taker_->in_this_process()) hand_on();
       }) {}
 
 void Pack::fill(Phase, DispatchTable& table) {

@@ -15,7 +15,10 @@ class Pack final : public Unit {
   Pack(Chain& chain, std::size_t block_words);
 
   /// Told by the unit behind it, which takes what is packed.
-  void hand_to(RecordTaker& taker) { taker_ = &taker; }
+  void hand_to(RecordTaker& taker) {
+    taker_ = &taker;
+    if (!taker.in_this_process()) encoder_.hide_addresses();
+  }
 
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;

@@ -72,6 +72,29 @@ TEST_F(Remote, CoreContextsAndNodes) {
   EXPECT_EQ(leftovers(), "");
 }
 
+TEST_F(Remote, OffScreen) {
+  const auto frame = [&](const std::string& name) {
+    return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});
+  };
+  run_well(under() + frame("local.png"));
+  const Outcome outcome = run_well(under({"--remote", "--report", file("report.json")}) + without_opengl() +
+                                       frame("remote.png"),
+                                   {{"DISPLAY", ""}});
+  EXPECT_EQ(substituted(json("report.json")), 1) << outcome.err;
+  EXPECT_GE(told("off screen", png("local.png"), png("remote.png")).psnr, 50);
+}
+
+TEST_F(Remote, WhatStaysTheSameDoesNotTravel) {
+  const auto bytes_up = [&](const char* frames) {
+    run_well(under({"--remote", "--report", file("report.json")}) + viewer("table", {"--frames", frames}),
+             on_display());
+    return json("report.json").at("remote_link").at("bytes_up").get<double>();
+  };
+  const double a_frame = (bytes_up("30") - bytes_up("10")) / 20;
+  fmt::print("a frame of a view that rests: {:.0f} bytes up\n", a_frame);
+  EXPECT_LT(a_frame, 4096);
+}
+
 TEST_F(Remote, PicturesAreInTheWindow) {
   if (const std::string lacking = missing({Need::imagemagick}); !lacking.empty()) GTEST_SKIP() << lacking;
   run_well(under() + viewer("table", {"--screenshot", file("local.png")}), on_display());
@@ -86,6 +109,12 @@ TEST_F(Remote, PicturesAreInTheWindow) {
            told("the window", png("local.png"), window).psnr >= 50;
   });
   EXPECT_TRUE(shown && child.running()) << child.err();
+  const std::vector<pid_t> viewers = processes("understudy-viewer");
+  ASSERT_EQ(viewers.size(), 1U);
+  const std::string mapped = contents(fmt::format("/proc/{}/maps", viewers.front()));
+  EXPECT_NE(mapped.find("libunderstudy.so"), std::string::npos);
+  for (const char* of_a_driver : {"libGLdispatch", "libGLX_", "libEGL_", "_dri.so", "libLLVM"})
+    EXPECT_EQ(mapped.find(of_a_driver), std::string::npos) << of_a_driver;
   child.signal(SIGTERM);
   EXPECT_EQ(child.finish().status, 128 + SIGTERM);
   EXPECT_EQ(leftovers(), "");

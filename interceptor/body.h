@@ -32,12 +32,48 @@ enum class FrameEnd : std::int32_t {
   destroy
 };
 
-constexpr std::uint32_t body_abi = 2;
+constexpr std::uint32_t body_abi = 3;
+
+/// What the application asked of a context that a stage is to make.
+struct RemoteContextFormat {
+  std::int32_t version = 0;   ///< 100 * major + 10 * minor
+  std::uint32_t profile = 0;  ///< GL_CONTEXT_PROFILE_MASK
+  std::int32_t alpha = 0;
+  std::int32_t depth = 0;
+  std::int32_t stencil = 0;
+  std::int32_t samples = 0;
+  std::int32_t double_buffered = 1;
+};
+
+struct RemoteDrawable {
+  std::uint64_t number = 0;  ///< 0: there is none
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+};
+
+/// Rows from the top, 4 bytes a pixel: blue, green, red, unused.
+struct RemotePicture {
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  const std::uint8_t* pixels = nullptr;
+};
+
+/// The highest OpenGL versions of a stage, as 100 * major + 10 * minor; 0: none.
+struct RemoteVersions {
+  std::int32_t core = 0;
+  std::int32_t compatibility = 0;
+};
 
 /// Given by the door, once.
 struct DoorServices {
   std::uint32_t abi = body_abi;
   ThreadState* (*thread_state)() = nullptr;  ///< of the calling thread
+  // Where a stage makes the calls (UNDERSTUDY_REMOTE), and the door is the whole window system. About the
+  // context that is current on the calling thread:
+  void (*remote_context_format)(RemoteContextFormat*) = nullptr;
+  void (*remote_drawable)(RemoteDrawable*) = nullptr;
+  /// In the thread's drawable.
+  void (*remote_show)(const RemotePicture*) = nullptr;
 };
 
 /// Answered by the body, once. No function throws; all may be called from any thread.
@@ -57,6 +93,8 @@ struct BodyServices {
   void (*before_frame_end)(FrameEnd kind) = nullptr;
   /// After the real swap or finish returned.
   void (*after_frame_end)(FrameEnd kind) = nullptr;
+  /// Of the stage that makes this process's calls; zeros when there is none.
+  RemoteVersions (*remote_versions)() = nullptr;
 };
 
 /// The one symbol that libunderstudy-body.so exports. Null when the body refuses (ABI mismatch,

@@ -7,6 +7,7 @@
 
 #include "interceptor/open_body.h"
 #include "interceptor/real_driver.h"
+#include "interceptor/remote/remote.h"
 
 namespace understudy::interceptor {
 
@@ -34,6 +35,8 @@ const spu::DispatchTable& enter_without_context() {
 }
 
 void report_missing(const char* name) {
+  // Without a context calls do nothing, and window-system functions that are not offered are not announced.
+  if (is_remote()) return;
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
   dprintf(STDERR_FILENO,

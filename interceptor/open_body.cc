@@ -13,6 +13,7 @@
 #include "interceptor/context_ledger.h"
 #include "interceptor/door_thread.h"
 #include "interceptor/real_driver.h"
+#include "interceptor/remote/remote.h"
 
 namespace understudy::interceptor {
 
@@ -59,7 +60,8 @@ bool switched_off() {
 bool complete(const BodyServices& services) {
   return services.abi == body_abi && services.context_current != nullptr &&
          services.context_leaving != nullptr && services.context_destroyed != nullptr &&
-         services.before_frame_end != nullptr && services.after_frame_end != nullptr;
+         services.before_frame_end != nullptr && services.after_frame_end != nullptr &&
+         services.remote_versions != nullptr;
 }
 
 const BodyServices* load_body() {
@@ -67,6 +69,9 @@ const BodyServices* load_body() {
 
   static constinit DoorServices door;
   door.thread_state = &state_of_this_thread;
+  door.remote_context_format = &remote_context_format;
+  door.remote_drawable = &remote_drawable;
+  door.remote_show = &remote_show;
 
   char path[PATH_MAX];
   const int length = snprintf(path, sizeof path, "%s/libunderstudy-body.so", own_folder());

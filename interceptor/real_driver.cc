@@ -15,6 +15,7 @@
 #include "interceptor/door_thread.h"
 #include "interceptor/gl_names.h"
 #include "interceptor/osmesa.h"
+#include "interceptor/remote/remote.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -133,6 +134,14 @@ bool open_from_search_path(DriverLibrary& library) {
   return opened;
 }
 
+/// Contexts of GLX and EGL are not this machine's driver's.
+bool is_elsewhere(WindowSystem system) {
+  return system != WindowSystem::osmesa && is_remote();
+}
+
+/// What a thread without a driver has: every call does nothing.
+constinit const spu::DispatchTable no_functions{};
+
 enum class Failure { said, silent };
 
 bool open_driver(DriverLibrary& library, Failure failure) {
@@ -210,14 +219,17 @@ const spu::DispatchTable& filled(DriverFunctions& functions, void* (*look_up)(co
 }  // namespace
 
 bool driver_is_open(WindowSystem system) {
+  if (is_elsewhere(system)) return true;
   return library_of(system).handle.load(std::memory_order_acquire) != nullptr;
 }
 
 bool driver_is_there(WindowSystem system) {
+  if (is_elsewhere(system)) return true;
   return open_library(system, Failure::silent) != nullptr;
 }
 
 void* real_proc_address(WindowSystem system, const char* name) {
+  if (is_elsewhere(system)) return remote_symbol(system, name);
   const DriverLibrary* library = open_library(system);
   if (library == nullptr) return nullptr;
   const InsideDriver inside;
@@ -225,6 +237,7 @@ void* real_proc_address(WindowSystem system, const char* name) {
 }
 
 void* real_symbol(WindowSystem system, const char* name) {
+  if (is_elsewhere(system)) return remote_symbol(system, name);
   const DriverLibrary* library = open_library(system);
   if (library == nullptr) return nullptr;
   if (void* exported = dlsym(library->handle.load(std::memory_order_relaxed), name)) return exported;
@@ -233,12 +246,14 @@ void* real_symbol(WindowSystem system, const char* name) {
 }
 
 const spu::DispatchTable& driver_table(WindowSystem system) {
+  if (is_elsewhere(system)) return no_functions;
   const bool osmesa = system == WindowSystem::osmesa;
   return filled(osmesa ? osmesa_functions : glvnd_functions, osmesa ? &osmesa_function : &glvnd_function,
                 /*complete=*/true);
 }
 
 const spu::DispatchTable& driver_table_without_context() {
+  if (is_remote()) return no_functions;
   if (!driver_is_open(WindowSystem::glx) && !driver_is_open(WindowSystem::egl)) {
     if (driver_is_open(WindowSystem::osmesa)) return filled(osmesa_functions, &osmesa_function, false);
     // GLX's library is as good a source as any: without a context every GL call does nothing.

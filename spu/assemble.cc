@@ -10,6 +10,7 @@
 #include "spu/chain_json.h"
 #include "spu/chain_text.h"
 #include "spu/driver/driver.h"
+#include "spu/link/link.h"
 #include "spu/null/null.h"
 #include "spu/pack/pack.h"
 #include "spu/pass/pass.h"
@@ -24,8 +25,9 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::array units_by_name = {
-    &driver_description, &null_description,  &pack_description,  &pass_description,   &perf_description,
-    &print_description,  &trace_description, &track_description, &unpack_description, &volume_description};
+    &driver_description, &link_description,  &null_description,  &pack_description,
+    &pass_description,   &perf_description,  &print_description, &trace_description,
+    &track_description,  &unpack_description, &volume_description};
 
 struct PlannedUnit {
   const UnitDescription* description;
@@ -76,8 +78,10 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
   }
   for (std::size_t i = 0; i < planned.size(); ++i) {
     const char* wanted = planned[i].description->leads_to;
+    const char* otherwise = planned[i].description->or_leads_to;
     const auto is_wanted = [&](const PlannedUnit& unit) {
-      return std::string_view(wanted) == unit.description->name;
+      const std::string_view name = unit.description->name;
+      return name == wanted || (otherwise != nullptr && name == otherwise);
     };
     if (wanted == nullptr || std::any_of(planned.begin() + std::ptrdiff_t(i), planned.end(), is_wanted))
       continue;

@@ -65,10 +65,13 @@ class Unit {
 /// All context shared state lives in the share group; see track/share_group.h.
 class ShareGroup;
 
+class StageLink;
+
 /// What a context is among the contexts of the process.
 struct Surroundings {
   std::uint64_t context = 0;      ///< its number
   std::uint64_t shares_with = 0;  ///< number of one that it shares objects with; 0: none
+  StageLink* stage = nullptr;     ///< where its calls are made; null: here
 };
 
 class Chain {

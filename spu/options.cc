@@ -158,6 +158,8 @@ constexpr std::array rows{
         set_text<&Options::chain>},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},
+    Row{{"", "UNDERSTUDY_REMOTE", "PATH", "", "where the stage of `understudy run --remote` is (set by it)"},
+        set_text<&Options::remote>},
 };
 
 constexpr auto texts = [] {

@@ -31,6 +31,7 @@ struct Options {
   int pipeline = 0;               ///< frames that pictures of a moving camera may be behind
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
+  std::string remote;         ///< Unix socket of the stage that makes the calls; empty: they are made here
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application
 
   bool has_budget() const { return error > 0 || time_ms > 0; }

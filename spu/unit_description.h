@@ -30,7 +30,8 @@ struct UnitDescription {
   std::span<const UnitOption> options = {};
   Standing standing = Standing::once;
   const char* needs = nullptr;     ///< a unit that must stand somewhere before it
-  const char* leads_to = nullptr;  ///< a unit that must stand somewhere behind it
+  const char* leads_to = nullptr;     ///< a unit that must stand somewhere behind it
+  const char* or_leads_to = nullptr;  ///< or this one
   /// Null for what is no unit but the driver.
   std::unique_ptr<Unit> (*make)(const UnitPlace& place) = nullptr;
 };

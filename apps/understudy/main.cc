@@ -12,6 +12,7 @@
 #include "apps/understudy/replay.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
+#include "apps/understudy/stage.h"
 #include "apps/understudy/study/study.h"
 #include "apps/understudy/trim.h"
 #include "apps/understudy/units.h"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) try {
   launcher::add_print(app, chosen);
   launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
+  launcher::add_stage(app, chosen);
   launcher::add_render(app, chosen);
   launcher::add_study(app, chosen);
   launcher::add_compare(app, chosen);

@@ -81,6 +81,9 @@ EGLDisplay open_display(const EglFunctions& egl) {
       "EGL_EXT_platform_device");
 }
 
+/// Tried from the first on.
+constexpr std::array<int, 8> versions = {460, 450, 430, 330, 320, 310, 300, 210};
+
 bool is_core(const spu::RecordedContext& context) {
   return (context.profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 }
@@ -147,11 +150,15 @@ struct OffscreenContexts::Egl : EglFunctions {
   }
 };
 
+struct OffscreenContexts::Surface {
+  EGLSurface surface = EGL_NO_SURFACE;
+  spu::Extent2D extent;
+};
+
 struct OffscreenContexts::Context {
   EGLConfig config = nullptr;
   EGLContext context = EGL_NO_CONTEXT;
-  EGLSurface surface = EGL_NO_SURFACE;
-  spu::Extent2D extent;
+  Surface own;
 };
 
 OffscreenContexts::OffscreenContexts() : egl_(std::make_unique<Egl>()) {
@@ -163,6 +170,7 @@ OffscreenContexts::OffscreenContexts() : egl_(std::make_unique<Egl>()) {
 OffscreenContexts::~OffscreenContexts() {
   release_current();
   while (!contexts_.empty()) destroy(contexts_.begin()->first);
+  for (const auto& [key, drawable] : surfaces_) egl_->DestroySurface(egl_->display, drawable.surface);
 }
 
 void OffscreenContexts::create(const spu::RecordedContext& wanted) {
@@ -171,7 +179,6 @@ void OffscreenContexts::create(const spu::RecordedContext& wanted) {
   const auto share = contexts_.find(wanted.shares_with);
   const EGLContext with = share == contexts_.end() ? EGL_NO_CONTEXT : share->second.context;
   // A driver that has less than the recorded one may still have all that is used.
-  constexpr std::array<int, 8> versions = {460, 450, 430, 330, 320, 310, 300, 210};
   made.context = egl_->context_for(wanted, wanted.version, made.config, with);
   for (const int version : versions) {
     if (made.context != EGL_NO_CONTEXT || (version >= wanted.version && wanted.version != 0)) continue;
@@ -190,33 +197,48 @@ void OffscreenContexts::create(const spu::RecordedContext& wanted) {
   contexts_[wanted.number] = made;
 }
 
+int OffscreenContexts::highest_version(bool core) const {
+  spu::RecordedContext wanted;
+  wanted.profile = core ? GL_CONTEXT_CORE_PROFILE_BIT : GL_CONTEXT_COMPATIBILITY_PROFILE_BIT;
+  const EGLConfig config = egl_->config_for(wanted);
+  for (const int version : versions) {
+    if (core && version < 320) break;
+    const EGLContext context = egl_->context_for(wanted, version, config, EGL_NO_CONTEXT);
+    if (context == EGL_NO_CONTEXT) continue;
+    egl_->DestroyContext(egl_->display, context);
+    return version;
+  }
+  return 0;
+}
+
 /// What a new drawable holds is undefined; here it is the same every time. The recorded context's state is not
 /// touched: another context does it.
-void OffscreenContexts::clear(const Context& context) {
-  const EGLContext cleaner = egl_->CreateContext(egl_->display, context.config, EGL_NO_CONTEXT, nullptr);
+void OffscreenContexts::clear(void* config, void* surface) {
+  const EGLContext cleaner = egl_->CreateContext(egl_->display, config, EGL_NO_CONTEXT, nullptr);
   if (cleaner == EGL_NO_CONTEXT) return;
-  if (egl_->MakeCurrent(egl_->display, context.surface, context.surface, cleaner))
+  if (egl_->MakeCurrent(egl_->display, surface, surface, cleaner))
     driver_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   release_current();
   egl_->DestroyContext(egl_->display, cleaner);
 }
 
-void OffscreenContexts::make_current(std::uint64_t number, spu::Extent2D drawable) {
+void OffscreenContexts::make_current(std::uint64_t number, std::uint64_t drawable, spu::Extent2D extent) {
   Context& context = contexts_.at(number);
-  const EGLSurface old = context.surface;
-  if (old == EGL_NO_SURFACE || context.extent != drawable) {
-    const EGLint extent[] = {EGL_WIDTH, drawable.width, EGL_HEIGHT, drawable.height, EGL_NONE};
-    context.surface = egl_->CreatePbufferSurface(egl_->display, context.config, extent);
-    context.extent = drawable;
+  Surface& place = drawable == 0 ? context.own : surfaces_[{context.config, drawable}];
+  const EGLSurface old = place.surface;
+  if (old == EGL_NO_SURFACE || place.extent != extent) {
+    const EGLint sides[] = {EGL_WIDTH, extent.width, EGL_HEIGHT, extent.height, EGL_NONE};
+    place.surface = egl_->CreatePbufferSurface(egl_->display, context.config, sides);
+    place.extent = extent;
   }
-  if (context.surface != old) clear(context);
-  if (context.surface == EGL_NO_SURFACE ||
-      !egl_->MakeCurrent(egl_->display, context.surface, context.surface, context.context)) {
+  if (place.surface != old) clear(context.config, place.surface);
+  if (place.surface == EGL_NO_SURFACE ||
+      !egl_->MakeCurrent(egl_->display, place.surface, place.surface, context.context)) {
     throw std::runtime_error(
-        fmt::format("no drawable of {} x {} pixels could be made current (EGL error {:#x})", drawable.width,
-                    drawable.height, egl_->GetError()));
+        fmt::format("no drawable of {} x {} pixels could be made current (EGL error {:#x})", extent.width,
+                    extent.height, egl_->GetError()));
   }
-  if (old != EGL_NO_SURFACE && old != context.surface) egl_->DestroySurface(egl_->display, old);
+  if (old != EGL_NO_SURFACE && old != place.surface) egl_->DestroySurface(egl_->display, old);
 }
 
 void OffscreenContexts::release_current() {
@@ -226,7 +248,8 @@ void OffscreenContexts::release_current() {
 void OffscreenContexts::destroy(std::uint64_t number) {
   const auto found = contexts_.find(number);
   if (found == contexts_.end()) return;
-  if (found->second.surface != EGL_NO_SURFACE) egl_->DestroySurface(egl_->display, found->second.surface);
+  const EGLSurface own = found->second.own.surface;
+  if (own != EGL_NO_SURFACE) egl_->DestroySurface(egl_->display, own);
   egl_->DestroyContext(egl_->display, found->second.context);
   contexts_.erase(found);
 }

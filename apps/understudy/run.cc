@@ -26,6 +26,7 @@
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "apps/understudy/stage.h"
 #include "apps/understudy/trace_option.h"
 #include "spu/assemble.h"
 #include "spu/options.h"
@@ -36,6 +37,9 @@ namespace understudy::launcher {
 namespace {
 
 constexpr int not_executable = 126;
+constexpr int stage_patience_ms = 5000;
+/// Of a viewer whose calls a stage makes: nothing is recognised in its own process.
+constexpr const char* remote_chain = "pack link";
 
 void say(const std::string& line) {
   std::fprintf(stderr, "understudy: %s\n", line.c_str());
@@ -81,6 +85,17 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
                     door.value.string()));
   }
   return environment;
+}
+
+/// The stage has the options of this run and no door; the viewer hands it everything. Returns what must stay
+/// alive.
+std::unique_ptr<ChildProcess> put_on_stage(const Installation& installation, Environment& viewer,
+                                           const Environment& without_door, const RunFolder& folder) {
+  const std::filesystem::path socket = folder.path() / "stage.sock";
+  auto stage = start_stage(installation, socket, without_door);
+  viewer["UNDERSTUDY_REMOTE"] = socket;
+  viewer["UNDERSTUDY_CHAIN"] = remote_chain;
+  return stage;
 }
 
 /// -n, if it was given: 0 of them is a wish too.
@@ -183,6 +198,11 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say(error.what());
     return usage_error;
   }
+  if (arguments.remote && options.disable) {
+    say("--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
+        "unset one of them");
+    return usage_error;
+  }
   const bool may_have_nodes = options.connect.empty() && !options.disable;
   Placement placement;
   try {
@@ -224,14 +244,27 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
   std::optional<ChildProcess> viewer;
+  Environment environment = viewer_environment(arguments, options, installation, folder, plan);
+  std::unique_ptr<ChildProcess> stage;
+  if (arguments.remote) {
+    RunArguments without_door = arguments;
+    without_door.door.reset();
+    try {
+      stage = put_on_stage(installation, environment, viewer_environment(without_door, options, installation, folder, plan),
+                           folder);
+    } catch (const std::exception& error) {
+      say(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()));
+      return 1;
+    }
+  }
   try {
-    viewer.emplace(Command{.arguments = command,
-                           .environment = viewer_environment(arguments, options, installation, folder, plan)});
+    viewer.emplace(Command{.arguments = command, .environment = std::move(environment)});
   } catch (const std::system_error& error) {
     say(error.what());
     return error.code() == std::errc::permission_denied ? not_executable : cannot_start_viewer;
   }
   const Ending ending = wait_for(*viewer, nodes.get(), inbox);
+  if (stage) stage->end(stage_patience_ms);
   nodes.reset();
   tell_what_happened(options, folder);
   return ending.exit_status();
@@ -296,6 +329,9 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
                    "record every call in FILE, for `understudy replay`; a further process of the viewer is "
                    "recorded in FILE.PID")
       ->type_name("FILE");
+  subcommand->add_flag("--remote", arguments->remote,
+                       "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
+                       "pictures come back to its windows");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

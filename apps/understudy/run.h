@@ -37,6 +37,7 @@ struct RunArguments {
   std::string gpu_memory = "auto";              ///< what that may take of a graphics card, in bytes
   std::string balance = "off";                  ///< who of the nodes gets how much of a volume
   std::filesystem::path hostfile;               ///< where the nodes are; empty: on this machine
+  bool remote = false;                          ///< the viewer's calls are made by a stage, not in its process
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

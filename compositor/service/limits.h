@@ -30,6 +30,8 @@ constexpr int max_kept_pair_tables = 4;  ///< of one application, on each node: 
 constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a stranger
 constexpr std::uint64_t max_message_bytes = max_slice_bytes + (std::uint64_t(1) << 20);
 constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
+constexpr std::uint64_t max_stage_message_bytes = std::uint64_t(1)
+                                                  << 32;  ///< one call of an application may bring a volume
 constexpr std::size_t read_ahead = std::size_t(1)
                                    << 20;  ///< memory given to a message before its bytes are here
 constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
@@ -49,5 +51,6 @@ constexpr milliseconds stall_patience{10'000};     ///< between two pieces of on
 constexpr milliseconds send_patience{10'000};      ///< until a message has left
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
 constexpr milliseconds render_patience{20'000};    ///< a picture
+constexpr milliseconds stage_patience{120'000};    ///< a call that a stage makes, with all that went before it
 
 }  // namespace understudy::compositor::limits

@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 8;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 9;         ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -47,7 +47,11 @@ enum class MessageType : std::uint16_t {
   integrated,  ///< the reply
   // from rank 0 to the launcher, once a second
   alive,  ///< payload: Alive
-  last = alive
+  // between an application and a stage, which makes its OpenGL calls (spu/link/stage_protocol.h)
+  calls,     ///< from the application
+  answered,  ///< a reply
+  picture,   ///< the other
+  last = picture
 };
 
 struct MessageHeader {

@@ -15,6 +15,9 @@
 #include "interceptor/body/redraw_request.h"
 #include "spu/assemble.h"
 #include "spu/chain.h"
+#include "spu/link/front_end.h"
+#include "spu/link/link.h"
+#include "spu/link/stage_link.h"
 #include "spu/options.h"
 #include "spu/report/counters.h"
 #include "spu/report/report.h"
@@ -24,25 +27,66 @@
 namespace understudy::interceptor {
 namespace {
 
+/// The door's own window system, where a stage makes the calls.
+class DoorFront final : public spu::FrontEnd {
+ public:
+  explicit DoorFront(const DoorServices& door) : door_(door) {}
+
+  spu::RecordedContext context() override {
+    RemoteContextFormat format;
+    door_.remote_context_format(&format);
+    return {.version = format.version,
+            .profile = format.profile,
+            .alpha = format.alpha,
+            .depth = format.depth,
+            .stencil = format.stencil,
+            .samples = format.samples,
+            .double_buffered = format.double_buffered != 0};
+  }
+  spu::FrontDrawable drawable() override {
+    RemoteDrawable drawable;
+    door_.remote_drawable(&drawable);
+    return {drawable.number, {drawable.width, drawable.height}};
+  }
+  void show(spu::Extent2D extent, std::span<const std::uint8_t> pixels) override {
+    const RemotePicture picture{extent.width, extent.height, pixels.data()};
+    door_.remote_show(&picture);
+  }
+
+ private:
+  const DoorServices door_;
+};
+
 class Body {
  public:
   Body(const DoorServices& door, spu::Options options)
-      : door_(door), options_(options), session_(std::make_shared<spu::RenderSession>(std::move(options))) {
+      : door_(door),
+        options_(options),
+        front_(door),
+        session_(std::make_shared<spu::RenderSession>(std::move(options))) {
+    if (!options_.remote.empty()) stage_ = std::make_unique<spu::StageLink>(options_.remote, front_);
     if (options_.pipeline > 0)
       redraw_.emplace([] { spu::process_counters().windows_asked.fetch_add(1, std::memory_order_relaxed); });
   }
 
   const DoorServices& door() const { return door_; }
 
-  void context_current(std::uintptr_t context, std::uintptr_t share, bool desktop_gl, std::uintptr_t window) {
+  RemoteVersions remote_versions() const {
+    if (!stage_) return {};
+    return {stage_->versions().core, stage_->versions().compatibility};
+  }
+
+  void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
+                       std::uintptr_t drawable) {
     ThreadState& thread = *door_.thread_state();
     thread.calls = spu::thread_call_counter();
-    if (!desktop_gl) {
+    // OSMesa draws into memory of this process, which no stage could reach.
+    if (!desktop_gl || (stage_ && system == WindowSystem::osmesa)) {
       thread.table = thread.driver;
       return;
     }
-    Member& member = member_of(context, share, *thread.driver);
-    member.window = window;
+    Member& member = member_of(context, share, stage_ ? spu::link_driver() : *thread.driver);
+    member.window = system == WindowSystem::glx ? drawable : 0;
     spu::Chain& chain = member.chain;
     chain.make_current();
     // Contexts that share objects with it may have brought volumes since its last frame.
@@ -103,7 +147,7 @@ class Body {
       const auto relative = contexts_.find(share);
       auto group = relative != contexts_.end() && relative->second ? relative->second->group
                                                                    : std::make_shared<spu::ShareGroup>();
-      member.reset(new Member{group, spu::Chain(driver, group, &install, {context, share})});
+      member.reset(new Member{group, spu::Chain(driver, group, &install, {context, share, stage_.get()})});
       if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
         fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
       }
@@ -129,6 +173,8 @@ class Body {
   const DoorServices door_;
   const spu::Options options_;
   const pid_t process_ = getpid();
+  DoorFront front_;
+  std::unique_ptr<spu::StageLink> stage_;
   std::shared_ptr<spu::RenderSession> session_;
   std::mutex mutex_;
   std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
@@ -158,8 +204,13 @@ void guarded(Action action) noexcept {
 
 void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
                      std::uintptr_t drawable) {
-  guarded(
-      [&] { body->context_current(context, share, desktop_gl, system == WindowSystem::glx ? drawable : 0); });
+  guarded([&] { body->context_current(context, share, system, desktop_gl, drawable); });
+}
+
+RemoteVersions remote_versions() {
+  RemoteVersions versions;
+  guarded([&] { versions = body->remote_versions(); });
+  return versions;
 }
 
 void context_leaving() {
@@ -224,9 +275,12 @@ extern "C" [[gnu::visibility("default")]] const understudy::interceptor::BodySer
       std::atexit(at_program_end);
     }
   } catch (const std::exception& error) {
-    fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
+    const char* remote = std::getenv("UNDERSTUDY_REMOTE");
+    const bool has_driver = remote == nullptr || *remote == '\0';
+    fmt::print(stderr, "understudy: {}{}\n", error.what(),
+               has_driver ? "; calls go straight to the driver" : "");
     return nullptr;
   }
-  services = {body_abi, context_current, context_leaving, context_destroyed, before_frame_end, after_frame_end};
+  services = {body_abi, context_current, context_leaving, context_destroyed, before_frame_end, after_frame_end, remote_versions};
   return &services;
 }

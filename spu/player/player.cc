@@ -45,14 +45,15 @@ struct Player::Context {
   bool counts_frames = false;  ///< nobody in the chain does
   Clock::time_point frame_started = Clock::now();
 
-  Context(std::shared_ptr<Group> share_group, const DispatchTable& driver, const RecordedContext& context)
+  Context(std::shared_ptr<Group> share_group, const DispatchTable& driver, const RecordedContext& context,
+          StreamOrigin origin)
       : group(std::move(share_group)),
-        decoder(StreamOrigin::elsewhere, group->names),
+        decoder(origin, group->names),
         chain(driver, group->tracked, &install, {context.number, context.shares_with}) {}
 };
 
-Player::Player(WindowSystem& windows, const Options& options)
-    : windows_(windows), options_(options), session_(std::make_shared<RenderSession>(options)) {}
+Player::Player(WindowSystem& windows, const Options& options, StreamOrigin origin)
+    : windows_(windows), options_(options), origin_(origin), session_(std::make_shared<RenderSession>(options)) {}
 
 Player::~Player() {
   if (active_ != 0) leave();
@@ -64,6 +65,12 @@ Player::~Player() {
 Player::PlayedContext Player::current() const {
   const auto found = contexts_.find(active_);
   return found == contexts_.end() ? PlayedContext{} : found->second->played;
+}
+
+const CallAnswer& Player::call_answer() const {
+  static const CallAnswer none;
+  const auto found = contexts_.find(active_);
+  return found == contexts_.end() ? none : found->second->decoder.call_answer();
 }
 
 std::vector<Player::PlayedContext> Player::contexts() const {
@@ -128,7 +135,7 @@ std::string Player::introduce(const Record& record) {
   windows_.create(context);
   group->members.push_back(context.number);
   groups_[context.number] = group;
-  auto made = std::make_unique<Context>(group, windows_.driver(), context);
+  auto made = std::make_unique<Context>(group, windows_.driver(), context, origin_);
   if (const auto trouble = assemble(made->chain, options_.chain, session_)) throw std::runtime_error(*trouble);
   if (group->number == 0) group->number = context.number;
   made->played = {context.number, group->number, {}};
@@ -151,7 +158,7 @@ std::string Player::make_current(const Record& record) {
   const auto side = [](std::uint64_t pixels) {
     return int(std::clamp<std::uint64_t>(pixels, 1, largest_side));
   };
-  const Thread wanted{words[0], {side(words[1]), side(words[2])}};
+  const Thread wanted{words[0], words.size() > 3 ? words[3] : 0, {side(words[1]), side(words[2])}};
   if (thread.context != 0 && thread.context != wanted.context && thread.context == active_) leave();
   thread = wanted;
   activate();
@@ -173,14 +180,16 @@ Player::Context* Player::activate() {
   const Thread& thread = threads_[thread_];
   const auto found = contexts_.find(thread.context);
   if (found == contexts_.end()) return nullptr;
-  if (active_ == thread.context && active_drawable_ == thread.drawable) return found->second.get();
+  if (active_ == thread.context && active_drawable_ == thread.drawable && active_extent_ == thread.extent)
+    return found->second.get();
   if (active_ != 0) contexts_[active_]->chain.settle();
   if (active_ != thread.context) Chain::release_current();
-  windows_.make_current(thread.context, thread.drawable);
+  windows_.make_current(thread.context, thread.drawable, thread.extent);
   if (active_ != thread.context) found->second->chain.make_current();
   active_ = thread.context;
   active_drawable_ = thread.drawable;
-  found->second->played.drawable = thread.drawable;
+  active_extent_ = thread.extent;
+  found->second->played.drawable = thread.extent;
   return found->second.get();
 }
 

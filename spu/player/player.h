@@ -30,7 +30,7 @@ struct ShownFrame {
 class Player {
  public:
   /// `options.chain` is what stands above the driver in every context.
-  Player(WindowSystem& windows, const Options& options);
+  Player(WindowSystem& windows, const Options& options, StreamOrigin origin = StreamOrigin::elsewhere);
   ~Player();
   Player(const Player&) = delete;
   Player& operator=(const Player&) = delete;
@@ -53,8 +53,12 @@ class Player {
     std::uint64_t group = 0;  ///< contexts of one group share objects
     Extent2D drawable;        ///< that it was current with last
   };
+  /// What the last call of a linked stream has answered.
+  const CallAnswer& call_answer() const;
   /// The one that is current; number 0 when none is.
   PlayedContext current() const;
+  /// Number of the drawable that is current.
+  std::uint64_t drawable() const { return active_drawable_; }
   std::vector<PlayedContext> contexts() const;
   /// What an object that contexts share is called here, for the current context.
   std::uint64_t here(ObjectKind kind, std::uint64_t there) const;
@@ -65,7 +69,8 @@ class Player {
   struct Context;
   struct Thread {
     std::uint64_t context = 0;
-    Extent2D drawable;
+    std::uint64_t drawable = 0;
+    Extent2D extent;
   };
 
   std::string introduce(const Record& record);
@@ -80,13 +85,15 @@ class Player {
 
   WindowSystem& windows_;
   const Options options_;
+  const StreamOrigin origin_;
   std::shared_ptr<RenderSession> session_;
   std::map<std::uint64_t, std::unique_ptr<Context>> contexts_;
   std::map<std::uint64_t, std::shared_ptr<Group>> groups_;  ///< by context, also of those that are gone
   std::map<std::uint64_t, Thread> threads_;
   std::uint64_t thread_ = 0;  ///< whose records are being played
   std::uint64_t active_ = 0;
-  Extent2D active_drawable_;
+  std::uint64_t active_drawable_ = 0;
+  Extent2D active_extent_;
 };
 
 }  // namespace understudy::spu

@@ -32,9 +32,9 @@ class WindowSystem {
   virtual ~WindowSystem() = default;
   /// Throws std::runtime_error when no such context, nor one that can take its place, can be made.
   virtual void create(const RecordedContext& context) = 0;
-  /// Makes the context current with a drawable of this size; a drawable that changes its size loses its
-  /// contents, as windows may. Throws std::runtime_error.
-  virtual void make_current(std::uint64_t context, Extent2D drawable) = 0;
+  /// Makes the context current with the drawable of this number (0: one of the context's own) and size; a
+  /// drawable that changes its size loses its contents, as windows may. Throws std::runtime_error.
+  virtual void make_current(std::uint64_t context, std::uint64_t drawable, Extent2D extent) = 0;
   virtual void release_current() = 0;
   /// The context is not current.
   virtual void destroy(std::uint64_t context) = 0;

@@ -17,7 +17,7 @@
 
 namespace understudy::spu {
 
-constexpr std::uint32_t counters_magic = 0x55444331;  // "UDC1"
+constexpr std::uint32_t counters_magic = 0x55444332;  // "UDC2"
 constexpr int max_counted_volumes = 32;
 constexpr int max_counted_reasons = 8;
 constexpr int max_counted_omission_reasons = 4;
@@ -116,6 +116,15 @@ struct FrameRecord {
   Amount& amount(Omission omission) { return amounts[std::size_t(omission)]; }
 };
 
+/// Of a process whose OpenGL calls are made elsewhere. Bytes include heads of messages.
+struct RemoteCounters {
+  std::atomic<std::uint32_t> is;  ///< 1: they are
+  std::atomic<std::uint64_t> frames;
+  std::atomic<std::uint64_t> round_trips;
+  std::atomic<std::uint64_t> bytes_up;
+  std::atomic<std::uint64_t> bytes_down;
+};
+
 struct ProcessCounters {
   std::uint32_t magic;
   std::int32_t pid;
@@ -131,6 +140,7 @@ struct ProcessCounters {
   std::atomic<std::uint64_t> windows_asked;    ///< how often the window was asked to draw again
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
+  RemoteCounters remote;
   std::atomic<std::uint32_t> volumes;
   std::atomic<std::uint32_t> volumes_merged;   ///< of these, those that are counted in another's place
   VolumeCounters volume[max_counted_volumes];  ///< the last one: see count_volume()

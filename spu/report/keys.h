@@ -19,6 +19,13 @@ constexpr const char* left_out = "left_out";  ///< {what: amount}
 constexpr const char* frames_detail = "frames_detail";
 constexpr const char* volumes = "volumes";
 
+// remote_link: null unless remote. Of all processes of the run; per_frame are means.
+constexpr const char* remote_link = "remote_link";
+constexpr const char* round_trips = "round_trips";
+constexpr const char* bytes_up = "bytes_up";
+constexpr const char* bytes_down = "bytes_down";
+constexpr const char* per_frame = "per_frame";
+
 // processes[]
 constexpr const char* pid = "pid";
 constexpr const char* program = "program";

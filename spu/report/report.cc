@@ -288,6 +288,34 @@ Json items_of(const Totals& totals) {
   return items;
 }
 
+bool is_remote(Processes processes) {
+  return std::any_of(processes.begin(), processes.end(),
+                     [](const ProcessCounters* process) { return process->remote.is.load() != 0; });
+}
+
+Json remote_link(Processes processes) {
+  if (!is_remote(processes)) return nullptr;
+  std::uint64_t frames = 0;
+  std::uint64_t round_trips = 0;
+  std::uint64_t up = 0;
+  std::uint64_t down = 0;
+  for (const ProcessCounters* process : processes) {
+    frames += process->remote.frames.load();
+    round_trips += process->remote.round_trips.load();
+    up += process->remote.bytes_up.load();
+    down += process->remote.bytes_down.load();
+  }
+  const auto a_frame = [&](std::uint64_t sum) { return frames == 0 ? Json() : Json(double(sum) / double(frames)); };
+  return {{report_key::frames, frames},
+          {report_key::round_trips, round_trips},
+          {report_key::bytes_up, up},
+          {report_key::bytes_down, down},
+          {report_key::per_frame,
+           {{report_key::round_trips, a_frame(round_trips)},
+            {report_key::bytes_up, a_frame(up)},
+            {report_key::bytes_down, a_frame(down)}}}};
+}
+
 std::string counted(std::uint64_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
@@ -335,7 +363,8 @@ std::string report_json(Processes processes) {
               {report_key::frames_substituted, totals.frames_substituted},
               {report_key::frames_left, totals.frames_left},
               {report_key::nodes, totals.nodes},
-              {report_key::remote, false},
+              {report_key::remote, is_remote(processes)},
+              {report_key::remote_link, remote_link(processes)},
               {report_key::pictures_behind, totals.pictures_behind},
               {report_key::windows_asked, totals.windows_asked},
               {report_key::processes, Json::array()},

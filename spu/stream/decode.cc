@@ -9,6 +9,7 @@
 
 #include "dispatch/call_words.h"
 #include "spu/stream/answers.h"
+#include "spu/stream/decoded_call.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 
@@ -73,16 +74,6 @@ std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const Dispatch
 }
 
 }  // namespace
-
-struct Decoder::Call {
-  CallId id{};
-  const CallShape* shape = nullptr;
-  std::array<std::uint64_t, max_parameters> words{};
-  std::array<ReferenceKind, max_parameters> kinds{};
-  std::array<std::size_t, max_parameters> bytes{};  ///< there are behind a pointer
-  bool skip = false;  ///< has no meaning here: an address of another process, a question
-  bool picture_in = false;
-};
 
 /// The answer goes to a bound buffer object, where later calls find it.
 bool Decoder::answers_into_buffer(const Call& call) {
@@ -283,13 +274,18 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const ParameterShape& parameter = parameters[p];
-    if (parameter.pointer == 0 || parameter.input || call.words[p] == 0) continue;
+    if (parameter.pointer == 0 || parameter.input) continue;
+    // No driver looks whether there is a place for pixels.
+    if (call.kinds[p] == ReferenceKind::null && parameter.rule == ExtentRule::image_out) call.skip = true;
+    if (call.words[p] == 0) continue;
     if (call.kinds[p] == ReferenceKind::address && parameter.rule == ExtentRule::image_out)
       continue;  // an offset
     if (call.kinds[p] != ReferenceKind::output)
       return in_call(call.id, fmt::format("{} is no place for an answer", parameter.name()));
     std::size_t bytes = pointee_bytes(call.id, p, call.words.data()).value_or(unknown_output_bytes);
+    const bool linked = origin_ == StreamOrigin::linked;
     if (parameter.rule == ExtentRule::image_out) {
+      if (linked) return provide_picture(call, p, gl);
       if (call.id != CallId::ReadPixels) {
         call.skip = true;
         return {};
@@ -311,12 +307,17 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
       call.skip = true;
       return {};
     }
-    if (bytes > most_output_bytes) return in_call(call.id, "claims an answer beyond all reason");
+    if (bytes > (linked ? most_linked_output_bytes : most_output_bytes))
+      return in_call(call.id, "claims an answer beyond all reason");
+    call.bytes[p] = bytes;
     if (parameter.rule == ExtentRule::retained) {
       retained_.emplace_back(words_for(std::max<std::size_t>(bytes, 8)));
       call.words[p] = word_of(retained_.back().data());
+      (call.id == CallId::SelectBuffer ? selection_ : feedback_) = retained_.size();
     } else {
-      call.words[p] = word_of(scratch(std::max<std::size_t>(bytes, 8)));
+      std::uint64_t* const memory = scratch(std::max<std::size_t>(bytes, 8));
+      if (linked) std::memset(memory, std::to_integer<int>(unwritten), std::max<std::size_t>(bytes, 8));
+      call.words[p] = word_of(memory);
     }
   }
   return {};
@@ -532,6 +533,7 @@ Decoded Decoder::write_mapped(const Record& record) {
 Decoded Decoder::decode(const Record& record, const DispatchTable& gl) {
   scratch_used_ = 0;
   if (!read_picture_.pixels.empty()) read_picture_.pixels.clear();
+  call_answer_ = {};
   if (record.id == event::arrays) return begin_arrays(record, gl);
   if (record.id == event::arrays_end) {
     end_arrays(gl);
@@ -543,13 +545,15 @@ Decoded Decoder::decode(const Record& record, const DispatchTable& gl) {
   if (std::string error = read_arguments(record, call); !error.empty()) return {0, std::move(error)};
   if (origin_ == StreamOrigin::this_process) return make(call, gl);
   answer_ = {};
-  if ((only_asks(call.id) && !answers_into_buffer(call)) || !translate(call)) return {};
+  const bool linked = origin_ == StreamOrigin::linked;
+  if ((!linked && only_asks(call.id) && !answers_into_buffer(call)) || !translate(call)) return {};
   if (std::string error = check_arrays(call, gl); !error.empty()) return {0, std::move(error)};
   if (call.skip) return {};
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
   if (std::string error = provide_outputs(call, gl); !error.empty()) return {0, std::move(error)};
   if (call.skip) return {};
   forget_mappings(call, gl);
+  if (linked) return make_and_answer(call, gl);
   Decoded decoded = make(call, gl);
   if (decoded.error.empty() && names_something(call.id)) remember_answer(call, decoded.result, gl);
   return decoded;

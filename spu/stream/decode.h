@@ -2,7 +2,8 @@
 //
 // A stream of this process (pack and unpack in one chain) may hold addresses of this process; one from a file
 // or another machine may not, and nothing in it is believed: every length is checked against what OpenGL would
-// read for the arguments at hand, names of objects are translated, answers go to memory of our own.
+// read for the arguments at hand, names of objects are translated, answers go to memory of our own. Where the
+// other end waits for the answers (a linked stream), they are kept for it, and names are the ones given here.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 
 #include "dispatch/call_shape.h"
 #include "dispatch/table.h"
+#include "spu/stream/call_answer.h"
 #include "spu/stream/client_arrays.h"
 #include "spu/stream/object_names.h"
 #include "spu/stream/pixels.h"
@@ -29,7 +31,8 @@ struct Decoded {
 
 enum class StreamOrigin {
   this_process,
-  elsewhere,
+  elsewhere,  ///< recorded: what it asks was answered when it was
+  linked,     ///< another process, which is told what its calls answer
 };
 
 class Decoder {
@@ -56,6 +59,9 @@ class Decoder {
   };
   const ReadPicture& read_picture() const { return read_picture_; }
 
+  /// What the last call of a linked stream has answered.
+  const CallAnswer& call_answer() const { return call_answer_; }
+
  private:
   struct Call;
 
@@ -67,6 +73,11 @@ class Decoder {
   std::string read_lists(const Record& record, Call& call, std::size_t parameter);
   bool translate(Call& call);
   std::string provide_outputs(Call& call, const DispatchTable& gl);
+  std::string provide_picture(Call& call, std::size_t parameter, const DispatchTable& gl);
+  Decoded make_and_answer(Call& call, const DispatchTable& gl);
+  void answer_result(const Call& call, std::uint64_t result);
+  void answer_outputs(const Call& call);
+  void answer_feedback(const Call& call, GLint mode);
   std::string check_arrays(Call& call, const DispatchTable& gl);
   Decoded make(Call& call, const DispatchTable& gl);
   void forget_mappings(const Call& call, const DispatchTable& gl);
@@ -87,10 +98,13 @@ class Decoder {
   std::vector<std::vector<std::uint64_t>> scratch_;
   std::size_t scratch_used_ = 0;
   std::vector<std::vector<std::uint64_t>> retained_;
+  std::size_t feedback_ = 0;   ///< number, from 1, of what glFeedbackBuffer was given last
+  std::size_t selection_ = 0;  ///< the same of glSelectBuffer
   std::shared_ptr<ObjectNames> shared_names_;
   ObjectNames own_names_;  ///< of kinds that contexts do not share
   bool arrays_active_ = false;
   ReadPicture read_picture_;
+  CallAnswer call_answer_;
 
   /// What the last call answered here, until the stream tells what it had answered there.
   struct Answer {

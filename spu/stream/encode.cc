@@ -63,6 +63,10 @@ const DispatchTable& Encoder::ask() {
   return questions_;
 }
 
+std::uint64_t Encoder::told(std::uint64_t address) const {
+  return hides_addresses_ && address != 0 ? somewhere : address;
+}
+
 GLint Encoder::ask(GLenum name) {
   GLint value = 0;
   ask().GetIntegerv(name, &value);
@@ -126,7 +130,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
     if (word == 0) return argument;
   }
   if (!pointer.input) {
-    argument.reference = {ReferenceKind::output, word};
+    argument.reference = {ReferenceKind::output, told(word)};
     return argument;
   }
   const auto hold = [&](std::size_t bytes) {
@@ -146,7 +150,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
     }
     case ExtentRule::client_array:
       client_memory_ = true;
-      argument.reference = {ReferenceKind::address, word};
+      argument.reference = {ReferenceKind::address, told(word)};
       return argument;
     case ExtentRule::texts:
       argument.reference.kind = ReferenceKind::strings;
@@ -160,7 +164,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   if (const auto bytes = pointee_bytes(call, parameter, words)) {
     hold(*bytes);
   } else {
-    argument.reference = {ReferenceKind::address, word};
+    argument.reference = {ReferenceKind::address, told(word)};
   }
   return argument;
 }
@@ -212,7 +216,8 @@ void Encoder::write(CallId call, const std::uint64_t* words, std::vector<Argumen
   }
 }
 
-void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to) {
+void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to,
+                   bool hides_addresses) {
   to.begin(event::arrays);
   to.append(arrays.size());
   to.reserve(arrays.size() * event::words_per_array);
@@ -240,7 +245,7 @@ void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& r
         array.type,
         array.normalized,
         std::uint64_t(array.stride),
-        Reference{ReferenceKind::address, array.pointer}.word(),
+        Reference{ReferenceKind::address, hides_addresses ? somewhere : array.pointer}.word(),
         array.divisor,
         std::uint64_t(first),
         to.attach(elements).word()};
@@ -253,7 +258,7 @@ bool Encoder::begin_arrays(CallId call, const std::uint64_t* words, Records& to)
   if (arrays.empty()) return false;
   const auto range = element_range(questions_, call, words);
   if (!range || range->empty()) return false;
-  append_arrays(arrays, *range, to);
+  append_arrays(arrays, *range, to, hides_addresses_);
   return true;
 }
 
@@ -270,7 +275,7 @@ void Encoder::note_element(CallId call, const std::uint64_t* words) {
 
 void Encoder::insert_arrays_before_begin(Records& to) {
   Records before = Records::without_payload();
-  append_arrays(arrays_at_begin_, elements_since_begin_, before);
+  append_arrays(arrays_at_begin_, elements_since_begin_, before, hides_addresses_);
   to.insert(begin_position_, before);
   to.begin(event::arrays_end);
 }

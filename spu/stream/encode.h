@@ -35,6 +35,10 @@ class Encoder {
   /// AsWords makes them.
   void encode(CallId call, const std::uint64_t* words, Records& to);
 
+  /// Whoever reads the records has another memory: addresses of the application are told as "somewhere", so that
+  /// calls that differ in nothing else are the same words.
+  void hide_addresses() { hides_addresses_ = true; }
+
   /// The application is between glBegin and glEnd: OpenGL answers no questions.
   bool inside_begin() const { return inside_begin_; }
 
@@ -46,6 +50,7 @@ class Encoder {
     std::vector<std::byte> owned;      ///< where bytes point, when they are ours
   };
 
+  std::uint64_t told(std::uint64_t address) const;
   GLint ask(GLenum name);
   const DispatchTable& ask();
   void follow_begin_and_end(CallId call, const std::uint64_t* words, Records& to);
@@ -58,6 +63,7 @@ class Encoder {
   const DispatchTable& questions_;
   std::function<void()> before_question_;
   std::vector<Argument> arguments_;  ///< kept for its memory
+  bool hides_addresses_ = false;
   bool inside_begin_ = false;
   // Display lists may begin what others end. What each leaves behind, once executed: inside, outside, or as it
   // was.
@@ -74,7 +80,11 @@ class Encoder {
   std::uint64_t begin_generation_ = 0;
 };
 
+/// An address that the application has, where it is hidden.
+constexpr std::uint64_t somewhere = 1;
+
 /// The `arrays` event for `range` of `arrays`.
-void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to);
+void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& range, Records& to,
+                   bool hides_addresses = false);
 
 }  // namespace understudy::spu

@@ -24,7 +24,8 @@ inline constexpr std::uint32_t answers = stable_id_of("understudy.answers");
 /// is doubly buffered.
 inline constexpr std::uint32_t context = stable_id_of("understudy.context");
 constexpr std::size_t context_words = 13;
-/// The thread's context: number (0: none), width and height of its drawable.
+/// The thread's context: number (0: none), width and height of its drawable, and perhaps the drawable's number:
+/// 0, or nothing, for one that is the context's own.
 inline constexpr std::uint32_t current = stable_id_of("understudy.current");
 inline constexpr std::uint32_t context_gone = stable_id_of("understudy.context_gone");  ///< number
 /// The thread's drawable shows what was drawn: number of the frame from 1, width and height of the drawable.

@@ -37,6 +37,9 @@ class ObjectNames {
     if (there >= 0) locations_[{program, there}] = here;
   }
 
+  /// A name for a sync object: the driver's are addresses.
+  std::uint64_t new_sync_name() { return ++sync_names_; }
+
   /// Memory that a buffer is mapped to.
   struct Mapping {
     std::byte* first = nullptr;
@@ -60,6 +63,7 @@ class ObjectNames {
   std::array<std::map<std::uint64_t, std::uint64_t>, std::size_t(ObjectKind::display_list) + 1> names_;
   std::map<std::pair<std::uint64_t, std::int32_t>, std::int32_t> locations_;
   std::map<std::uint64_t, Mapping> mappings_;
+  std::uint64_t sync_names_ = 0;
 };
 
 }  // namespace understudy::spu

@@ -162,6 +162,17 @@ void copy_bits(const std::byte* from, std::size_t first_bit, std::size_t width, 
   }
 }
 
+/// The other way; bits beside the row stay as they are.
+void spread_bits(const std::byte* from, std::size_t first_bit, std::size_t width, bool lsb_first,
+                 std::byte* to) {
+  for (std::size_t i = 0; i < width; ++i) {
+    const std::size_t bit = first_bit + i;
+    const auto mask = std::byte(lsb_first ? 1U << bit % 8 : 0x80U >> bit % 8);
+    const bool set = (from[i / 8] & std::byte(0x80U >> i % 8)) != std::byte(0);
+    to[bit / 8] = set ? to[bit / 8] | mask : to[bit / 8] & ~mask;
+  }
+}
+
 }  // namespace
 
 PixelStore pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names) {
@@ -222,6 +233,28 @@ std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore
       std::reverse(picture.begin() + std::ptrdiff_t(i), picture.begin() + std::ptrdiff_t(i + from->swap));
   }
   return picture;
+}
+
+void spread_picture(const PictureShape& shape, const PixelStore& store, const std::byte* tight,
+                    std::byte* pixels) {
+  if (empty(shape)) return;
+  const auto from = layout_of(shape, tight_pixels);
+  const auto to = layout_of(shape, store);
+  if (!from || !to) return;
+  for (std::uint64_t image = 0; image < std::uint64_t(shape.depth); ++image) {
+    for (std::uint64_t row = 0; row < std::uint64_t(shape.height); ++row) {
+      const std::byte* source = tight + image * from->image_step + row * from->row_step;
+      std::byte* target = pixels + to->skip + image * to->image_step + row * to->row_step;
+      if (to->bits) {
+        spread_bits(source, std::size_t(store.skip_pixels) % 8, std::size_t(shape.width), store.lsb_first != 0,
+                    target);
+        continue;
+      }
+      std::memcpy(target, source, from->row);
+      for (std::size_t i = 0; to->swap > 1 && i + to->swap <= from->row; i += to->swap)
+        std::reverse(target + i, target + i + to->swap);
+    }
+  }
 }
 
 }  // namespace understudy::spu

@@ -66,4 +66,9 @@ std::optional<std::size_t> picture_extent(const PictureShape& shape, const Pixel
 std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore& store,
                                      const std::byte* pixels);
 
+/// The other way: a picture as it lies in streams to where the application wants it. `tight` holds
+/// picture_extent(shape, tight_pixels) bytes, `pixels` has room for picture_extent(shape, store).
+void spread_picture(const PictureShape& shape, const PixelStore& store, const std::byte* tight,
+                    std::byte* pixels);
+
 }  // namespace understudy::spu

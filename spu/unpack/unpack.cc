@@ -2,11 +2,50 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string_view>
+#include <vector>
+
+#include "spu/pack/pack.h"
+#include "spu/stream/encode.h"
 
 namespace understudy::spu {
+namespace {
 
-std::uint64_t Unpack::make(const Records& records) {
+
+/// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end
+/// without another word: by then the driver is no longer able to draw what it had never heard of.
+bool makes_pixels(CallId call) {
+  static const std::vector<bool> all = [] {
+    constexpr std::array<std::string_view, 14> beginnings = {
+        "glDraw",      "glMultiDraw", "glEnd",   "glCallList", "glRect",     "glClear",    "glBitmap",
+        "glCopyPixel", "glBlit",      "glEvalM", "glAccum",    "glDispatch", "glGenerate", "glArrayElement"};
+    std::vector<bool> table(call_count);
+    for (std::size_t i = 0; i < call_count; ++i) {
+      const std::string_view name = call_name(CallId(i));
+      table[i] = std::any_of(beginnings.begin(), beginnings.end(),
+                             [&](auto start) { return name.starts_with(start); });
+    }
+    return table;
+  }();
+  return all[std::size_t(call)];
+}
+
+}  // namespace
+
+Unpack::Unpack(Chain& chain) : chain_(chain) {
+  chain.find<Pack>()->hand_to(*this);
+}
+
+HandOn Unpack::when(CallId call, bool inside_begin) {
+  if (needs_answer(call)) return HandOn::and_wait;
+  const bool ends = call == CallId::Flush || call == CallId::Finish;
+  return ends || (makes_pixels(call) && !inside_begin) ? HandOn::now : HandOn::later;
+}
+
+std::uint64_t Unpack::take(const Records& records, const PackedCall* /*last*/) {
   std::uint64_t result = 0;
   for (std::size_t at = 0; at < records.words().size();) {
     const auto record = record_at(records.words(), at, records.payload());

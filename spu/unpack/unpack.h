@@ -3,22 +3,23 @@
 
 #include <string>
 
+#include "spu/pack/record_taker.h"
 #include "spu/stream/decode.h"
 #include "spu/unit_description.h"
 
 namespace understudy::spu {
 
-class Unpack final : public Unit {
+class Unpack final : public Unit, public RecordTaker {
  public:
   static constexpr char tag = 'u';
 
-  explicit Unpack(Chain& chain) : chain_(chain) {}
+  explicit Unpack(Chain& chain);
 
   const char* tag_address() const override { return &tag; }
   void fill(Phase, DispatchTable&) override {}
 
-  /// Makes the calls, in order; answers the result of the last one.
-  std::uint64_t make(const Records& records);
+  HandOn when(CallId call, bool inside_begin) override;
+  std::uint64_t take(const Records& records, const PackedCall* last) override;
 
  private:
   Chain& chain_;

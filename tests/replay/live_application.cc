@@ -72,7 +72,7 @@ void LiveApplication::add(const spu::RecordedContext& context) {
 
 void LiveApplication::make_current(std::uint64_t context) {
   spu::Chain::release_current();
-  windows_.make_current(context, extent);
+  windows_.make_current(context, 0, extent);
   chains_.at(context)->make_current();
 }
 

@@ -69,7 +69,7 @@ launcher::Picture expected(const std::string& name, int frame) {
 bool is_expected_driver() {
   launcher::OffscreenContexts windows;
   windows.create(compatibility_context(1));
-  windows.make_current(1, {16, 16});
+  windows.make_current(1, 0, {16, 16});
   const auto* name = reinterpret_cast<const char*>(windows.driver().GetString(GL_RENDERER));
   return name != nullptr && std::string(name) == expected_driver;
 }

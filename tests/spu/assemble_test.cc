@@ -80,7 +80,7 @@ TEST_F(Assemble, KnowsItsUnitsByName) {
     }
     EXPECT_NO_THROW(option_values(defaults, unit->options)) << unit->name;
   }
-  for (const char* name : {"driver", "null", "pass", "perf", "print", "track", "volume"}) {
+  for (const char* name : {"driver", "link", "null", "pass", "perf", "print", "track", "volume"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }
 }
@@ -109,7 +109,7 @@ TEST_F(Assemble, MakesUnitsInTheirOrder) {
 TEST_F(Assemble, UnknownUnitsAreMetWithThoseThereAre) {
   EXPECT_THAT(error_of("trak driver"),
               StartsWith("chain, character 1: no unit is named trak; did you mean track? "
-                         "There are: driver, null, pack, pass, "));
+                         "There are: driver, link, null, pack, pass, "));
   EXPECT_THAT(error_of("track zebra driver"),
               StartsWith("chain, character 7: no unit is named zebra. There are: "));
   EXPECT_THAT(error_of("Track driver"), HasSubstr("did you mean track?"));

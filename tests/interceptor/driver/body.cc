@@ -79,8 +79,12 @@ void after_frame_end(FrameEnd kind) {
   say("body: after %s\n", text(kind));
 }
 
-const BodyServices services{body_abi,           &context_current,  &context_leaving,
-                            &context_destroyed, &before_frame_end, &after_frame_end};
+RemoteVersions remote_versions() {
+  return {};
+}
+
+const BodyServices services{body_abi,          &context_current, &context_leaving, &context_destroyed,
+                            &before_frame_end, &after_frame_end, &remote_versions};
 
 }  // namespace
 

@@ -1,0 +1,66 @@
+#include "interceptor/remote/remote.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <atomic>
+
+#include "interceptor/door_thread.h"
+#include "interceptor/open_body.h"
+#include "interceptor/real_driver.h"
+#include "interceptor/remote/context.h"
+
+namespace understudy::interceptor {
+
+bool is_remote() {
+  static constinit std::atomic<int> known = -1;
+  int is = known.load(std::memory_order_relaxed);
+  if (is < 0) {
+    const char* address = getenv("UNDERSTUDY_REMOTE");
+    is = address != nullptr && *address != '\0' ? 1 : 0;
+    known.store(is, std::memory_order_relaxed);
+  }
+  return is != 0;
+}
+
+void* remote_symbol(WindowSystem system, const char* name) {
+  // OpenGL's own functions are our exports; which of them the stage has is seen when they are called.
+  if (strncmp(name, "gl", 2) == 0 && strncmp(name, "glX", 3) != 0) return own_entry(name);
+  return system == WindowSystem::egl ? remote_egl_symbol(name) : remote_glx_symbol(name);
+}
+
+RemoteVersions remote_versions() {
+  const BodyServices* services = open_body();
+  if (services == nullptr) return {};
+  const InsideBody inside;
+  return services->remote_versions();
+}
+
+void remote_context_format(RemoteContextFormat* format) {
+  *format = {};
+  const RemoteContext* context = remote_thread().context;
+  if (context == nullptr) return;
+  constexpr std::uint32_t core_profile_bit = 1;
+  constexpr std::uint32_t compatibility_profile_bit = 2;
+  *format = {context->wish.version,   context->wish.core ? core_profile_bit : compatibility_profile_bit,
+             context->config.alpha,   context->config.depth,
+             context->config.stencil, context->config.samples,
+             context->config.double_buffered};
+}
+
+void remote_drawable(RemoteDrawable* drawable) {
+  const RemoteThread& thread = remote_thread();
+  *drawable = {};
+  if (thread.context == nullptr) return;
+  const auto ask = thread.system == WindowSystem::egl ? &remote_egl_drawable : &remote_glx_drawable;
+  ask(thread.display, thread.draw, drawable);
+}
+
+void remote_show(const RemotePicture* picture) {
+  const RemoteThread& thread = remote_thread();
+  if (thread.context == nullptr) return;
+  const auto show = thread.system == WindowSystem::egl ? &remote_egl_show : &remote_glx_show;
+  show(thread.display, thread.draw, *picture);
+}
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,25 @@
+// GLX and EGL without a driver, for processes whose calls are made by a stage (UNDERSTUDY_REMOTE).
+//
+// What is not offered is missing, as it would be in a small driver, and the extension string does not
+// announce it: OpenGL ES, glXCopyContext, glXUseXFont, EGLImages, EGLSyncs and so on.
+#pragma once
+
+#include "interceptor/body.h"
+
+namespace understudy::interceptor {
+
+/// True in a process that `understudy run --remote` has started. Never changes.
+bool is_remote();
+
+/// What stands in the real library's place; null where nothing does.
+void* remote_symbol(WindowSystem system, const char* name);
+
+/// What the body asks, about the calling thread's context: see DoorServices.
+void remote_context_format(RemoteContextFormat* format);
+void remote_drawable(RemoteDrawable* drawable);
+void remote_show(const RemotePicture* picture);
+
+/// The highest OpenGL versions of the stage, as 100 * major + 10 * minor; 0 without a stage. Opens the body.
+RemoteVersions remote_versions();
+
+}  // namespace understudy::interceptor

@@ -1,0 +1,182 @@
+#include "interceptor/remote/x_server.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <xcb/xcb.h>
+
+#include "interceptor/real_driver.h"
+
+namespace understudy::interceptor {
+namespace {
+
+struct Xcb {
+  decltype(&xcb_connect) connect;
+  decltype(&xcb_connection_has_error) has_error;
+  decltype(&xcb_generate_id) generate_id;
+  decltype(&xcb_create_gc) create_gc;
+  decltype(&xcb_free_gc) free_gc;
+  decltype(&xcb_put_image) put_image;
+  decltype(&xcb_get_geometry) get_geometry;
+  decltype(&xcb_get_geometry_reply) get_geometry_reply;
+  decltype(&xcb_get_input_focus) get_input_focus;
+  decltype(&xcb_get_input_focus_reply) get_input_focus_reply;
+  decltype(&xcb_poll_for_event) poll_for_event;
+  decltype(&xcb_get_maximum_request_length) get_maximum_request_length;
+};
+
+/// An application's display, and our connection to the same server.
+struct Server {
+  Display* display;
+  xcb_connection_t* connection;  ///< null: it could not be made
+  Server* next;
+};
+
+constinit pthread_mutex_t x_lock = PTHREAD_MUTEX_INITIALIZER;
+constinit Server* servers = nullptr;
+constinit Xlib xlib_functions{};
+constinit Xcb xcb_functions{};
+constinit int xlib_state = 0;  ///< 1: there, -1: not
+constinit int xcb_state = 0;
+
+class Locked {
+ public:
+  Locked() { pthread_mutex_lock(&x_lock); }
+  ~Locked() { pthread_mutex_unlock(&x_lock); }
+  Locked(const Locked&) = delete;
+  Locked& operator=(const Locked&) = delete;
+};
+
+template <class Function>
+bool find(void* library, const char* name, Function& function) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  return function != nullptr;
+}
+
+void* open_library(const char* name) {
+  void* library = real_dlopen(name, RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr)
+    dprintf(STDERR_FILENO, "understudy: %s cannot be opened, so no window can be drawn into: %s\n", name,
+            dlerror());
+  return library;
+}
+
+bool open_xlib() {
+  void* library = open_library("libX11.so.6");
+  return library != nullptr && find(library, "XGetVisualInfo", xlib_functions.get_visual_info) &&
+         find(library, "XFree", xlib_functions.free) && find(library, "XOpenDisplay", xlib_functions.open_display) && find(library, "XSync", xlib_functions.sync) &&
+         find(library, "XFlush", xlib_functions.flush);
+}
+
+bool open_xcb() {
+  void* library = open_library("libxcb.so.1");
+  Xcb& xcb = xcb_functions;
+  return library != nullptr && find(library, "xcb_connect", xcb.connect) &&
+         find(library, "xcb_connection_has_error", xcb.has_error) &&
+         find(library, "xcb_generate_id", xcb.generate_id) && find(library, "xcb_create_gc", xcb.create_gc) &&
+         find(library, "xcb_free_gc", xcb.free_gc) && find(library, "xcb_put_image", xcb.put_image) &&
+         find(library, "xcb_get_geometry", xcb.get_geometry) &&
+         find(library, "xcb_get_geometry_reply", xcb.get_geometry_reply) &&
+         find(library, "xcb_get_input_focus", xcb.get_input_focus) &&
+         find(library, "xcb_get_input_focus_reply", xcb.get_input_focus_reply) &&
+         find(library, "xcb_poll_for_event", xcb.poll_for_event) &&
+         find(library, "xcb_get_maximum_request_length", xcb.get_maximum_request_length);
+}
+
+/// Needs the lock.
+xcb_connection_t* connection_of(Display* display) {
+  for (const Server* server = servers; server != nullptr; server = server->next) {
+    if (server->display == display) return server->connection;
+  }
+  if (xcb_state == 0) xcb_state = open_xcb() ? 1 : -1;
+  if (xcb_state < 0) return nullptr;
+  auto* server = static_cast<Server*>(malloc(sizeof(Server)));
+  if (server == nullptr) return nullptr;
+  xcb_connection_t* connection = xcb_functions.connect(DisplayString(display), nullptr);
+  if (xcb_functions.has_error(connection) != 0) {
+    dprintf(STDERR_FILENO, "understudy: the X server at %s takes no second connection; nothing is shown\n",
+            DisplayString(display));
+    connection = nullptr;
+  }
+  *server = {display, connection, servers};
+  servers = server;
+  return connection;
+}
+
+struct Geometry {
+  int width;
+  int height;
+  int depth;
+};
+
+bool geometry_of(xcb_connection_t* connection, XID drawable, Geometry* geometry) {
+  xcb_generic_error_t* error = nullptr;
+  xcb_get_geometry_reply_t* reply = xcb_functions.get_geometry_reply(
+      connection, xcb_functions.get_geometry(connection, static_cast<xcb_drawable_t>(drawable)), &error);
+  free(error);
+  if (reply == nullptr) return false;
+  *geometry = {reply->width, reply->height, reply->depth};
+  free(reply);
+  return true;
+}
+
+/// Errors of windows that are gone.
+void forget_events(xcb_connection_t* connection) {
+  while (xcb_generic_event_t* event = xcb_functions.poll_for_event(connection)) free(event);
+}
+
+}  // namespace
+
+const Xlib* xlib() {
+  const Locked locked;
+  if (xlib_state == 0) xlib_state = open_xlib() ? 1 : -1;
+  return xlib_state > 0 ? &xlib_functions : nullptr;
+}
+
+Display* default_display() {
+  static constinit Display* opened = nullptr;
+  const Xlib* x = xlib();
+  if (x == nullptr) return nullptr;
+  const Locked locked;
+  if (opened == nullptr) opened = x->open_display(nullptr);
+  return opened;
+}
+
+bool extent_of(Display* display, XID drawable, int* width, int* height) {
+  const Locked locked;
+  xcb_connection_t* connection = connection_of(display);
+  Geometry geometry{};
+  if (connection == nullptr || !geometry_of(connection, drawable, &geometry)) return false;
+  *width = geometry.width;
+  *height = geometry.height;
+  return true;
+}
+
+void put_picture(Display* display, XID drawable, const RemotePicture& picture) {
+  const Locked locked;
+  xcb_connection_t* connection = connection_of(display);
+  Geometry geometry{};
+  if (connection == nullptr || picture.width <= 0 || !geometry_of(connection, drawable, &geometry)) return;
+  const auto target = static_cast<xcb_drawable_t>(drawable);
+  const xcb_gcontext_t gc = xcb_functions.generate_id(connection);
+  xcb_functions.create_gc(connection, gc, target, 0, nullptr);
+  const int row_bytes = picture.width * 4;
+  const auto room = static_cast<long>(xcb_functions.get_maximum_request_length(connection)) * 4 - 64;
+  const int rows_at_once = room < row_bytes ? 1 : static_cast<int>(room / row_bytes);
+  for (int y = 0; y < picture.height; y += rows_at_once) {
+    const int rows = picture.height - y < rows_at_once ? picture.height - y : rows_at_once;
+    xcb_functions.put_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, target, gc,
+                            static_cast<std::uint16_t>(picture.width), static_cast<std::uint16_t>(rows), 0,
+                            static_cast<std::int16_t>(y), 0, static_cast<std::uint8_t>(geometry.depth),
+                            static_cast<std::uint32_t>(rows * row_bytes),
+                            picture.pixels + static_cast<long>(y) * row_bytes);
+  }
+  xcb_functions.free_gc(connection, gc);
+  free(xcb_functions.get_input_focus_reply(connection, xcb_functions.get_input_focus(connection), nullptr));
+  forget_events(connection);
+}
+
+}  // namespace understudy::interceptor

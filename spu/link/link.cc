@@ -1,0 +1,369 @@
+#include "spu/link/link.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include "dispatch/call_words.h"
+#include "spu/chain_text.h"
+#include "spu/pack/pack.h"
+#include "spu/stream/answers.h"
+#include "spu/stream/event.h"
+#include "spu/stream/extent.h"
+
+namespace understudy::spu {
+namespace {
+
+struct Asked {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    Chain* chain = Chain::current();
+    Link* link = chain == nullptr ? nullptr : chain->find<Link>();
+    return link == nullptr ? 0 : link->ask(call, words);
+  }
+};
+
+/// Most that is believed of an answer whose extent nobody knows.
+constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
+
+std::byte* address(std::uint64_t word) {
+  return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(word));
+}
+
+/// The result, or memory of the caller, must be there before the application goes on.
+bool answers(CallId call) {
+  static const std::vector<bool> all = [] {
+    std::vector<bool> table(call_count);
+    for (std::size_t i = 0; i < call_count; ++i) {
+      const CallShape& shape = call_shape(CallId(i));
+      const auto parameters = shape.parameters();
+      table[i] = shape.result != ValueType::none ||
+                 std::any_of(parameters.begin(), parameters.end(), [](const ParameterShape& parameter) {
+                   return parameter.pointer != 0 && !parameter.input;
+                 });
+    }
+    return table;
+  }();
+  return all[std::size_t(call)];
+}
+
+/// What a context answers in the same way for ever.
+bool is_constant(CallId call, const std::uint64_t* words) {
+  switch (call) {
+    case CallId::GetIntegerv:
+    case CallId::GetInteger64v:
+    case CallId::GetFloatv:
+    case CallId::GetDoublev:
+    case CallId::GetBooleanv:
+      break;
+    default:
+      return false;
+  }
+  const auto name = GLenum(words[0]);
+  constexpr std::array<GLenum, 5> others = {GL_MAJOR_VERSION, GL_MINOR_VERSION, GL_NUM_EXTENSIONS,
+                                            GL_CONTEXT_FLAGS, GL_CONTEXT_PROFILE_MASK};
+  if (std::find(others.begin(), others.end(), name) != others.end()) return true;
+  const char* text = enum_name(name, 0);
+  return text != nullptr && std::string_view(text).starts_with("GL_MAX_");
+}
+
+bool is_integer_query(CallId call) {
+  return call == CallId::GetIntegerv || call == CallId::GetBooleanv;
+}
+
+bool is_text(CallId call) {
+  return call == CallId::GetString || call == CallId::GetStringi;
+}
+
+std::uint64_t words_of_text(CallId call, const std::uint64_t* words) {
+  return words[0] << 32 | (call == CallId::GetStringi ? std::uint32_t(words[1]) + 1 : 0);
+}
+
+bool unmaps(CallId call) {
+  return call == CallId::UnmapBuffer || call == CallId::UnmapBufferARB || call == CallId::UnmapNamedBuffer ||
+         call == CallId::UnmapNamedBufferEXT;
+}
+
+}  // namespace
+
+const DispatchTable& link_driver() {
+  static const DispatchTable table = [] {
+    DispatchTable all{};
+    AsWords<Asked>::fill(all);
+    return all;
+  }();
+  return table;
+}
+
+Link::Link(Chain& chain, StageLink& stage)
+    : chain_(chain),
+      stage_(stage),
+      pack_(*chain.find<Pack>()),
+      question_encoder_(link_driver(), [] {}) {
+  pack_.hand_to(*this);
+  question_encoder_.hide_addresses();
+}
+
+void Link::introduce() {
+  introduced_ = true;
+  context_ = stage_.front().context();
+  const std::array<std::uint64_t, event::context_words> words = {chain_.surroundings().context,
+                                                                 chain_.surroundings().shares_with,
+                                                                 0,
+                                                                 std::uint64_t(context_.version),
+                                                                 context_.profile,
+                                                                 std::uint64_t(context_.red),
+                                                                 std::uint64_t(context_.green),
+                                                                 std::uint64_t(context_.blue),
+                                                                 std::uint64_t(context_.alpha),
+                                                                 std::uint64_t(context_.depth),
+                                                                 std::uint64_t(context_.stencil),
+                                                                 std::uint64_t(context_.samples),
+                                                                 context_.double_buffered};
+  Records records;
+  records.append_plain(event::context, words);
+  stage_.send(records);
+}
+
+void Link::tell_current(Records& to) {
+  const std::uint64_t words[] = {chain_.surroundings().context, std::uint64_t(drawable_.extent.width),
+                                 std::uint64_t(drawable_.extent.height), drawable_.number};
+  to.append_plain(event::current, words);
+}
+
+void Link::made_current() {
+  if (!introduced_) introduce();
+  drawable_ = stage_.front().drawable();
+  Records records;
+  tell_current(records);
+  stage_.send(records);
+}
+
+void Link::left() {
+  constexpr std::uint64_t nothing[] = {0, 0, 0};
+  Records records;
+  records.append_plain(event::current, nothing);
+  stage_.send(records);
+}
+
+/// Windows change their size without a call. Applications that notice set a viewport, others draw the next
+/// frame.
+void Link::note_drawable(Records& to) {
+  const FrontDrawable now = stage_.front().drawable();
+  if (now.number == drawable_.number && now.extent == drawable_.extent) return;
+  drawable_ = now;
+  tell_current(to);
+}
+
+void Link::show_frame() {
+  pack_.hand_on();
+  const std::uint64_t words[] = {++frames_, std::uint64_t(drawable_.extent.width),
+                                 std::uint64_t(drawable_.extent.height)};
+  Records records;
+  records.append_plain(event::frame, words);
+  stage_.show_frame(records, drawable_.number);
+  records.clear();
+  note_drawable(records);
+  stage_.send(records);
+}
+
+void Link::frame_ended(FrameEnd kind) {
+  if (kind == FrameEnd::swap && drawable_.number != 0) show_frame();
+}
+
+void Link::abandon() {
+  const std::uint64_t words[] = {chain_.surroundings().context};
+  Records records;
+  records.append_plain(event::context_gone, words);
+  stage_.send(records);
+}
+
+std::optional<std::uint64_t> Link::constant(CallId call, const std::uint64_t* words) const {
+  if (is_text(call)) {
+    const auto found = texts_.find({call, words_of_text(call, words)});
+    if (found == texts_.end()) return std::nullopt;
+    return reinterpret_cast<std::uintptr_t>(found->second);
+  }
+  if (!is_constant(call, words)) return std::nullopt;
+  const auto found = constants_.find({call, words[0]});
+  if (found == constants_.end() || words[1] == 0) return std::nullopt;
+  std::memcpy(address(words[1]), found->second.data(), found->second.size());
+  return 0;
+}
+
+std::optional<std::uint64_t> Link::known(CallId call, const std::uint64_t* words) {
+  if (stage_.lost()) return 0;
+  if (!answers(call)) return std::nullopt;
+  if (call == CallId::GetError && without_error_) return GL_NO_ERROR;
+  if (pack_.inside_begin()) return std::nullopt;
+  if (call == CallId::GetBufferPointerv || call == CallId::GetBufferPointervARB ||
+      call == CallId::GetNamedBufferPointerv || call == CallId::GetNamedBufferPointervEXT) {
+    const auto found = mappings_.find(mapped_buffer(call, words));
+    if (words[2] != 0)
+      *reinterpret_cast<void**>(address(words[2])) = found == mappings_.end() ? nullptr : found->second.data();
+    return 0;
+  }
+  if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
+    // What stands for a window on the stage may have one buffer.
+    if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(address(words[1])) = context_.double_buffered;
+    if (call == CallId::GetBooleanv) *reinterpret_cast<GLboolean*>(address(words[1])) = context_.double_buffered;
+    return 0;
+  }
+  std::uint64_t result = 0;
+  if (state_.answer(call, words, Asker::application, result)) return result;
+  return constant(call, words);
+}
+
+std::uint64_t Link::ask(CallId call, const std::uint64_t* words) {
+  if (call == CallId::ClientActiveTexture) {
+    // The encoder looks at the arrays of one unit after the other, and sets back what was set.
+    state_.note(call, words);
+    return 0;
+  }
+  std::uint64_t result = 0;
+  if (!stage_.lost() && state_.answer(call, words, Asker::encoder, result)) return result;
+  if (const auto answer = known(call, words)) return *answer;
+  pack_.hand_on();
+  question_records_.clear();
+  question_encoder_.encode(call, words, question_records_);
+  const PackedCall question{call, words};
+  return take(question_records_, &question);
+}
+
+GLuint Link::mapped_buffer(CallId call, const std::uint64_t* words) const {
+  const bool named = std::string_view(call_name(call)).find("Named") != std::string_view::npos;
+  return named ? GLuint(words[0]) : state_.bound_buffer(GLenum(words[0]));
+}
+
+void Link::before(CallId call, const std::uint64_t* words, Records& to) {
+  if (call != CallId::GetError) without_error_ = false;
+  if (!pack_.inside_begin()) {
+    if (call == CallId::Viewport && drawable_.number != 0) note_drawable(to);
+    if (!mappings_.empty()) {
+      writes_.before(chain_.driver(), call, words, to);
+      drop_mappings(call, words);
+    }
+  }
+  state_.note(call, words);
+}
+
+/// What ends a mapping.
+void Link::drop_mappings(CallId call, const std::uint64_t* words) {
+  switch (call) {
+    case CallId::DeleteBuffers:
+    case CallId::DeleteBuffersARB: {
+      const auto* names = reinterpret_cast<const GLuint*>(address(words[1]));
+      for (GLsizei i = 0; i < GLsizei(words[0]) && names != nullptr; ++i) mappings_.erase(names[i]);
+      return;
+    }
+    case CallId::BufferData:
+    case CallId::BufferDataARB:
+    case CallId::NamedBufferData:
+    case CallId::NamedBufferDataEXT:
+      mappings_.erase(mapped_buffer(call, words));
+      return;
+    default:
+      if (unmaps(call)) mappings_.erase(mapped_buffer(call, words));
+  }
+}
+
+HandOn Link::when(CallId call, bool inside_begin) {
+  if (answers(call) || call == CallId::Finish) return HandOn::and_wait;
+  return call == CallId::Flush && !inside_begin ? HandOn::now : HandOn::later;
+}
+
+std::uint64_t Link::take(const Records& records, const PackedCall* last) {
+  if (last == nullptr) {
+    stage_.send(records);
+    return 0;
+  }
+  const std::optional<CallAnswer> answer = stage_.ask(records);
+  return answer ? apply(*last, *answer) : 0;
+}
+
+std::uint64_t Link::apply(const PackedCall& call, const CallAnswer& answer) {
+  std::uint64_t result = answer.result;
+  for (const AnsweredOutput& output : answer.outputs) {
+    switch (output.parameter) {
+      case AnsweredOutput::result_text:
+        result = keep_text(call, output);
+        break;
+      case AnsweredOutput::mapped:
+        result = map(call, answer.result, output);
+        break;
+      case AnsweredOutput::feedback: {
+        const ClientState::Retained& memory = state_.feedback();
+        if (memory.first != 0)
+          std::memcpy(address(memory.first), output.bytes.data(), std::min(memory.bytes, output.bytes.size()));
+        break;
+      }
+      default:
+        write_output(call, output);
+    }
+  }
+  // Addresses of the stage mean nothing here.
+  if (call_shape(call.call).result_pointer != 0 && answer.outputs.empty()) return 0;
+  if (call.call == CallId::GetError) without_error_ = result == GL_NO_ERROR;
+  return result;
+}
+
+void Link::write_output(const PackedCall& call, const AnsweredOutput& output) {
+  const auto parameters = call_shape(call.call).parameters();
+  if (output.parameter >= parameters.size()) return;
+  const ParameterShape& parameter = parameters[output.parameter];
+  const std::uint64_t to = call.words[output.parameter];
+  if (parameter.pointer == 0 || parameter.input || to == 0) return;
+  if (output.picture) {
+    const auto needed = picture_extent(*output.picture, tight_pixels);
+    if (parameter.rule == ExtentRule::image_out && needed && *needed <= output.bytes.size())
+      spread_picture(*output.picture, state_.pack(), output.bytes.data(), address(to));
+    return;
+  }
+  const std::size_t room =
+      parameter.rule == ExtentRule::image_out
+          ? output.bytes.size()
+          : pointee_bytes(call.call, output.parameter, call.words).value_or(most_unknown_bytes);
+  const std::size_t bytes = std::min(room, output.bytes.size());
+  std::memcpy(address(to), output.bytes.data(), bytes);
+  if (is_constant(call.call, call.words))
+    constants_[{call.call, call.words[0]}].assign(output.bytes.begin(), output.bytes.begin() + std::ptrdiff_t(bytes));
+}
+
+std::uint64_t Link::keep_text(const PackedCall& call, const AnsweredOutput& output) {
+  const auto* first = reinterpret_cast<const char*>(output.bytes.data());
+  const char* text = stage_.keep_text(std::string(first, strnlen(first, output.bytes.size())));
+  if (is_text(call.call)) texts_[{call.call, words_of_text(call.call, call.words)}] = text;
+  return reinterpret_cast<std::uintptr_t>(text);
+}
+
+std::uint64_t Link::map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents) {
+  // The stage has mapped what it claims, so this is no more than the application's buffer.
+  const std::uint8_t length = argument_named(call_shape(call.call), "length");
+  if (length != no_argument) bytes = std::max(bytes, call.words[length]);
+  auto& memory = mappings_[mapped_buffer(call.call, call.words)];
+  memory.assign(std::size_t(bytes) / sizeof(std::max_align_t) + 1, {});
+  if (!contents.bytes.empty())
+    std::memcpy(memory.data(), contents.bytes.data(), std::min<std::size_t>(bytes, contents.bytes.size()));
+  const std::uint64_t first = reinterpret_cast<std::uintptr_t>(memory.data());
+  // Tells by which address the writes that follow will speak of the mapping.
+  const std::uint64_t words[] = {stable_id(call.call), first};
+  Records records;
+  records.append_plain(event::answers, words);
+  stage_.send(records);
+  writes_.after(chain_.driver(), call.call, call.words, first);
+  return first;
+}
+
+constinit const UnitDescription link_description{
+    .name = "link",
+    .help = "has a stage elsewhere make the calls (understudy run --remote)",
+    .standing = Standing::last,
+    .needs = "pack",
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      StageLink* stage = place.chain.surroundings().stage;
+      if (stage == nullptr)
+        throw ChainError("link", "there is no stage; start the viewer with: understudy run --remote -- viewer");
+      return std::make_unique<Link>(place.chain, *stage);
+    }};
+
+}  // namespace understudy::spu

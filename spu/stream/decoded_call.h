@@ -1,0 +1,29 @@
+// A record's call while the decoder is at it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "dispatch/call_shape.h"
+#include "spu/stream/decode.h"
+#include "spu/stream/record.h"
+
+namespace understudy::spu {
+
+/// Answers to the sender of a linked stream: pictures and buffers of applications may be large.
+constexpr std::size_t most_linked_output_bytes = std::size_t(1) << 30;
+/// What fills memory before OpenGL writes answers into it, so that what it wrote is seen.
+constexpr std::byte unwritten{0xa5};
+
+struct Decoder::Call {
+  CallId id{};
+  const CallShape* shape = nullptr;
+  std::array<std::uint64_t, max_parameters> words{};
+  std::array<ReferenceKind, max_parameters> kinds{};
+  std::array<std::size_t, max_parameters> bytes{};  ///< there are behind a pointer
+  bool skip = false;  ///< has no meaning here: an address of another process, a question
+  bool picture_in = false;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,23 @@
+// How large the pixels are that a command is going to write.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "dispatch/call_id.h"
+#include "dispatch/table.h"
+#include "spu/stream/pixels.h"
+
+namespace understudy::spu {
+
+struct ImageAnswer {
+  std::optional<PictureShape> shape;  ///< nothing: bytes without rows, whatever GL_PACK_* says
+  std::size_t bytes = 0;              ///< with rows that follow each other without gaps
+};
+
+/// What the command with these arguments writes; asks `gl` for the size of textures. Nothing when it writes
+/// nothing, or is not known here: the sides of a filter, histograms and extrema.
+std::optional<ImageAnswer> image_answer(CallId call, const std::uint64_t* words, const DispatchTable& gl);
+
+}  // namespace understudy::spu

@@ -1,0 +1,155 @@
+// Viewers without OpenGL: their calls are made by a stage, and what comes home is the picture of a viewer that
+// runs where OpenGL is.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tests/apps/viewer/virtual_display.h"
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+class Remote : public Stage {
+ protected:
+  void SetUp() override {
+    if (const std::string lacking = missing({Need::engine, Need::x_server}); !lacking.empty())
+      GTEST_SKIP() << lacking;
+    auto started = viewer_test::VirtualDisplay::start();
+    ASSERT_TRUE(started) << "Xvfb does not start";
+    display_.emplace(std::move(*started));
+  }
+
+  /// The bundled viewer in a window.
+  Words viewer(const std::string& mode, const Words& options) const {
+    return Words{(programs / "understudy-viewer").string(), engine_file().string(), "--mode", mode,
+                 "--window-size", "256", "256", "--azimuth", "40", "--elevation", "30"} +
+           options;
+  }
+  std::map<std::string, std::string> on_display() const { return {{"DISPLAY", display_->name()}}; }
+  /// A driver that is not there: whoever loads one here fails.
+  static Words without_opengl() { return {"env", "LIBGL_DRIVERS_PATH=/nowhere"}; }
+
+  void expect_same_pictures(const std::string& mode, const Words& nodes) {
+    const auto frames = [&](const std::string& folder) {
+      return viewer(mode, {"--frames", "2", "--orbit", "50", "--screenshot-frames", file(folder)});
+    };
+    run_well(under(nodes) + frames("local"), on_display());
+    const Outcome outcome =
+        run_well(under(nodes + Words{"--remote", "--report", file("report.json")}) + without_opengl() +
+                     frames("remote"),
+                 on_display());
+    const nlohmann::json report = json("report.json");
+    EXPECT_EQ(report.at("remote"), true);
+    EXPECT_EQ(report.at("frames"), 2);
+    EXPECT_EQ(substituted(report), 2) << outcome.err;
+    EXPECT_EQ(report.at("remote_link").at("frames"), 2);
+    EXPECT_GT(report.at("remote_link").at("bytes_up"), 256 * 256 * 110);
+    fmt::print("{}: {}\n", mode, report.at("remote_link").dump());
+    for (const char* name : {"frame_0001.png", "frame_0002.png"}) {
+      EXPECT_GE(told(fmt::format("{}, {}", mode, name), png(fmt::format("local/{}", name)),
+                     png(fmt::format("remote/{}", name)))
+                    .psnr,
+                50);
+    }
+  }
+
+  std::optional<viewer_test::VirtualDisplay> display_;
+};
+
+TEST_F(Remote, ShowsWhatIsShownWhereOpenGLIs) {
+  expect_same_pictures("table", {});
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, CoreContextsAndNodes) {
+  if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  expect_same_pictures("core", {"-n", "2"});
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, OffScreen) {
+  const auto frame = [&](const std::string& name) {
+    return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});
+  };
+  run_well(under() + frame("local.png"));
+  const Outcome outcome = run_well(under({"--remote", "--report", file("report.json")}) + without_opengl() +
+                                       frame("remote.png"),
+                                   {{"DISPLAY", ""}});
+  EXPECT_EQ(substituted(json("report.json")), 1) << outcome.err;
+  EXPECT_GE(told("off screen", png("local.png"), png("remote.png")).psnr, 50);
+}
+
+TEST_F(Remote, WhatStaysTheSameDoesNotTravel) {
+  const auto bytes_up = [&](const char* frames) {
+    run_well(under({"--remote", "--report", file("report.json")}) + viewer("table", {"--frames", frames}),
+             on_display());
+    return json("report.json").at("remote_link").at("bytes_up").get<double>();
+  };
+  const double a_frame = (bytes_up("30") - bytes_up("10")) / 20;
+  fmt::print("a frame of a view that rests: {:.0f} bytes up\n", a_frame);
+  EXPECT_LT(a_frame, 4096);
+}
+
+TEST_F(Remote, PicturesAreInTheWindow) {
+  if (const std::string lacking = missing({Need::imagemagick}); !lacking.empty()) GTEST_SKIP() << lacking;
+  run_well(under() + viewer("table", {"--screenshot", file("local.png")}), on_display());
+  Child child(on_stage(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()), file(""));
+  const bool shown = comes_true([&] {
+    if (!child.running()) return true;
+    const Words grab = {"import", "-window", "root", "-crop", "256x256+0+0", "+repage",
+                        "png24:" + file("window.png").string()};
+    if (Child({grab, on_display()}, file("")).finish().status != 0) return false;
+    const auto window = png("window.png");
+    return window.rgb.size() == png("local.png").rgb.size() &&
+           told("the window", png("local.png"), window).psnr >= 50;
+  });
+  EXPECT_TRUE(shown && child.running()) << child.err();
+  const std::vector<pid_t> viewers = processes("understudy-viewer");
+  ASSERT_EQ(viewers.size(), 1U);
+  const std::string mapped = contents(fmt::format("/proc/{}/maps", viewers.front()));
+  EXPECT_NE(mapped.find("libunderstudy.so"), std::string::npos);
+  for (const char* of_a_driver : {"libGLdispatch", "libGLX_", "libEGL_", "_dri.so", "libLLVM"})
+    EXPECT_EQ(mapped.find(of_a_driver), std::string::npos) << of_a_driver;
+  child.signal(SIGTERM);
+  EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
+  Child child(on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                       on_display()),
+              file(""));
+  // The stage that listens, and its process for the viewer.
+  const auto stages = [&] {
+    std::vector<pid_t> found;
+    for (const pid_t process : processes("understudy")) {
+      if (process != child.pid()) found.push_back(process);
+    }
+    return found;
+  };
+  ASSERT_TRUE(comes_true([&] { return stages().size() == 2; })) << child.err();
+  for (const pid_t process : stages()) kill(process, SIGKILL);
+  EXPECT_TRUE(comes_true([&] { return child.err().find("the stage, which draws") != std::string::npos; }))
+      << child.err();
+  child.signal(SIGTERM);
+  EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, AViewerThatIsKilledEndsItsStage) {
+  Child child(on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                       on_display()),
+              file(""));
+  ASSERT_TRUE(comes_true([&] { return processes("understudy").size() >= 3; })) << child.err();
+  for (const pid_t process : processes("understudy-viewer")) kill(process, SIGKILL);
+  EXPECT_EQ(child.finish().status, 128 + SIGKILL);
+  EXPECT_EQ(leftovers(), "");
+}
+
+}  // namespace
+}  // namespace clients

@@ -41,7 +41,9 @@ volume::Image some_image() {
 
 int main(int argc, char** argv) {
   compositor::MpiLink link(argc, argv);
-  const auto of_a_megabyte = [](const compositor::LinkCost& cost) { return cost.latency + 1e6 * cost.per_byte; };
+  const auto of_a_megabyte = [](const compositor::LinkCost& cost) {
+    return cost.latency + 1e6 * cost.per_byte;
+  };
   compositor::LinkCost least = compositor::measure_link(link);
   for (int i = 1; i < repetitions; ++i)
     if (const compositor::LinkCost again = compositor::measure_link(link);

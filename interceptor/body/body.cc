@@ -281,6 +281,7 @@ extern "C" [[gnu::visibility("default")]] const understudy::interceptor::BodySer
                has_driver ? "; calls go straight to the driver" : "");
     return nullptr;
   }
-  services = {body_abi, context_current, context_leaving, context_destroyed, before_frame_end, after_frame_end, remote_versions};
+  services = {body_abi,         context_current, context_leaving, context_destroyed,
+              before_frame_end, after_frame_end, remote_versions};
   return &services;
 }

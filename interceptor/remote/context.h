@@ -20,7 +20,7 @@ struct RemoteContextWish {
 struct RemoteContext {
   RemoteConfig config;
   RemoteContextWish wish;
-  int current;    ///< threads that have it
+  int current;     ///< threads that have it
   bool destroyed;  ///< and goes when no thread has it
 };
 

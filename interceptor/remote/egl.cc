@@ -252,7 +252,8 @@ bool meets_all(const RemoteConfig& config, const EGLint* attributes) {
   return true;
 }
 
-EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig* configs, EGLint room, EGLint* count) {
+EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig* configs, EGLint room,
+                        EGLint* count) {
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
   if (count == nullptr) return failed(EGL_BAD_PARAMETER, EGL_FALSE);
   int offered = 0;
@@ -346,7 +347,8 @@ EGLSurface new_surface(EGLConfig config, XID window) {
   return surface;
 }
 
-EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window, const EGLint*) {
+EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window,
+                               const EGLint*) {
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_NO_SURFACE);
   if (display_of(display)->x == nullptr || window == 0) return failed(EGL_BAD_NATIVE_WINDOW, EGL_NO_SURFACE);
   return new_surface(config, static_cast<XID>(window));

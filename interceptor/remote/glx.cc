@@ -138,7 +138,8 @@ int attribute_of(const RemoteConfig& config, int attribute, int* value) {
 /// GLX 1.4, table 3.4: sizes are minima, flags are exact, what says nothing of a configuration is passed over.
 bool meets(const RemoteConfig& config, int attribute, int wanted) {
   int has = 0;
-  if (wanted == static_cast<int>(GLX_DONT_CARE) || attribute_of(config, attribute, &has) != Success) return true;
+  if (wanted == static_cast<int>(GLX_DONT_CARE) || attribute_of(config, attribute, &has) != Success)
+    return true;
   switch (attribute) {
     case GLX_DRAWABLE_TYPE:
     case GLX_RENDER_TYPE:
@@ -253,7 +254,8 @@ GLXContext CreateContextWithConfigSGIX(Display* display, GLXFBConfigSGIX config,
   return CreateNewContext(display, config, type, share, direct);
 }
 
-GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext share, Bool, const int* attributes) {
+GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext share, Bool,
+                                   const int* attributes) {
   RemoteContextWish wish;
   int major = 1;
   int minor = 0;
@@ -399,7 +401,8 @@ GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig config, const int* attrib
   return made->id;
 }
 
-GLXPbufferSGIX CreateGLXPbufferSGIX(Display* display, GLXFBConfigSGIX config, unsigned width, unsigned height, int*) {
+GLXPbufferSGIX CreateGLXPbufferSGIX(Display* display, GLXFBConfigSGIX config, unsigned width, unsigned height,
+                                    int*) {
   const int attributes[] = {GLX_PBUFFER_WIDTH, static_cast<int>(width), GLX_PBUFFER_HEIGHT,
                             static_cast<int>(height), None};
   return CreatePbuffer(display, config, attributes);

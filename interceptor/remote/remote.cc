@@ -42,9 +42,9 @@ void remote_context_format(RemoteContextFormat* format) {
   if (context == nullptr) return;
   constexpr std::uint32_t core_profile_bit = 1;
   constexpr std::uint32_t compatibility_profile_bit = 2;
-  *format = {context->wish.version,   context->wish.core ? core_profile_bit : compatibility_profile_bit,
-             context->config.alpha,   context->config.depth,
-             context->config.stencil, context->config.samples,
+  *format = {context->wish.version,          context->wish.core ? core_profile_bit : compatibility_profile_bit,
+             context->config.alpha,          context->config.depth,
+             context->config.stencil,        context->config.samples,
              context->config.double_buffered};
 }
 

@@ -47,10 +47,10 @@ StageLink::StageLink(const std::string& address, FrontEnd& front) : front_(front
     if (welcome.type != MessageType::welcome) throw MalformedMessage("its first message is no welcome");
     versions_ = decode_versions(welcome.payload);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(
-        fmt::format("nothing can be drawn: the stage at '{}': {}; start the viewer with: understudy run --remote "
-                    "-- viewer args…",
-                    address, error.what()));
+    throw std::runtime_error(fmt::format(
+        "nothing can be drawn: the stage at '{}': {}; start the viewer with: understudy run --remote "
+        "-- viewer args…",
+        address, error.what()));
   }
   counters().is = 1;
 }
@@ -126,7 +126,8 @@ void StageLink::show_frame(const Records& records, std::uint64_t drawable) {
     }
     const std::size_t row = std::size_t(change.width) * 4;
     for (int y = 0; y < change.height; ++y) {
-      const std::size_t to = (std::size_t(change.y + y) * std::size_t(extent.width) + std::size_t(change.x)) * 4;
+      const std::size_t to =
+          (std::size_t(change.y + y) * std::size_t(extent.width) + std::size_t(change.x)) * 4;
       if (row != 0) std::memcpy(pixels.data() + to, change.pixels.data() + std::size_t(y) * row, row);
     }
     front_.show(extent, pixels);

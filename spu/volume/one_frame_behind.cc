@@ -23,8 +23,7 @@ bool differ_by_the_camera_alone(const RenderRequest& a, const RenderRequest& b) 
   as_b.fog = b.fog;
   as_b.light = b.light;
   as_b.depth = b.depth;
-  return a.steps.has_value() == b.steps.has_value() &&
-         a.depth.has_value() == b.depth.has_value() && as_b == b;
+  return a.steps.has_value() == b.steps.has_value() && a.depth.has_value() == b.depth.has_value() && as_b == b;
 }
 
 }  // namespace

@@ -243,8 +243,8 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     RunArguments without_door = arguments;
     without_door.door.reset();
     try {
-      stage = put_on_stage(installation, environment, viewer_environment(without_door, options, installation, folder, plan),
-                           folder);
+      stage = put_on_stage(installation, environment,
+                           viewer_environment(without_door, options, installation, folder, plan), folder);
     } catch (const std::exception& error) {
       say(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()));
       return 1;
@@ -322,9 +322,10 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
                    "record every call in FILE, for `understudy replay`; a further process of the viewer is "
                    "recorded in FILE.PID")
       ->type_name("FILE");
-  subcommand->add_flag("--remote", arguments->remote,
-                       "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
-                       "pictures come back to its windows");
+  subcommand->add_flag(
+      "--remote", arguments->remote,
+      "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
+      "pictures come back to its windows");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

@@ -86,7 +86,8 @@ class Performance {
 
   void play(const spu::Calls& calls) {
     shown_.reset();
-    const std::array<std::uint64_t, 2> thread = {spu::event::thread | std::uint64_t(2) << 32, calls.head.thread};
+    const std::array<std::uint64_t, 2> thread = {spu::event::thread | std::uint64_t(2) << 32,
+                                                 calls.head.thread};
     player_.play({spu::event::thread, thread, {}});
     std::uint64_t& counted = *spu::thread_call_counter();
     bool played = true;
@@ -219,15 +220,16 @@ int listen(const std::string& socket) {
 
 std::unique_ptr<ChildProcess> start_stage(const Installation& installation, const std::filesystem::path& socket,
                                           Environment environment) {
-  auto stage = std::make_unique<ChildProcess>(Command{
-      .arguments = {installation.programs / "understudy", "stage", "--socket", socket},
-      .environment = std::move(environment)});
+  auto stage = std::make_unique<ChildProcess>(
+      Command{.arguments = {installation.programs / "understudy", "stage", "--socket", socket},
+              .environment = std::move(environment)});
   const auto until = Clock::now() + patience_with_start;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {
     if (const auto ending = stage->wait_for_ending(5))
       throw std::runtime_error(fmt::format("the stage {}", ending->text()));
-    if (Clock::now() > until) throw std::runtime_error(fmt::format("the stage does not listen at {}", socket.string()));
+    if (Clock::now() > until)
+      throw std::runtime_error(fmt::format("the stage does not listen at {}", socket.string()));
   }
   return stage;
 }

@@ -34,8 +34,8 @@ void add_visual(Screen& screen, VisualID visual, int depth, int alpha) {
       for (const int double_buffered : {1, 0}) {
         if (screen.count == most_configs) return;
         RemoteConfig& config = screen.configs[screen.count++];
-        config = {screen.count,    screen.number, visual, depth, alpha, double_buffered, with_depth * 24,
-                  with_depth * 8, samples};
+        config = {screen.count,    screen.number,   visual,         depth,  alpha,
+                  double_buffered, with_depth * 24, with_depth * 8, samples};
       }
     }
   }

@@ -1,6 +1,6 @@
 // The framebuffer configurations that remote GLX and EGL offer: for each kind of window that the X server has
-// and that pictures can be put into, with and without alpha, a second buffer, depth and samples. What is drawn lies on
-// the stage, which can have all of these.
+// and that pictures can be put into, with and without alpha, a second buffer, depth and samples. What is drawn
+// lies on the stage, which can have all of these.
 #pragma once
 
 #include <X11/Xlib.h>
@@ -13,15 +13,15 @@ struct RemoteConfig {
   int screen;
   VisualID visual;   ///< 0: without an X server, for pbuffers alone
   int visual_depth;  ///< 24, or 32 with an alpha that the screen shows; 0 without one
-  int alpha;  ///< 0 or 8 bits
+  int alpha;         ///< 0 or 8 bits
   int double_buffered;
   int depth;
   int stencil;
   int samples;
 };
 
-/// Of the screen (or of none: `display` null), best first; null and 0 where the server has no TrueColor visual of
-/// 24 or 32 bits. They live as long as the process.
+/// Of the screen (or of none: `display` null), best first; null and 0 where the server has no TrueColor visual
+/// of 24 or 32 bits. They live as long as the process.
 const RemoteConfig* remote_configs(Display* display, int screen, int* count);
 
 /// As XGetVisualInfo gives it, for the application to XFree; null when the server has it no more.

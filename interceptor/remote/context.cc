@@ -58,9 +58,10 @@ RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContex
 void say_no_opengl_es() {
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  dprintf(STDERR_FILENO,
-          "understudy: the viewer asks for OpenGL ES, which run --remote does not offer; let it use OpenGL, or run "
-          "it without --remote\n");
+  dprintf(
+      STDERR_FILENO,
+      "understudy: the viewer asks for OpenGL ES, which run --remote does not offer; let it use OpenGL, or run "
+      "it without --remote\n");
 }
 
 void destroy_remote_context(RemoteContext* context) {

@@ -252,7 +252,8 @@ bool meets_all(const RemoteConfig& config, const EGLint* attributes) {
   return true;
 }
 
-EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig* configs, EGLint room, EGLint* count) {
+EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig* configs, EGLint room,
+                        EGLint* count) {
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
   if (count == nullptr) return failed(EGL_BAD_PARAMETER, EGL_FALSE);
   int offered = 0;
@@ -346,7 +347,8 @@ EGLSurface new_surface(EGLConfig config, XID window) {
   return surface;
 }
 
-EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window, const EGLint*) {
+EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window,
+                               const EGLint*) {
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_NO_SURFACE);
   if (display_of(display)->x == nullptr || window == 0) return failed(EGL_BAD_NATIVE_WINDOW, EGL_NO_SURFACE);
   return new_surface(config, static_cast<XID>(window));
@@ -514,12 +516,7 @@ void remote_egl_drawable(void* display, std::uintptr_t surface, RemoteDrawable* 
   const Surface& of = *reinterpret_cast<const Surface*>(surface);
   extent_of_surface(*static_cast<EglDisplay*>(display), of, &answer->width, &answer->height);
   answer->number = of.window != 0 ? of.window : surface;
-}
-
-void remote_egl_show(void* display, std::uintptr_t surface, const RemotePicture& picture) {
-  const auto* of = reinterpret_cast<const Surface*>(surface);
-  const EglDisplay& on = *static_cast<EglDisplay*>(display);
-  if (of != nullptr && of->window != 0 && on.x != nullptr) put_picture(on.x, of->window, picture);
+  if (of.window != 0) answer->display = reinterpret_cast<std::uintptr_t>(static_cast<EglDisplay*>(display)->x);
 }
 
 }  // namespace understudy::interceptor

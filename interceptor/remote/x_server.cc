@@ -67,8 +67,9 @@ void* open_library(const char* name) {
 bool open_xlib() {
   void* library = open_library("libX11.so.6");
   return library != nullptr && find(library, "XGetVisualInfo", xlib_functions.get_visual_info) &&
-         find(library, "XFree", xlib_functions.free) && find(library, "XOpenDisplay", xlib_functions.open_display) && find(library, "XSync", xlib_functions.sync) &&
-         find(library, "XFlush", xlib_functions.flush);
+         find(library, "XFree", xlib_functions.free) &&
+         find(library, "XOpenDisplay", xlib_functions.open_display) &&
+         find(library, "XSync", xlib_functions.sync) && find(library, "XFlush", xlib_functions.flush);
 }
 
 bool open_xcb() {

@@ -1,6 +1,6 @@
 // The X server, by a connection of our own beside the application's: its errors come back as events that nobody
-// need handle (a window may be gone at any moment), and pictures may be shown whatever the application's threads
-// do with theirs.
+// need handle (a window may be gone at any moment), and pictures may be shown whatever the application's
+// threads do with theirs.
 #pragma once
 
 #include <X11/Xlib.h>

@@ -72,7 +72,8 @@ void ChunkSender::add(std::span<const std::uint64_t> records, std::span<const st
   cut(payload);
 }
 
-std::span<const std::uint64_t> ChunkReceiver::receive(std::span<const std::uint64_t> message, std::uint64_t most) {
+std::span<const std::uint64_t> ChunkReceiver::receive(std::span<const std::uint64_t> message,
+                                                      std::uint64_t most) {
   words_.clear();
   if (message.empty() || message[0] > message.size() - 1)
     throw MalformedMessage("calls: fewer chunks than announced");

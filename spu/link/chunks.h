@@ -1,9 +1,9 @@
-// What an application does frame after frame is mostly the same: words that were sent before are named, not sent
-// again. Both ends keep the last chunks that travelled, in slots that the sender chooses, so that they always
-// agree without a word.
+// What an application does frame after frame is mostly the same: words that were sent before are named, not
+// sent again. Both ends keep the last chunks that travelled, in slots that the sender chooses, so that they
+// always agree without a word.
 //
-// In a message stand the number of chunks, a word for each -- slot (low 16 bits), whether the receiver has it (bit
-// 16), number of words (high 32 bits) -- and then the words of those that it has not.
+// In a message stand the number of chunks, a word for each -- slot (low 16 bits), whether the receiver has it
+// (bit 16), number of words (high 32 bits) -- and then the words of those that it has not.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +43,8 @@ class ChunkSender {
 
 class ChunkReceiver {
  public:
-  /// The words that were added, one after the other, valid until the next call. `message` is heads and data. Throws
-  /// compositor::MalformedMessage, also where there would be more than `most` words.
+  /// The words that were added, one after the other, valid until the next call. `message` is heads and data.
+  /// Throws compositor::MalformedMessage, also where there would be more than `most` words.
   std::span<const std::uint64_t> receive(std::span<const std::uint64_t> message, std::uint64_t most);
 
  private:

@@ -45,8 +45,9 @@ const ArrayNames* names_of_array(GLenum array) {
 }
 
 std::array<GLint PixelStore::*, 8> store_fields() {
-  return {&PixelStore::swap_bytes, &PixelStore::lsb_first,   &PixelStore::row_length,  &PixelStore::image_height,
-          &PixelStore::skip_rows,  &PixelStore::skip_pixels, &PixelStore::skip_images, &PixelStore::alignment};
+  return {&PixelStore::swap_bytes,   &PixelStore::lsb_first, &PixelStore::row_length,
+          &PixelStore::image_height, &PixelStore::skip_rows, &PixelStore::skip_pixels,
+          &PixelStore::skip_images,  &PixelStore::alignment};
 }
 
 template <class T>
@@ -259,7 +260,8 @@ void ClientState::note(CallId call, const std::uint64_t* words) {
       return;
     case CallId::Enable:
     case CallId::EnableClientStateIndexedEXT:
-      restarts_ |= GLenum(words[0]) == GL_PRIMITIVE_RESTART || GLenum(words[0]) == GL_PRIMITIVE_RESTART_FIXED_INDEX;
+      restarts_ |=
+          GLenum(words[0]) == GL_PRIMITIVE_RESTART || GLenum(words[0]) == GL_PRIMITIVE_RESTART_FIXED_INDEX;
       return;
     case CallId::VertexPointer:
     case CallId::NormalPointer:

@@ -88,8 +88,8 @@ class ClientState {
 
   Client client_;
   std::vector<Pushed> pushed_;
-  std::map<GLenum, GLuint> buffers_;            ///< by target, but for arrays and elements
-  std::map<GLuint, GLuint> element_buffers_;    ///< by vertex array object
+  std::map<GLenum, GLuint> buffers_;          ///< by target, but for arrays and elements
+  std::map<GLuint, GLuint> element_buffers_;  ///< by vertex array object
   Retained feedback_;
   Retained selection_;
   GLenum mode_ = GL_RENDER;

@@ -96,10 +96,7 @@ const DispatchTable& link_driver() {
 }
 
 Link::Link(Chain& chain, StageLink& stage)
-    : chain_(chain),
-      stage_(stage),
-      pack_(*chain.find<Pack>()),
-      question_encoder_(link_driver(), [] {}) {
+    : chain_(chain), stage_(stage), pack_(*chain.find<Pack>()), question_encoder_(link_driver(), [] {}) {
   pack_.hand_to(*this);
   question_encoder_.hide_addresses();
 }
@@ -161,7 +158,7 @@ void Link::show_frame() {
                                  std::uint64_t(drawable_.extent.height)};
   Records records;
   records.append_plain(event::frame, words);
-  stage_.show_frame(records, drawable_.number);
+  stage_.show_frame(records, drawable_);
   records.clear();
   note_drawable(records);
   stage_.send(records);
@@ -169,6 +166,11 @@ void Link::show_frame() {
 
 void Link::frame_ended(FrameEnd kind) {
   if (kind == FrameEnd::swap && drawable_.number != 0) show_frame();
+  // What the application then does to its windows by other means comes after its frames.
+  if (kind == FrameEnd::wait) {
+    pack_.hand_on();
+    stage_.wait_for_frames();
+  }
 }
 
 void Link::abandon() {
@@ -206,7 +208,8 @@ std::optional<std::uint64_t> Link::known(CallId call, const std::uint64_t* words
   if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
     // What stands for a window on the stage may have one buffer.
     if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(address(words[1])) = context_.double_buffered;
-    if (call == CallId::GetBooleanv) *reinterpret_cast<GLboolean*>(address(words[1])) = context_.double_buffered;
+    if (call == CallId::GetBooleanv)
+      *reinterpret_cast<GLboolean*>(address(words[1])) = context_.double_buffered;
     return 0;
   }
   std::uint64_t result = 0;
@@ -326,7 +329,8 @@ void Link::write_output(const PackedCall& call, const AnsweredOutput& output) {
   const std::size_t bytes = std::min(room, output.bytes.size());
   std::memcpy(address(to), output.bytes.data(), bytes);
   if (is_constant(call.call, call.words))
-    constants_[{call.call, call.words[0]}].assign(output.bytes.begin(), output.bytes.begin() + std::ptrdiff_t(bytes));
+    constants_[{call.call, call.words[0]}].assign(output.bytes.begin(),
+                                                  output.bytes.begin() + std::ptrdiff_t(bytes));
 }
 
 std::uint64_t Link::keep_text(const PackedCall& call, const AnsweredOutput& output) {

@@ -56,7 +56,8 @@ Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks) {
 
 std::vector<std::byte> encode_head(const PictureChange& change) {
   Writer out;
-  for (const int value : {change.extent.width, change.extent.height, change.x, change.y, change.width, change.height})
+  for (const int value :
+       {change.extent.width, change.extent.height, change.x, change.y, change.width, change.height})
     out.integer(value);
   return out.bytes();
 }

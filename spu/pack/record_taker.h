@@ -31,8 +31,8 @@ class RecordTaker {
   /// Before a call is packed: appends what must be known where it is made.
   virtual void before(CallId /*call*/, const std::uint64_t* /*words*/, Records& /*to*/) {}
   virtual HandOn when(CallId call, bool inside_begin) = 0;
-  /// The calls are made in this process, so addresses mean something there, and what the encoder asks may depend
-  /// on calls that are still packed.
+  /// The calls are made in this process, so addresses mean something there, and what the encoder asks may
+  /// depend on calls that are still packed.
   virtual bool in_this_process() const { return true; }
   /// Has the calls made, in order. Answers the result of `last`; null: nobody waits.
   virtual std::uint64_t take(const Records& records, const PackedCall* last) = 0;

@@ -53,7 +53,10 @@ struct Player::Context {
 };
 
 Player::Player(WindowSystem& windows, const Options& options, StreamOrigin origin)
-    : windows_(windows), options_(options), origin_(origin), session_(std::make_shared<RenderSession>(options)) {}
+    : windows_(windows),
+      options_(options),
+      origin_(origin),
+      session_(std::make_shared<RenderSession>(options)) {}
 
 Player::~Player() {
   if (active_ != 0) leave();

@@ -301,7 +301,9 @@ Json remote_link(Processes processes) {
     up += process->remote.bytes_up.load();
     down += process->remote.bytes_down.load();
   }
-  const auto a_frame = [&](std::uint64_t sum) { return frames == 0 ? Json() : Json(double(sum) / double(frames)); };
+  const auto a_frame = [&](std::uint64_t sum) {
+    return frames == 0 ? Json() : Json(double(sum) / double(frames));
+  };
   return {{report_key::frames, frames},
           {report_key::round_trips, round_trips},
           {report_key::bytes_up, up},

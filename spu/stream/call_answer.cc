@@ -25,10 +25,10 @@ std::vector<std::byte> encode(const CallAnswer& answer) {
   put(std::array<std::uint64_t, head_words>{answer.result, answer.outputs.size()});
   for (const AnsweredOutput& output : answer.outputs) {
     const PictureShape shape = output.picture.value_or(PictureShape{});
-    put(std::array<std::uint64_t, output_words>{
-        output.parameter, output.picture.has_value(), std::uint32_t(shape.width), std::uint32_t(shape.height),
-        std::uint32_t(shape.depth), shape.format, shape.type, std::uint32_t(shape.dimensions),
-        output.bytes.size()});
+    put(std::array<std::uint64_t, output_words>{output.parameter, output.picture.has_value(),
+                                                std::uint32_t(shape.width), std::uint32_t(shape.height),
+                                                std::uint32_t(shape.depth), shape.format, shape.type,
+                                                std::uint32_t(shape.dimensions), output.bytes.size()});
     if (!output.bytes.empty()) std::memcpy(to, output.bytes.data(), output.bytes.size());
     to += words_for(output.bytes.size()) * 8;
   }

@@ -35,8 +35,8 @@ class Encoder {
   /// AsWords makes them.
   void encode(CallId call, const std::uint64_t* words, Records& to);
 
-  /// Whoever reads the records has another memory: addresses of the application are told as "somewhere", so that
-  /// calls that differ in nothing else are the same words.
+  /// Whoever reads the records has another memory: addresses of the application are told as "somewhere", so
+  /// that calls that differ in nothing else are the same words.
   void hide_addresses() { hides_addresses_ = true; }
 
   /// The application is between glBegin and glEnd: OpenGL answers no questions.

@@ -50,8 +50,8 @@ struct Level {
   std::optional<ImageAnswer> pixels(GLenum format, GLenum type) const {
     const GLenum of = target();
     const GLint faces = of == GL_TEXTURE_CUBE_MAP ? 6 : 1;
-    return with_rows({ask(GL_TEXTURE_WIDTH), ask(GL_TEXTURE_HEIGHT), ask(GL_TEXTURE_DEPTH) * faces, format, type,
-                      dimensions_of(of)});
+    return with_rows({ask(GL_TEXTURE_WIDTH), ask(GL_TEXTURE_HEIGHT), ask(GL_TEXTURE_DEPTH) * faces, format,
+                      type, dimensions_of(of)});
   }
   std::optional<ImageAnswer> compressed() const {
     if (ask(GL_TEXTURE_COMPRESSED) == 0) return std::nullopt;

@@ -63,9 +63,8 @@ std::string Decoder::provide_picture(Call& call, std::size_t p, const DispatchTa
   if (!image) return {};
   if (image->bytes > most_linked_output_bytes)
     return std::string(call_name(call.id)) + ": claims an answer beyond all reason";
-  AnsweredOutput output{.parameter = std::uint32_t(p),
-                        .picture = image->shape,
-                        .bytes = std::vector<std::byte>(image->bytes)};
+  AnsweredOutput output{
+      .parameter = std::uint32_t(p), .picture = image->shape, .bytes = std::vector<std::byte>(image->bytes)};
   // OpenGL may write a whole word for an empty picture's sake, and wants an address.
   std::byte nothing[8];
   call.words[p] = reinterpret_cast<std::uintptr_t>(output.bytes.empty() ? nothing : output.bytes.data());

@@ -14,7 +14,6 @@
 namespace understudy::spu {
 namespace {
 
-
 /// Calls that make pixels. Within one process nothing is gained by keeping them waiting, and a program may end
 /// without another word: by then the driver is no longer able to draw what it had never heard of.
 bool makes_pixels(CallId call) {

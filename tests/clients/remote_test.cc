@@ -26,8 +26,17 @@ class Remote : public Stage {
 
   /// The bundled viewer in a window.
   Words viewer(const std::string& mode, const Words& options) const {
-    return Words{(programs / "understudy-viewer").string(), engine_file().string(), "--mode", mode,
-                 "--window-size", "256", "256", "--azimuth", "40", "--elevation", "30"} +
+    return Words{(programs / "understudy-viewer").string(),
+                 engine_file().string(),
+                 "--mode",
+                 mode,
+                 "--window-size",
+                 "256",
+                 "256",
+                 "--azimuth",
+                 "40",
+                 "--elevation",
+                 "30"} +
            options;
   }
   std::map<std::string, std::string> on_display() const { return {{"DISPLAY", display_->name()}}; }
@@ -39,10 +48,9 @@ class Remote : public Stage {
       return viewer(mode, {"--frames", "2", "--orbit", "50", "--screenshot-frames", file(folder)});
     };
     run_well(under(nodes) + frames("local"), on_display());
-    const Outcome outcome =
-        run_well(under(nodes + Words{"--remote", "--report", file("report.json")}) + without_opengl() +
-                     frames("remote"),
-                 on_display());
+    const Outcome outcome = run_well(
+        under(nodes + Words{"--remote", "--report", file("report.json")}) + without_opengl() + frames("remote"),
+        on_display());
     const nlohmann::json report = json("report.json");
     EXPECT_EQ(report.at("remote"), true);
     EXPECT_EQ(report.at("frames"), 2);
@@ -77,9 +85,9 @@ TEST_F(Remote, OffScreen) {
     return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});
   };
   run_well(under() + frame("local.png"));
-  const Outcome outcome = run_well(under({"--remote", "--report", file("report.json")}) + without_opengl() +
-                                       frame("remote.png"),
-                                   {{"DISPLAY", ""}});
+  const Outcome outcome =
+      run_well(under({"--remote", "--report", file("report.json")}) + without_opengl() + frame("remote.png"),
+               {{"DISPLAY", ""}});
   EXPECT_EQ(substituted(json("report.json")), 1) << outcome.err;
   EXPECT_GE(told("off screen", png("local.png"), png("remote.png")).psnr, 50);
 }
@@ -101,8 +109,8 @@ TEST_F(Remote, PicturesAreInTheWindow) {
   Child child(on_stage(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()), file(""));
   const bool shown = comes_true([&] {
     if (!child.running()) return true;
-    const Words grab = {"import", "-window", "root", "-crop", "256x256+0+0", "+repage",
-                        "png24:" + file("window.png").string()};
+    const Words grab = {
+        "import", "-window", "root", "-crop", "256x256+0+0", "+repage", "png24:" + file("window.png").string()};
     if (Child({grab, on_display()}, file("")).finish().status != 0) return false;
     const auto window = png("window.png");
     return window.rgb.size() == png("local.png").rgb.size() &&
@@ -121,9 +129,9 @@ TEST_F(Remote, PicturesAreInTheWindow) {
 }
 
 TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
-  Child child(on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}),
-                       on_display()),
-              file(""));
+  Child child(
+      on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      file(""));
   // The stage that listens, and its process for the viewer.
   const auto stages = [&] {
     std::vector<pid_t> found;
@@ -142,9 +150,9 @@ TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
 }
 
 TEST_F(Remote, AViewerThatIsKilledEndsItsStage) {
-  Child child(on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}),
-                       on_display()),
-              file(""));
+  Child child(
+      on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      file(""));
   ASSERT_TRUE(comes_true([&] { return processes("understudy").size() >= 3; })) << child.err();
   for (const pid_t process : processes("understudy-viewer")) kill(process, SIGKILL);
   EXPECT_EQ(child.finish().status, 128 + SIGKILL);

@@ -29,7 +29,7 @@ struct UnitDescription {
   const char* help;  ///< one line
   std::span<const UnitOption> options = {};
   Standing standing = Standing::once;
-  const char* needs = nullptr;     ///< a unit that must stand somewhere before it
+  const char* needs = nullptr;        ///< a unit that must stand somewhere before it
   const char* leads_to = nullptr;     ///< a unit that must stand somewhere behind it
   const char* or_leads_to = nullptr;  ///< or this one
   /// Null for what is no unit but the driver.

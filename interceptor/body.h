@@ -49,6 +49,7 @@ struct RemoteDrawable {
   std::uint64_t number = 0;  ///< 0: there is none
   std::int32_t width = 0;
   std::int32_t height = 0;
+  std::uintptr_t display = 0;  ///< 0: nobody sees it
 };
 
 /// Rows from the top, 4 bytes a pixel: blue, green, red, unused.
@@ -72,8 +73,8 @@ struct DoorServices {
   // context that is current on the calling thread:
   void (*remote_context_format)(RemoteContextFormat*) = nullptr;
   void (*remote_drawable)(RemoteDrawable*) = nullptr;
-  /// In the thread's drawable.
-  void (*remote_show)(const RemotePicture*) = nullptr;
+  /// From any thread, also when the drawable is gone.
+  void (*remote_show)(const RemoteDrawable*, const RemotePicture*) = nullptr;
 };
 
 /// Answered by the body, once. No function throws; all may be called from any thread.

@@ -46,11 +46,13 @@ class DoorFront final : public spu::FrontEnd {
   spu::FrontDrawable drawable() override {
     RemoteDrawable drawable;
     door_.remote_drawable(&drawable);
-    return {drawable.number, {drawable.width, drawable.height}};
+    return {drawable.number, {drawable.width, drawable.height}, drawable.display};
   }
-  void show(spu::Extent2D extent, std::span<const std::uint8_t> pixels) override {
+  void show(const spu::FrontDrawable& drawable, spu::Extent2D extent,
+            std::span<const std::uint8_t> pixels) override {
+    const RemoteDrawable where{drawable.number, drawable.extent.width, drawable.extent.height, drawable.screen};
     const RemotePicture picture{extent.width, extent.height, pixels.data()};
-    door_.remote_show(&picture);
+    door_.remote_show(&where, &picture);
   }
 
  private:
@@ -125,7 +127,10 @@ class Body {
     }
   }
 
-  void program_ends() { session_->end(); }
+  void program_ends() {
+    session_->end();
+    if (stage_) stage_->end();
+  }
 
   /// Without a launcher nobody else writes the report. A child after fork has none of its own, and its parent's
   /// is not its to write.

@@ -50,9 +50,7 @@ const RemoteConfig& chosen_for(const RemoteConfig& any_of_the_visual);
 // Of GLX and EGL; `drawable` as the thread has it.
 void* remote_glx_symbol(const char* name);
 void remote_glx_drawable(void* display, std::uintptr_t drawable, RemoteDrawable* answer);
-void remote_glx_show(void* display, std::uintptr_t drawable, const RemotePicture& picture);
 void* remote_egl_symbol(const char* name);
 void remote_egl_drawable(void* display, std::uintptr_t surface, RemoteDrawable* answer);
-void remote_egl_show(void* display, std::uintptr_t surface, const RemotePicture& picture);
 
 }  // namespace understudy::interceptor

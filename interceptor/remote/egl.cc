@@ -516,12 +516,7 @@ void remote_egl_drawable(void* display, std::uintptr_t surface, RemoteDrawable* 
   const Surface& of = *reinterpret_cast<const Surface*>(surface);
   extent_of_surface(*static_cast<EglDisplay*>(display), of, &answer->width, &answer->height);
   answer->number = of.window != 0 ? of.window : surface;
-}
-
-void remote_egl_show(void* display, std::uintptr_t surface, const RemotePicture& picture) {
-  const auto* of = reinterpret_cast<const Surface*>(surface);
-  const EglDisplay& on = *static_cast<EglDisplay*>(display);
-  if (of != nullptr && of->window != 0 && on.x != nullptr) put_picture(on.x, of->window, picture);
+  if (of.window != 0) answer->display = reinterpret_cast<std::uintptr_t>(static_cast<EglDisplay*>(display)->x);
 }
 
 }  // namespace understudy::interceptor

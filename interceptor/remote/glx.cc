@@ -434,7 +434,7 @@ GLXPixmap CreateGLXPixmap(Display*, XVisualInfo*, Pixmap pixmap) {
 
 void destroy_nothing(Display*, GLXDrawable) {}
 
-bool extent_of_drawable(Display* display, XID drawable, int* width, int* height) {
+bool extent_of_pbuffer(XID drawable, int* width, int* height) {
   pthread_mutex_lock(&pbuffer_lock);
   const Pbuffer* pbuffer = pbuffers;
   while (pbuffer != nullptr && pbuffer->id != drawable) pbuffer = pbuffer->next;
@@ -443,13 +443,13 @@ bool extent_of_drawable(Display* display, XID drawable, int* width, int* height)
     *height = pbuffer->height;
   }
   pthread_mutex_unlock(&pbuffer_lock);
-  return pbuffer != nullptr || extent_of(display, drawable, width, height);
+  return pbuffer != nullptr;
 }
 
 void QueryDrawable(Display* display, GLXDrawable drawable, int attribute, unsigned* value) {
   int width = 0;
   int height = 0;
-  extent_of_drawable(display, drawable, &width, &height);
+  if (!extent_of_pbuffer(drawable, &width, &height)) extent_of(display, drawable, &width, &height);
   switch (attribute) {
     case GLX_WIDTH:
       *value = static_cast<unsigned>(width);
@@ -564,19 +564,14 @@ void* remote_glx_symbol(const char* name) {
 
 void remote_glx_drawable(void* display, std::uintptr_t drawable, RemoteDrawable* answer) {
   *answer = {};
-  if (drawable == None ||
-      !extent_of_drawable(static_cast<Display*>(display), drawable, &answer->width, &answer->height)) {
-    return;
+  if (drawable == None) return;
+  auto* server = static_cast<Display*>(display);
+  if (extent_of_pbuffer(drawable, &answer->width, &answer->height)) {
+    answer->number = drawable;
+  } else if (extent_of(server, drawable, &answer->width, &answer->height)) {
+    answer->number = drawable;
+    answer->display = reinterpret_cast<std::uintptr_t>(server);
   }
-  answer->number = drawable;
-}
-
-void remote_glx_show(void* display, std::uintptr_t drawable, const RemotePicture& picture) {
-  pthread_mutex_lock(&pbuffer_lock);
-  const Pbuffer* pbuffer = pbuffers;
-  while (pbuffer != nullptr && pbuffer->id != drawable) pbuffer = pbuffer->next;
-  pthread_mutex_unlock(&pbuffer_lock);
-  if (pbuffer == nullptr) put_picture(static_cast<Display*>(display), drawable, picture);
 }
 
 }  // namespace understudy::interceptor

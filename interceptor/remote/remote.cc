@@ -9,6 +9,7 @@
 #include "interceptor/open_body.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/context.h"
+#include "interceptor/remote/x_server.h"
 
 namespace understudy::interceptor {
 
@@ -56,11 +57,9 @@ void remote_drawable(RemoteDrawable* drawable) {
   ask(thread.display, thread.draw, drawable);
 }
 
-void remote_show(const RemotePicture* picture) {
-  const RemoteThread& thread = remote_thread();
-  if (thread.context == nullptr) return;
-  const auto show = thread.system == WindowSystem::egl ? &remote_egl_show : &remote_glx_show;
-  show(thread.display, thread.draw, *picture);
+void remote_show(const RemoteDrawable* drawable, const RemotePicture* picture) {
+  if (drawable->display == 0) return;
+  put_picture(reinterpret_cast<Display*>(drawable->display), drawable->number, *picture);
 }
 
 }  // namespace understudy::interceptor

@@ -17,7 +17,7 @@ void* remote_symbol(WindowSystem system, const char* name);
 /// What the body asks, about the calling thread's context: see DoorServices.
 void remote_context_format(RemoteContextFormat* format);
 void remote_drawable(RemoteDrawable* drawable);
-void remote_show(const RemotePicture* picture);
+void remote_show(const RemoteDrawable* drawable, const RemotePicture* picture);
 
 /// The highest OpenGL versions of the stage, as 100 * major + 10 * minor; 0 without a stage. Opens the body.
 RemoteVersions remote_versions();

@@ -158,7 +158,7 @@ void Link::show_frame() {
                                  std::uint64_t(drawable_.extent.height)};
   Records records;
   records.append_plain(event::frame, words);
-  stage_.show_frame(records, drawable_.number);
+  stage_.show_frame(records, drawable_);
   records.clear();
   note_drawable(records);
   stage_.send(records);
@@ -166,6 +166,11 @@ void Link::show_frame() {
 
 void Link::frame_ended(FrameEnd kind) {
   if (kind == FrameEnd::swap && drawable_.number != 0) show_frame();
+  // What the application then does to its windows by other means comes after its frames.
+  if (kind == FrameEnd::wait) {
+    pack_.hand_on();
+    stage_.wait_for_frames();
+  }
 }
 
 void Link::abandon() {

@@ -1,11 +1,16 @@
 #include "spu/link/stage_link.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/socket.h>
 
 #include <array>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "compositor/service/limits.h"
 #include "compositor/service/socket.h"
@@ -53,11 +58,33 @@ StageLink::StageLink(const std::string& address, FrontEnd& front) : front_(front
         address, error.what()));
   }
   counters().is = 1;
+  // The application's signals are for its own threads.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  receiver_ = std::thread([this] { receive_all(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+StageLink::~StageLink() {
+  end();
+  receiver_.join();
+}
+
+void StageLink::end() {
+  ended_ = true;
+  ::shutdown(connection_->fd(), SHUT_RDWR);
 }
 
 void StageLink::lose(const std::string& why) {
-  lost_ = true;
-  connection_.reset();
+  {
+    const std::scoped_lock lock(replies_);
+    if (lost_.exchange(true)) return;
+  }
+  replied_.notify_all();
+  ::shutdown(connection_->fd(), SHUT_RDWR);
+  if (ended_) return;
   fmt::print(stderr,
              "understudy: the stage, which draws for this program, {}; its windows show nothing new any more, "
              "end it and start again\n",
@@ -72,72 +99,116 @@ void StageLink::transmit(const Records& records, StageReply reply) {
   const std::array<compositor::Bytes, 4> parts = {
       std::as_bytes(std::span(&head, 1)), std::as_bytes(std::span(&count, 1)), std::as_bytes(chunks_.heads()),
       std::as_bytes(chunks_.data())};
-  connection_->send(MessageType::calls, 0, parts, Clock::now() + limits::stage_patience);
+  try {
+    connection_->send(MessageType::calls, 0, parts, Clock::now() + limits::stage_patience);
+  } catch (const std::runtime_error& error) {
+    lose(error.what());
+  }
   counters().bytes_up += sizeof(MessageHeader);
   for (const compositor::Bytes& part : parts) counters().bytes_up += part.size();
   if (reply != StageReply::none) ++counters().round_trips;
 }
 
-Message StageLink::receive(MessageType expected) {
-  Message message = connection_->receive(Clock::now() + limits::stage_patience);
+/// Returns when `condition` holds or the stage is lost. Needs the lock of the replies.
+template <class Condition>
+void StageLink::wait_until(std::unique_lock<std::mutex>& lock, Condition condition) {
+  const auto holds = [&] { return lost_ || condition(); };
+  if (replied_.wait_for(lock, limits::stage_patience, holds)) return;
+  lock.unlock();
+  lose("does not answer");
+  lock.lock();
+}
+
+void StageLink::receive_all() {
+  try {
+    for (;;) {
+      if (auto message = connection_->receive_some()) {
+        take(std::move(*message));
+      } else if (!compositor::wait_until_ready(connection_->fd(), POLLIN,
+                                               Clock::now() + limits::stage_patience) &&
+                 connection_->unfinished()) {
+        throw ConnectionLost("does not go on");
+      }
+    }
+  } catch (const std::exception& error) {
+    lose(error.what());
+  }
+}
+
+void StageLink::take(Message message) {
   counters().bytes_down += sizeof(MessageHeader) + message.payload.size();
   if (message.type == MessageType::refused)
     throw std::runtime_error("gives up: " + compositor::decode_text(message.payload));
-  if (message.type != expected) throw MalformedMessage("spoke out of turn");
-  return message;
+  if (message.type == MessageType::picture) return take_picture(message);
+  auto answer = decode_answer(message.payload);
+  if (message.type != MessageType::answered || !answer) throw MalformedMessage("spoke out of turn");
+  {
+    const std::scoped_lock lock(replies_);
+    answer_ = std::move(answer);
+  }
+  replied_.notify_all();
+}
+
+void StageLink::take_picture(const Message& message) {
+  const PictureChange change = decode_picture(message.payload);
+  FrontDrawable drawable;
+  {
+    const std::scoped_lock lock(replies_);
+    if (frames_.empty()) throw MalformedMessage("sent a picture that nobody waits for");
+    drawable = frames_.front();
+  }
+  auto& [extent, pixels] = pictures_[drawable.number];
+  if (extent != change.extent) {
+    extent = change.extent;
+    pixels.assign(std::size_t(extent.width) * std::size_t(extent.height) * 4, 0);
+  }
+  const std::size_t row = std::size_t(change.width) * 4;
+  for (int y = 0; y < change.height; ++y) {
+    const std::size_t to = (std::size_t(change.y + y) * std::size_t(extent.width) + std::size_t(change.x)) * 4;
+    if (row != 0) std::memcpy(pixels.data() + to, change.pixels.data() + std::size_t(y) * row, row);
+  }
+  if (!ended_) front_.show(drawable, extent, pixels);
+  ++counters().frames;
+  {
+    const std::scoped_lock lock(replies_);
+    frames_.pop_front();
+  }
+  replied_.notify_all();
 }
 
 void StageLink::send(const Records& records) {
-  const std::scoped_lock lock(mutex_);
-  if (lost_ || records.empty()) return;
-  try {
-    transmit(records, StageReply::none);
-  } catch (const std::runtime_error& error) {
-    lose(error.what());
-  }
+  const std::scoped_lock sending(sending_);
+  if (!lost_ && !records.empty()) transmit(records, StageReply::none);
 }
 
 std::optional<CallAnswer> StageLink::ask(const Records& records) {
-  const std::scoped_lock lock(mutex_);
+  const std::scoped_lock sending(sending_);
   if (lost_) return std::nullopt;
-  try {
-    transmit(records, StageReply::answer);
-    auto answer = decode_answer(receive(MessageType::answered).payload);
-    if (!answer) throw MalformedMessage("answered what is no answer");
-    return answer;
-  } catch (const std::runtime_error& error) {
-    lose(error.what());
-    return std::nullopt;
-  }
+  transmit(records, StageReply::answer);
+  std::unique_lock lock(replies_);
+  wait_until(lock, [&] { return answer_.has_value(); });
+  return std::exchange(answer_, std::nullopt);
 }
 
-void StageLink::show_frame(const Records& records, std::uint64_t drawable) {
-  const std::scoped_lock lock(mutex_);
+void StageLink::show_frame(const Records& records, const FrontDrawable& drawable) {
+  const std::scoped_lock sending(sending_);
   if (lost_) return;
-  try {
-    transmit(records, StageReply::picture);
-    const Message message = receive(MessageType::picture);
-    const PictureChange change = decode_picture(message.payload);
-    ++counters().frames;
-    auto& [extent, pixels] = pictures_[drawable];
-    if (extent != change.extent) {
-      extent = change.extent;
-      pixels.assign(std::size_t(extent.width) * std::size_t(extent.height) * 4, 0);
-    }
-    const std::size_t row = std::size_t(change.width) * 4;
-    for (int y = 0; y < change.height; ++y) {
-      const std::size_t to =
-          (std::size_t(change.y + y) * std::size_t(extent.width) + std::size_t(change.x)) * 4;
-      if (row != 0) std::memcpy(pixels.data() + to, change.pixels.data() + std::size_t(y) * row, row);
-    }
-    front_.show(extent, pixels);
-  } catch (const std::runtime_error& error) {
-    lose(error.what());
+  {
+    const std::scoped_lock lock(replies_);
+    frames_.push_back(drawable);
   }
+  transmit(records, StageReply::picture);
+  std::unique_lock lock(replies_);
+  wait_until(lock, [&] { return frames_.size() < frames_in_flight; });
+}
+
+void StageLink::wait_for_frames() {
+  std::unique_lock lock(replies_);
+  wait_until(lock, [&] { return frames_.empty(); });
 }
 
 const char* StageLink::keep_text(const std::string& text) {
-  const std::scoped_lock lock(mutex_);
+  const std::scoped_lock sending(sending_);
   return texts_.insert(text).first->c_str();
 }
 

@@ -1,17 +1,21 @@
-// The process's one connection to the stage that makes its OpenGL calls. All threads use it, one at a time.
+// The process's one connection to the stage that makes its OpenGL calls. All threads use it, one at a time;
+// what comes back is received by a thread of the link's own, so that pictures are shown as they come.
 //
 // A connection that is lost is lost for good: that is said once, and whatever is asked from then on is answered
 // with nothing.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "compositor/service/connection.h"
@@ -22,11 +26,17 @@
 
 namespace understudy::spu {
 
+/// That are on their way at once: the application draws the next one while the stage is at the last.
+constexpr std::size_t frames_in_flight = 2;
+
 class StageLink {
  public:
   /// Connects to the Unix socket `address`. Throws std::runtime_error with what to do when no stage answers
   /// there. `front` must outlive the link.
   StageLink(const std::string& address, FrontEnd& front);
+  ~StageLink();
+  StageLink(const StageLink&) = delete;
+  StageLink& operator=(const StageLink&) = delete;
 
   const StageVersions& versions() const { return versions_; }
   FrontEnd& front() { return front_; }
@@ -34,27 +44,53 @@ class StageLink {
 
   /// Sends what the calling thread's context does.
   void send(const Records& records);
-  /// And waits for what the last record answers; nothing when the stage is lost.
+  /// And waits for what the last record answers; nothing when the stage is lost. All frames before are shown
+  /// then.
   std::optional<CallAnswer> ask(const Records& records);
-  /// The records end with a `frame` event: waits for the picture and shows it in `drawable`, the thread's.
-  void show_frame(const Records& records, std::uint64_t drawable);
+  /// The records end with a `frame` event, whose picture will be shown in `drawable`. Waits while too many
+  /// frames are on their way.
+  void show_frame(const Records& records, const FrontDrawable& drawable);
+  /// Waits until all frames are shown.
+  void wait_for_frames();
 
   /// The same text at an address that stays for ever, as applications expect of glGetString.
   const char* keep_text(const std::string& text);
 
+  /// The program is ending: nothing is waited for, or said, from now on. May be called from a signal handler
+  /// that calls exit(), whatever the thread is in the midst of.
+  void end();
+
  private:
+  struct Shown {
+    Extent2D extent;
+    std::vector<std::uint8_t> pixels;
+  };
+
   void transmit(const Records& records, StageReply reply);
-  compositor::Message receive(compositor::MessageType expected);
   void lose(const std::string& why);
+  void receive_all();
+  void take(compositor::Message message);
+  void take_picture(const compositor::Message& message);
+  template <class Condition>
+  void wait_until(std::unique_lock<std::mutex>& lock, Condition condition);
 
   FrontEnd& front_;
-  std::mutex mutex_;
   std::optional<compositor::Connection> connection_;
   StageVersions versions_;
-  ChunkSender chunks_;
   std::atomic<bool> lost_ = false;
-  std::map<std::uint64_t, std::pair<Extent2D, std::vector<std::uint8_t>>> pictures_;  ///< by drawable
+  std::atomic<bool> ended_ = false;
+
+  std::mutex sending_;  ///< held from a question to its answer
+  ChunkSender chunks_;
   std::set<std::string> texts_;
+
+  std::mutex replies_;
+  std::condition_variable replied_;
+  std::optional<CallAnswer> answer_;
+  std::deque<FrontDrawable> frames_;  ///< on their way, the oldest first
+
+  std::map<std::uint64_t, Shown> pictures_;  ///< by drawable; the receiving thread's
+  std::thread receiver_;
 };
 
 }  // namespace understudy::spu

@@ -1,4 +1,5 @@
-// How the bytes of a fuzzer, or a file of its corpus, are played: once as a trace file, once as bare records.
+// How the bytes of a fuzzer, or a file of its corpus, are played: once as a trace file, once as bare records,
+// and both as what was recorded and as what waits for answers.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +16,14 @@ namespace understudy::spu::testing {
 
 inline void play_records(std::span<const std::uint64_t> words, std::span<const std::uint64_t> payload,
                          const DispatchTable& gl) {
-  Decoder decoder(StreamOrigin::elsewhere, std::make_shared<ObjectNames>());
-  for (std::size_t at = 0; at < words.size();) {
-    const auto record = record_at(words, at, payload);
-    if (!record) return;
-    decoder.decode(*record, gl);
-    at += record->words.size();
+  for (const StreamOrigin origin : {StreamOrigin::elsewhere, StreamOrigin::linked}) {
+    Decoder decoder(origin, std::make_shared<ObjectNames>());
+    for (std::size_t at = 0; at < words.size();) {
+      const auto record = record_at(words, at, payload);
+      if (!record) break;
+      decoder.decode(*record, gl);
+      at += record->words.size();
+    }
   }
 }
 

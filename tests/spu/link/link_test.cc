@@ -32,7 +32,8 @@ class OneWindow final : public FrontEnd {
     return {.version = version, .profile = core ? 1U : 2U, .samples = 0, .double_buffered = true};
   }
   FrontDrawable drawable() override { return {7, extent}; }
-  void show(Extent2D shown_extent, std::span<const std::uint8_t> pixels) override {
+  /// By the link's own thread; read behind a glFinish.
+  void show(const FrontDrawable&, Extent2D shown_extent, std::span<const std::uint8_t> pixels) override {
     ++shown;
     picture.assign(pixels.begin(), pixels.end());
     picture_extent = shown_extent;
@@ -153,6 +154,7 @@ TEST_F(LinkTest, FramesComeHome) {
   gl().ClearColor(0, 0, 1, 1);
   gl().Clear(GL_COLOR_BUFFER_BIT);
   swap();
+  gl().Finish();
   ASSERT_EQ(window_.shown, 1);
   EXPECT_EQ(window_.picture_extent, (Extent2D{64, 48}));
   EXPECT_EQ(window_.at(20, 2), (std::array<int, 3>{0, 0, 255}));
@@ -169,6 +171,7 @@ TEST_F(LinkTest, AWindowMayChangeItsSize) {
   gl().ClearColor(0, 1, 0, 1);
   gl().Clear(GL_COLOR_BUFFER_BIT);
   swap();
+  gl().Finish();
   EXPECT_EQ(window_.picture_extent, (Extent2D{100, 30}));
   EXPECT_EQ(window_.at(99, 29), (std::array<int, 3>{0, 255, 0}));
 }

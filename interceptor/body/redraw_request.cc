@@ -48,12 +48,13 @@ class RedrawRequest::Display {
     return there;
   }
 
-  void expose(std::uintptr_t window) {
+  /// False when the window is gone.
+  bool expose(std::uintptr_t window) {
     xcb_generic_error_t* error = nullptr;
     xcb_get_geometry_reply_t* const geometry =
         geometry_reply_(connection_, geometry_(connection_, xcb_drawable_t(window)), &error);
     std::free(error);
-    if (geometry == nullptr) return;
+    if (geometry == nullptr) return false;
     // As long as any event.
     union {
       xcb_expose_event_t event;
@@ -67,6 +68,7 @@ class RedrawRequest::Display {
     // To whoever looks after the window's exposure: it, or one of its parents.
     send_event_(connection_, 1, xcb_window_t(window), XCB_EVENT_MASK_EXPOSURE, message.bytes);
     flush_(connection_);
+    return true;
   }
 
  private:
@@ -131,8 +133,9 @@ void RedrawRequest::ask_when_due() {
       changed_.wait(lock);
     } else if (std::chrono::steady_clock::now() < due_->at) {
       changed_.wait_until(lock, std::chrono::steady_clock::time_point(due_->at));
+    } else if (!display_->expose(due_->window)) {
+      due_.reset();
     } else {
-      display_->expose(due_->window);
       // Some programs are busy, or throw away what comes while they are: it is asked until it draws.
       due_->at = std::chrono::steady_clock::now() + 16 * pause_before_asking;
       asked_();

@@ -1,13 +1,18 @@
 #include "compositor/exchange/mpi_link.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <malloc.h>
 #include <mpi.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,35 +26,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t max_bytes_per_message = std::size_t(1) << 30;
 constexpr int picture_tag = 1;
 constexpr int note_tag = 2;
+constexpr int collective_tag = 3;
 
 constexpr auto patience = std::chrono::microseconds(100);
-
-// OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
-// ranks that still work: first it only yields, then it sleeps for a sixteenth of the time it has waited so far
-// (so the wait grows by a sixteenth at most), a millisecond at most.
-template <class Done>
-void wait_until(Done done, std::chrono::microseconds only_yield = patience) {
-  constexpr auto longest_sleep = std::chrono::microseconds(1000);
-  const auto start = Clock::now();
-  while (!done()) {
-    const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
-    if (waited < only_yield)
-      sched_yield();
-    else
-      std::this_thread::sleep_for(std::min<std::chrono::microseconds>(waited / 16, longest_sleep));
-  }
-}
-
-void complete(std::vector<MPI_Request>& requests, MPI_Status* statuses = MPI_STATUSES_IGNORE,
-              std::chrono::microseconds only_yield = patience) {
-  wait_until(
-      [&] {
-        int done = 0;
-        MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
-        return done != 0;
-      },
-      only_yield);
-}
 
 template <class Span, class Call>
 void in_pieces(Span bytes, Call call) {
@@ -57,7 +36,78 @@ void in_pieces(Span bytes, Call call) {
     call(bytes.subspan(from, std::min(max_bytes_per_message, bytes.size() - from)));
 }
 
+// Nothing but what one rank of this machine has told the others: no agreement, no bells.
+std::unique_ptr<Bells> bells_of(MPI_Comm machine, int rank, int ranks) {
+  std::unique_ptr<Bells> bells;
+  FileDescriptor memory;
+  std::array<int, 2> where{::getpid(), -1};
+  try {
+    if (rank == 0) {
+      memory = Bells::make_memory(ranks);
+      where[1] = memory.get();
+    }
+  } catch (const std::system_error&) {
+  }
+  MPI_Bcast(where.data(), int(where.size()), MPI_INT, 0, machine);
+  if (rank != 0 && where[1] >= 0)
+    memory =
+        FileDescriptor(::open(fmt::format("/proc/{}/fd/{}", where[0], where[1]).c_str(), O_RDWR | O_CLOEXEC));
+  try {
+    if (memory) bells = std::make_unique<Bells>(memory, ranks, rank);
+  } catch (const std::system_error&) {
+  }
+  int all_have = bells ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &all_have, 1, MPI_INT, MPI_MIN, machine);
+  return all_have != 0 ? std::move(bells) : nullptr;
+}
+
+// OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
+// ranks that still work: first it only yields, then it sleeps until somebody rings, and where nobody does, for
+// a sixteenth of the time it has waited so far (so the wait grows by a sixteenth at most), a millisecond at
+// most.
+struct Wait {
+  std::chrono::microseconds only_yield = patience;
+  bool all_ring = false;  ///< whoever is waited for rings when there is something to be seen
+};
+
+template <class Done>
+void wait_until(Bells* bells, Done done, const Wait& wait) {
+  constexpr auto longest_nap = std::chrono::microseconds(1000);
+  // Should a bell ever be missed, nobody waits for ever.
+  constexpr auto longest_sleep = std::chrono::microseconds(100'000);
+  const auto start = Clock::now();
+  for (;;) {
+    const std::uint32_t rung = bells ? bells->rung() : 0;
+    // OpenMPI looks whether anything is done, and only then at what has come: the second look sees that.
+    if (done() || done()) return;
+    const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
+    const auto nap = std::min<std::chrono::microseconds>(waited / 16, longest_nap);
+    if (waited < wait.only_yield)
+      sched_yield();
+    else if (bells)
+      bells->sleep(rung, wait.all_ring ? longest_sleep : nap);
+    else
+      std::this_thread::sleep_for(nap);
+  }
+}
+
+void complete(Bells* bells, std::vector<MPI_Request>& requests, const Wait& wait,
+              MPI_Status* statuses = MPI_STATUSES_IGNORE) {
+  wait_until(
+      bells,
+      [&] {
+        int done = 0;
+        MPI_Testall(int(requests.size()), requests.data(), &done, statuses);
+        return done != 0;
+      },
+      wait);
+}
+
 }  // namespace
+
+void MpiLink::ring(Rank rank) {
+  if (bells_) bells_->ring(rank);
+}
 
 struct MpiLink::Posted {
   std::vector<std::byte> bytes;
@@ -78,6 +128,8 @@ MpiLink::MpiLink(int& argc, char**& argv) {
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Comm_size(machine, &local_size_);
+  // Ranks of one machine have the same order in the job.
+  if (size_ > 1 && local_size_ == size_) bells_ = bells_of(machine, rank_, size_);
   MPI_Comm_free(&machine);
 }
 
@@ -100,6 +152,7 @@ void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incom
       MPI_Isend(piece.data(), int(piece.size()), MPI_BYTE, message.to, picture_tag, MPI_COMM_WORLD,
                 &requests.emplace_back());
     });
+  for (const Outgoing& message : outgoing) ring(message.to);
   std::vector<MPI_Status> statuses(requests.size());
   // Long messages move in pieces that both sides must ask for: who sleeps in between holds the other up. So
   // ranks stay awake for as long as a slow machine takes to copy that much.
@@ -107,7 +160,8 @@ void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incom
   for (const Outgoing& message : outgoing) bytes += message.bytes.size();
   for (const Incoming& message : incoming) bytes += message.bytes.size();
   constexpr std::size_t bytes_per_microsecond = 500;
-  complete(requests, statuses.data(), patience + std::chrono::microseconds(bytes / bytes_per_microsecond));
+  complete(bells_.get(), requests, {patience + std::chrono::microseconds(bytes / bytes_per_microsecond)},
+           statuses.data());
   for (std::size_t i = 0; i < incoming.size(); ++i) {
     if (incoming[i].received == nullptr) continue;
     *incoming[i].received = incoming[i].bytes.size();
@@ -118,19 +172,61 @@ void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incom
   }
 }
 
+// Where ranks wake each other, a message from one to each of the others is sooner there than what MPI hands on
+// from rank to rank, of which each must wake first.
+void MpiLink::tell_others(Rank from, std::span<std::byte> bytes) {
+  const Wait wait{patience, bytes.size() <= most_note_bytes};
+  in_pieces(bytes, [&](std::span<std::byte> piece) {
+    std::vector<MPI_Request> requests;
+    if (rank_ != from) {
+      MPI_Irecv(piece.data(), int(piece.size()), MPI_BYTE, from, collective_tag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+      return complete(bells_.get(), requests, wait);
+    }
+    const auto ring_all = [&] {
+      for (Rank rank = 0; rank < size_; ++rank)
+        if (rank != rank_) ring(rank);
+    };
+    for (Rank rank = 0; rank < size_; ++rank)
+      if (rank != rank_)
+        MPI_Isend(piece.data(), int(piece.size()), MPI_BYTE, rank, collective_tag, MPI_COMM_WORLD,
+                  &requests.emplace_back());
+    ring_all();
+    complete(bells_.get(), requests, {});
+    ring_all();  // a message may have waited for room until now
+  });
+}
+
 void MpiLink::broadcast(Rank root, std::span<std::byte> bytes) {
+  if (bells_) return tell_others(root, bytes);
   in_pieces(bytes, [&](std::span<std::byte> piece) {
     std::vector<MPI_Request> request(1);
     MPI_Ibcast(piece.data(), int(piece.size()), MPI_BYTE, root, MPI_COMM_WORLD, request.data());
-    complete(request);
+    complete(bells_.get(), request, {});
   });
 }
 
 void MpiLink::gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) {
-  std::vector<MPI_Request> request(1);
-  MPI_Iallgather(mine.data(), int(mine.size()), MPI_BYTE, all.data(), int(mine.size()), MPI_BYTE,
-                 MPI_COMM_WORLD, request.data());
-  complete(request);
+  std::vector<MPI_Request> requests;
+  if (!bells_) {
+    MPI_Iallgather(mine.data(), int(mine.size()), MPI_BYTE, all.data(), int(mine.size()), MPI_BYTE,
+                   MPI_COMM_WORLD, &requests.emplace_back());
+    return complete(bells_.get(), requests, {});
+  }
+  if (rank_ == 0) {
+    std::ranges::copy(mine, all.begin());
+    for (Rank rank = 1; rank < size_; ++rank)
+      MPI_Irecv(all.data() + std::size_t(rank) * mine.size(), int(mine.size()), MPI_BYTE, rank, collective_tag,
+                MPI_COMM_WORLD, &requests.emplace_back());
+    complete(bells_.get(), requests, {patience, mine.size() <= most_note_bytes});
+  } else {
+    MPI_Isend(mine.data(), int(mine.size()), MPI_BYTE, 0, collective_tag, MPI_COMM_WORLD,
+              &requests.emplace_back());
+    ring(0);
+    complete(bells_.get(), requests, {});
+    ring(0);
+  }
+  tell_others(0, all);
 }
 
 void MpiLink::forget_posted() {
@@ -147,6 +243,7 @@ void MpiLink::post(Rank to, std::span<const std::byte> note) {
   posted.bytes.assign(note.begin(), note.end());
   MPI_Isend(posted.bytes.data(), int(posted.bytes.size()), MPI_BYTE, to, note_tag, MPI_COMM_WORLD,
             &posted.request);
+  ring(to);
 }  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): forget_posted() sees to its end
 
 std::optional<Note> MpiLink::take_note() {
@@ -164,7 +261,7 @@ std::optional<Note> MpiLink::take_note() {
 
 Note MpiLink::wait_for_note() {
   std::optional<Note> note;
-  wait_until([&] { return (note = take_note()).has_value(); });
+  wait_until(bells_.get(), [&] { return (note = take_note()).has_value(); }, {});
   return std::move(*note);
 }
 

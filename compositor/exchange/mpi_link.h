@@ -2,7 +2,9 @@
 #pragma once
 
 #include <list>
+#include <memory>
 
+#include "compositor/exchange/bells.h"
 #include "compositor/exchange/link.h"
 
 namespace understudy::compositor {
@@ -30,7 +32,11 @@ class MpiLink : public Link {
 
  private:
   struct Posted;
+  void ring(Rank rank);
+  void tell_others(Rank from, std::span<std::byte> bytes);
   void forget_posted();
+
+  std::unique_ptr<Bells> bells_;  // where all ranks are on one machine
 
   std::list<Posted> posted_;  // not yet known to have left
   Rank rank_ = 0;

@@ -49,12 +49,18 @@ struct Order {
 // What every rank tells every other about its part in a request.
 struct Outcome {
   bool refused = false;
-  std::array<char, limits::max_text_bytes> reason{};  ///< ends with a zero
   volume::Rect footprint;
   volume::FrameCounts counts;
   std::uint32_t notes = 0;  ///< of opaque tiles, to every rank behind
   std::uint64_t note_messages = 0, note_bytes = 0;
   RankLoad load;
+};
+
+using Reason = std::array<char, limits::max_text_bytes>;  // ends with a zero
+
+// This rank's, with what others want to know only of the first that refused.
+struct OwnOutcome : Outcome {
+  Reason reason{};
 
   void refuse(const char* why) {
     refused = true;
@@ -88,10 +94,10 @@ class Node {
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
   void begin_picture(std::uint64_t client);
-  void draw(Outcome& mine);
-  void draw_in_bands(Outcome& mine);
+  void draw(OwnOutcome& mine);
+  void draw_in_bands(OwnOutcome& mine);
   void clear_hidden(std::vector<Outcome>& outcomes);
-  std::vector<Outcome> agree(const Outcome& mine, const std::optional<VolumeKey>& filling);
+  std::vector<Outcome> agree(const OwnOutcome& mine, const std::optional<VolumeKey>& filling);
   std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
 
@@ -106,6 +112,7 @@ class Node {
   std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
   std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
   std::size_t room_ = 0;                  // that size, known to rank 0 too
+  Reason reason_{};                       // of the last refusal
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
   VolumeKey rendered_;
@@ -250,7 +257,7 @@ bool Node::receive_payload(const Order& order, std::span<std::byte> here) {
 std::vector<Outcome> Node::texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here) {
   link_.broadcast(0, std::as_writable_bytes(boxes));
   const VolumeKey key{order.client, order.volume};
-  Outcome mine;
+  OwnOutcome mine;
   try {
     renderer_.check_texels(key, boxes, order.payload_bytes);
   } catch (const std::exception& error) {
@@ -334,8 +341,8 @@ void Node::request(Clients& clients, Clients::Request request) {
                 .boxes = message.boxes.size()};
     link_.broadcast(0, bytes_of(order));
     const std::vector<Outcome> outcomes = texels(order, message.boxes, message.texels);
-    if (const Outcome* refusal = first_refusal(outcomes))
-      return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
+    if (first_refusal(outcomes))
+      return clients.reply(request, MessageType::refused, encode_text(reason_.data()));
     return clients.reply(request, MessageType::done, {});
   }
   const auto start = Clock::now();
@@ -350,8 +357,7 @@ void Node::request(Clients& clients, Clients::Request request) {
                          encode_text("a node has no memory left for this message"));
 
   const std::vector<Outcome> outcomes = perform(order, request.message.payload);
-  if (const Outcome* refusal = first_refusal(outcomes))
-    return clients.reply(request, MessageType::refused, encode_text(refusal->reason.data()));
+  if (first_refusal(outcomes)) return clients.reply(request, MessageType::refused, encode_text(reason_.data()));
   if (is_load(order.type)) {
     std::vector<RankLoad> loads;
     loads.reserve(outcomes.size());
@@ -386,7 +392,7 @@ void Node::request(Clients& clients, Clients::Request request) {
 
 // This rank's part of a request, and what became of the parts of all ranks.
 std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
-  Outcome mine;
+  OwnOutcome mine;
   std::optional<VolumeKey> filling;  // the volume whose texels this order concerns
   if (order.type == MessageType::render) compositing_.prepare();
   try {
@@ -493,7 +499,7 @@ void Node::begin_picture(std::uint64_t client) {
   for (const volume::Rect& footprint : footprints_) whole_ = bounding(whole_, footprint);
 }
 
-void Node::draw(Outcome& mine) {
+void Node::draw(OwnOutcome& mine) {
   if (link_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
     opaque_tiles_.emplace(link_, pictures_, request_, task_.order, footprints_);
   image_ = renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
@@ -505,7 +511,7 @@ void Node::draw(Outcome& mine) {
 }
 
 // Whatever becomes of this rank's part, the others wait for its word on every band until all have given up.
-void Node::draw_in_bands(Outcome& mine) {
+void Node::draw_in_bands(OwnOutcome& mine) {
   const PictureMemories::Memory& memory = memories_.of(task_.client);
   if (!mine.refused && 4 * whole_.pixels() > memory.floats)
     mine.refuse("there is no image memory for this picture");
@@ -545,11 +551,15 @@ void Node::clear_hidden(std::vector<Outcome>& outcomes) {
 }
 
 // What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
-std::vector<Outcome> Node::agree(const Outcome& outcome, const std::optional<VolumeKey>& filling) {
+std::vector<Outcome> Node::agree(const OwnOutcome& outcome, const std::optional<VolumeKey>& filling) {
   Outcome mine = outcome;
   std::vector<Outcome> outcomes(std::size_t(link_.size()));
   link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
-  if (filling && first_refusal(outcomes)) {
+  const Outcome* const refusal = first_refusal(outcomes);
+  if (refusal == nullptr) return outcomes;
+  reason_ = outcome.reason;
+  link_.broadcast(Rank(refusal - outcomes.data()), bytes_of(reason_));
+  if (filling) {
     loads_.forget(*filling);
     if (rebalancer_) rebalancer_->forget(*filling);
     renderer_.forget(*filling);

@@ -1,10 +1,16 @@
 // The real thing: mpirun, understudy-node processes, and what happens when one of them is killed.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/bench/frame_parts.h"
@@ -137,6 +143,37 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
         EXPECT_EQ(rendered.counts.messages, counted.messages);
       }
     }
+}
+
+// So often its threads have given a processor up.
+long long waits_of(pid_t process) {
+  long long waits = 0;
+  for (const auto& thread : std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process))) {
+    std::ifstream status(thread.path() / "status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("voluntary_ctxt_switches:")) waits += std::stoll(line.substr(line.find(':') + 1));
+  }
+  return waits;
+}
+
+TEST(MpiNode, AGroupWithoutWorkLeavesTheProcessorsToOthers) {
+  const ScratchFolder folder;
+  const std::string path = folder / "control";
+  Launcher launcher(path);
+  MpiGroup group(4, path);
+  const auto linked = linked_service(path, 60'000);
+  const Texture texture = some_texture();
+  upload(*linked, texture);
+  picture_of(*linked, some_request(texture));
+  std::map<pid_t, long long> before;
+  for (const pid_t rank : group.ranks()) before[rank] = waits_of(rank);
+  ASSERT_EQ(before.size(), 4U);
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  for (const auto& [rank, waits] : before) {
+    const long long more = waits_of(rank) - waits;
+    std::printf("rank's process %d woke %lld times in two seconds\n", rank, more);
+    EXPECT_LE(more, 200);  // a rank that polls once a millisecond: 2000
+  }
 }
 
 TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {

@@ -22,7 +22,7 @@ struct Exchanged {
 /// footprint. A single image is not composited, it is the picture. `memory`, where this rank reaches it, is
 /// where the picture goes on rank 0 and where pieces marked as written go on the others: rows of
 /// Schedule::whole, bottom up; all of it is there when rank 0 returns. With Layout::rgba32f the picture is that
-/// of blending all images front to back, to within 2e-6 for any schedule, and bit for bit under
+/// of blending all images front to back, to within 1e-6 for any schedule, and bit for bit under
 /// Algorithm::serial and Algorithm::direct_send. Throws LinkLost.
 Exchanged exchange(volume::Image mine, const Schedule& schedule, volume::Operator op, Layout layout, Link& link,
                    std::span<float> memory = {});

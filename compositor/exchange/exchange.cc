@@ -64,15 +64,20 @@ class Player {
     for (const Piece* piece : given) {
       if (piece->written) {
         write_part(piece->rect);
-        std::ranges::fill(messages.emplace_back(head_bytes).room(), std::byte(0));
+        const std::span<std::byte> shared = link_.shared_room(head_bytes);
+        PixelMessage& written =
+            messages.emplace_back(shared.empty() ? PixelMessage(head_bytes) : PixelMessage(shared));
+        std::ranges::fill(written.room(), std::byte(0));
       } else {
-        messages.push_back(
-            encode_pixels(image_, piece->rect, op_, layout_, schedule_.packed, schedule_.clear_pixels_travel));
+        messages.push_back(encode_pixels(image_, piece->rect, op_, layout_, schedule_.packed,
+                                         schedule_.clear_pixels_travel,
+                                         link_.shared_room(most_message_bytes(piece->rect, layout_))));
       }
       bytes_to_tell_ += messages.back().size();
     }
     if (!messages.empty()) messages.front().tell(std::exchange(bytes_to_tell_, 0));
-    for (std::size_t i = 0; i < given.size(); ++i) outgoing.push_back({given[i]->to, messages[i].bytes()});
+    for (std::size_t i = 0; i < given.size(); ++i)
+      outgoing.push_back({given[i]->to, messages[i].bytes(), true});
 
     std::vector<PixelMessage> arrived;
     std::vector<Incoming> incoming;
@@ -80,7 +85,7 @@ class Player {
     for (const Piece* piece : arriving) {
       PixelMessage& room = arrived.emplace_back(piece->written ? PixelMessage(head_bytes)
                                                                : room_for_pixels(piece->rect, layout_));
-      incoming.push_back({piece->from, room.room(), &room.received()});
+      incoming.push_back({piece->from, room.room(), &room.received(), &room.seen()});
     }
     link_.transfer(outgoing, incoming);
 

@@ -24,6 +24,8 @@ class LinkLost : public std::runtime_error {
 struct Outgoing {
   Rank to = 0;
   std::span<const std::byte> bytes;
+  /// The receiver says so too (Incoming::seen): bytes that lie in a shared_room() may be read there.
+  bool may_be_seen = false;
 };
 
 struct Incoming {
@@ -31,6 +33,8 @@ struct Incoming {
   std::span<std::byte> bytes;  ///< exactly as many as the sender sends
   /// Set: the sender may send less, and this is how much it was. Such messages have at most 1 GiB.
   std::size_t* received = nullptr;
+  /// Set, with `received`: the message may stay where its sender has made it, and this is where; else `bytes`.
+  std::span<const std::byte>* seen = nullptr;
 };
 
 /// A message that nobody waits for.
@@ -53,6 +57,10 @@ class Link {
   /// Sends and receives all of these at once, in any order; returns when all have arrived. At most one message
   /// from one rank to another per transfer. Ranks that neither send nor receive need not call it.
   virtual void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) = 0;
+
+  /// Memory for a message that its receiver may read in place. It stays as it is until all ranks have met in
+  /// gather_to_all(). Empty where ranks share no memory, or not so much.
+  virtual std::span<std::byte> shared_room(std::size_t /*bytes*/) { return {}; }
 
   /// Collective: everybody leaves with the bytes of `root`. The waiting ranks sleep, so that a group without
   /// work leaves the processor to the viewer.

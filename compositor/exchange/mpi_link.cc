@@ -27,6 +27,7 @@ constexpr std::size_t max_bytes_per_message = std::size_t(1) << 30;
 constexpr int picture_tag = 1;
 constexpr int note_tag = 2;
 constexpr int collective_tag = 3;
+constexpr int place_tag = 4;
 
 constexpr auto patience = std::chrono::microseconds(100);
 
@@ -36,29 +37,45 @@ void in_pieces(Span bytes, Call call) {
     call(bytes.subspan(from, std::min(max_bytes_per_message, bytes.size() - from)));
 }
 
-// Nothing but what one rank of this machine has told the others: no agreement, no bells.
-std::unique_ptr<Bells> bells_of(MPI_Comm machine, int rank, int ranks) {
-  std::unique_ptr<Bells> bells;
-  FileDescriptor memory;
-  std::array<int, 2> where{::getpid(), -1};
-  try {
-    if (rank == 0) {
-      memory = Bells::make_memory(ranks);
-      where[1] = memory.get();
-    }
-  } catch (const std::system_error&) {
+// What every rank of this machine has made for the others, by rank; nothing, on all of them, when one has none
+// or cannot have another's.
+std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescriptor made) {
+  int ranks = 0;
+  MPI_Comm_size(machine, &ranks);
+  using Where = std::array<int, 2>;
+  const Where here{::getpid(), made.get()};
+  std::vector<Where> all(static_cast<std::size_t>(ranks));
+  MPI_Allgather(here.data(), 2, MPI_INT, all.data(), 2, MPI_INT, machine);
+  std::vector<FileDescriptor> opened;
+  for (Rank rank = 0; rank < ranks; ++rank) {
+    const auto [process, number] = all[std::size_t(rank)];
+    if (rank == mine)
+      opened.push_back(std::move(made));
+    else if (number >= 0)
+      opened.emplace_back(::open(fmt::format("/proc/{}/fd/{}", process, number).c_str(), O_RDWR | O_CLOEXEC));
   }
-  MPI_Bcast(where.data(), int(where.size()), MPI_INT, 0, machine);
-  if (rank != 0 && where[1] >= 0)
-    memory =
-        FileDescriptor(::open(fmt::format("/proc/{}/fd/{}", where[0], where[1]).c_str(), O_RDWR | O_CLOEXEC));
+  int complete = std::ranges::count_if(opened, &FileDescriptor::operator bool) == ranks ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &complete, 1, MPI_INT, MPI_MIN, machine);
+  if (complete == 0) opened.clear();
+  return opened;
+}
+
+// Of what the system may refuse.
+template <class Make>
+auto made_or_nothing(Make make) -> decltype(make()) {
   try {
-    if (memory) bells = std::make_unique<Bells>(memory, ranks, rank);
+    return make();
   } catch (const std::system_error&) {
+    return {};
   }
-  int all_have = bells ? 1 : 0;
+}
+
+// What this rank has made, if all have made theirs.
+template <class Made>
+Made if_all_have(MPI_Comm machine, Made made) {
+  int all_have = made ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &all_have, 1, MPI_INT, MPI_MIN, machine);
-  return all_have != 0 ? std::move(bells) : nullptr;
+  return all_have != 0 ? std::move(made) : Made();
 }
 
 // OpenMPI polls while it waits. A rank that waits for long must leave the processor to the viewer and to the
@@ -125,11 +142,26 @@ MpiLink::MpiLink(int& argc, char**& argv) {
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  meet_machine();
+}
+
+void MpiLink::meet_machine() {
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Comm_size(machine, &local_size_);
-  // Ranks of one machine have the same order in the job.
-  if (size_ > 1 && local_size_ == size_) bells_ = bells_of(machine, rank_, size_);
+  if (size_ > 1 && local_size_ == size_) {
+    // Ranks have the same order there as in the job.
+    const std::vector<FileDescriptor> bells =
+        shared_by_all(machine, rank_, made_or_nothing([&] { return Bells::make_memory(size_); }));
+    if (!bells.empty())
+      bells_ = if_all_have(
+          machine, made_or_nothing([&] { return std::make_unique<Bells>(bells.front(), size_, rank_); }));
+    const std::vector<FileDescriptor> rooms =
+        shared_by_all(machine, rank_, made_or_nothing(SharedRooms::make_memory));
+    if (!rooms.empty())
+      rooms_ =
+          if_all_have(machine, made_or_nothing([&] { return std::make_unique<SharedRooms>(rooms, rank_); }));
+  }
   MPI_Comm_free(&machine);
 }
 
@@ -137,7 +169,48 @@ MpiLink::~MpiLink() {
   MPI_Finalize();
 }
 
+std::span<std::byte> MpiLink::shared_room(std::size_t bytes) {
+  return rooms_ ? rooms_->room(bytes) : std::span<std::byte>();
+}
+
 void MpiLink::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
+  if (!rooms_) return move(outgoing, incoming);
+  // Who may leave a message where it is says where that is, or that the message comes after all.
+  constexpr SharedRooms::Place nowhere{~std::uint64_t(0), 0};
+  std::vector<MPI_Request> requests;
+  std::vector<SharedRooms::Place> heard(incoming.size()), told(outgoing.size());
+  for (std::size_t i = 0; i < incoming.size(); ++i)
+    if (incoming[i].seen != nullptr)
+      MPI_Irecv(&heard[i], sizeof heard[i], MPI_BYTE, incoming[i].from, place_tag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+  std::vector<Outgoing> moving;
+  for (std::size_t i = 0; i < outgoing.size(); ++i) {
+    const Outgoing& message = outgoing[i];
+    told[i] = nowhere;
+    if (message.may_be_seen) {
+      told[i] = rooms_->place_of(message.bytes).value_or(nowhere);
+      MPI_Isend(&told[i], sizeof told[i], MPI_BYTE, message.to, place_tag, MPI_COMM_WORLD,
+                &requests.emplace_back());
+      ring(message.to);
+    }
+    if (told[i].first == nowhere.first) moving.push_back(message);
+  }
+  complete(bells_.get(), requests, {patience, true});
+  for (const Outgoing& message : outgoing)
+    if (message.may_be_seen) ring(message.to);
+  std::vector<Incoming> coming;
+  for (std::size_t i = 0; i < incoming.size(); ++i) {
+    if (incoming[i].seen == nullptr || heard[i].first == nowhere.first) {
+      coming.push_back(incoming[i]);
+      continue;
+    }
+    *incoming[i].seen = rooms_->at(incoming[i].from, heard[i]);
+    *incoming[i].received = incoming[i].seen->size();
+  }
+  if (!moving.empty() || !coming.empty()) move(moving, coming);
+}
+
+void MpiLink::move(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {
   std::vector<MPI_Request> requests;
   std::vector<std::size_t> first;  // request of each incoming message
   for (const Incoming& message : incoming) {
@@ -211,7 +284,9 @@ void MpiLink::gather_to_all(std::span<const std::byte> mine, std::span<std::byte
   if (!bells_) {
     MPI_Iallgather(mine.data(), int(mine.size()), MPI_BYTE, all.data(), int(mine.size()), MPI_BYTE,
                    MPI_COMM_WORLD, &requests.emplace_back());
-    return complete(bells_.get(), requests, {});
+    complete(bells_.get(), requests, {});
+    if (rooms_) rooms_->clear();
+    return;
   }
   if (rank_ == 0) {
     std::ranges::copy(mine, all.begin());
@@ -227,6 +302,8 @@ void MpiLink::gather_to_all(std::span<const std::byte> mine, std::span<std::byte
     ring(0);
   }
   tell_others(0, all);
+  // All ranks have come here, so none looks at what was sent before.
+  if (rooms_) rooms_->clear();
 }
 
 void MpiLink::forget_posted() {

@@ -95,12 +95,6 @@ struct PixelRun {
   std::uint32_t touched = 0;
 };
 
-std::size_t most_bytes(const Rect& rect, Layout layout) {
-  if (!of_unknown_length(rect)) return bytes_of_all_pixels(rect, layout);
-  // One pixel in two touched is the most runs that there can be.
-  return head_bytes + most_packed_bytes(rect.pixels()) + sizeof(PixelRun) * (rect.pixels() / 2 + 1);
-}
-
 LinkLost malformed() {
   return LinkLost("a message with pixels does not fit its rectangle");
 }
@@ -148,26 +142,27 @@ class TouchedSpans {
 }  // namespace
 
 void PixelMessage::tell(std::uint64_t count) {
-  assert(size_ >= head_bytes);
-  std::memcpy(bytes_.get() + offsetof(Head, told), &count, sizeof count);
+  assert(size() >= head_bytes && room_.data() == bytes_.data());
+  std::memcpy(room_.data() + offsetof(Head, told), &count, sizeof count);
 }
 
 std::uint64_t PixelMessage::told() const {
   if (received_ < head_bytes) throw LinkLost("a message with pixels was cut short");
   std::uint64_t count = 0;
-  std::memcpy(&count, bytes_.get() + offsetof(Head, told), sizeof count);
+  std::memcpy(&count, bytes_.data() + offsetof(Head, told), sizeof count);
   return count;
 }
 
 PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, Layout layout, bool packed,
-                           bool clear_too) {
+                           bool clear_too, std::span<std::byte> room) {
   const bool of_known_length = !of_unknown_length(rect);
   if (of_known_length) layout = Layout::rgba32f;
   const std::size_t pixel = bytes_per_pixel(layout);
   const bool all = !may_travel_in_runs(rect, op, layout, clear_too);
   packed = packed && !all;
   const auto width = std::size_t(rect.width);
-  PixelMessage message(most_bytes(rect, layout));
+  const std::size_t most = most_message_bytes(rect, layout);
+  PixelMessage message = room.size() >= most ? PixelMessage(room) : PixelMessage(most);
   std::byte* to = message.room().data() + head_bytes;
   LastPixel last{};
   std::vector<PixelRun> runs;
@@ -204,8 +199,14 @@ PixelMessage encode_pixels(const Image& image, const Rect& rect, Operator op, La
   return message;
 }
 
+std::size_t most_message_bytes(const Rect& rect, Layout layout) {
+  if (!of_unknown_length(rect)) return bytes_of_all_pixels(rect, layout);
+  // One pixel in two touched is the most runs that there can be.
+  return head_bytes + most_packed_bytes(rect.pixels()) + sizeof(PixelRun) * (rect.pixels() / 2 + 1);
+}
+
 PixelMessage room_for_pixels(const Rect& rect, Layout layout) {
-  return PixelMessage(most_bytes(rect, layout));
+  return PixelMessage(most_message_bytes(rect, layout));
 }
 
 PixelReader::PixelReader(const PixelMessage& message, const Rect& rect, Layout layout)

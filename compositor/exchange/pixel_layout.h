@@ -55,13 +55,17 @@ class PixelMessage {
  public:
   PixelMessage() = default;
   explicit PixelMessage(std::size_t room)
-      : bytes_(std::make_unique_for_overwrite<std::byte[]>(room)), size_(room) {}
+      : own_(std::make_unique_for_overwrite<std::byte[]>(room)), room_(own_.get(), room), bytes_(room_) {}
+  /// In a room of somebody else's, who keeps it.
+  explicit PixelMessage(std::span<std::byte> room) : room_(room), bytes_(room) {}
 
-  std::size_t size() const { return size_; }
-  std::span<const std::byte> bytes() const { return {bytes_.get(), size_}; }
-  std::span<std::byte> room() { return {bytes_.get(), size_}; }
+  std::size_t size() const { return bytes_.size(); }
+  std::span<const std::byte> bytes() const { return bytes_; }
+  std::span<std::byte> room() { return room_; }
   /// Less than there was room for is the message.
-  void shorten(std::size_t size) { size_ = size; }
+  void shorten(std::size_t size) { bytes_ = bytes_.first(size); }
+  /// Where the message is if it has stayed elsewhere.
+  std::span<const std::byte>& seen() { return bytes_; }
   /// How much of the room was filled.
   std::size_t& received() { return received_; }
   std::size_t received() const { return received_; }
@@ -71,17 +75,20 @@ class PixelMessage {
   std::uint64_t told() const;
 
  private:
-  std::unique_ptr<std::byte[]> bytes_;
-  std::size_t size_ = 0;
+  std::unique_ptr<std::byte[]> own_;
+  std::span<std::byte> room_;
+  std::span<const std::byte> bytes_;
   std::size_t received_ = 0;
 };
 
 /// The pixels of `image` in `rect`, which lies inside it. Unless `clear_too` is asked for, only those that a
-/// sample has reached (volume::neutral_value) travel, in runs, and packed if that is asked for.
+/// sample has reached (volume::neutral_value) travel, in runs, and packed if that is asked for. `room` is where
+/// the message is made if it is long enough for any.
 PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect, volume::Operator op,
-                           Layout layout, bool packed, bool clear_too = false);
+                           Layout layout, bool packed, bool clear_too = false, std::span<std::byte> room = {});
 
-/// Room for the longest message about this rectangle.
+/// The longest message about this rectangle, and room for it.
+std::size_t most_message_bytes(const volume::Rect& rect, Layout layout);
 PixelMessage room_for_pixels(const volume::Rect& rect, Layout layout);
 
 /// Goes through the pixels of a message that has come in such a room, row by row.

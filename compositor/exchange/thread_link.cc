@@ -1,11 +1,14 @@
 #include "compositor/exchange/thread_link.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace understudy::compositor {
@@ -17,27 +20,50 @@ namespace {
 class Group {
  public:
   explicit Group(int ranks)
-      : ranks_(ranks), queues_(std::size_t(ranks) * std::size_t(ranks)), notes_(std::size_t(ranks)) {}
+      : ranks_(ranks),
+        queues_(std::size_t(ranks) * std::size_t(ranks)),
+        notes_(std::size_t(ranks)),
+        rooms_(std::size_t(ranks)) {}
 
   int ranks() const { return ranks_; }
 
-  void post(Rank from, Rank to, std::span<const std::byte> bytes) {
-    const std::lock_guard lock(mutex_);
-    queue(from, to).emplace_back(bytes.begin(), bytes.end());
-    arrived_.notify_all();
+  void post(Rank from, Rank to, std::span<const std::byte> bytes) { post(from, to, QueuedMessage(bytes)); }
+  void leave(Rank from, Rank to, std::span<const std::byte> bytes) {
+    QueuedMessage message;
+    message.left = bytes;
+    post(from, to, std::move(message));
   }
 
-  std::size_t take(Rank from, Rank to, std::span<std::byte> bytes, bool may_be_less = false) {
+  /// `seen` is set if the message was left where it is.
+  std::size_t take(Rank from, Rank to, std::span<std::byte> bytes, bool may_be_less = false,
+                   std::span<const std::byte>* seen = nullptr) {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !broken_.empty() || !queue(from, to).empty(); });
     if (queue(from, to).empty()) throw LinkLost(broken_);
-    const std::vector<std::byte> message = std::move(queue(from, to).front());
+    const QueuedMessage queued = std::move(queue(from, to).front());
     queue(from, to).pop_front();
+    if (!queued.left.empty()) {
+      if (seen == nullptr) throw std::logic_error("a rank left a message where nobody looks");
+      *seen = queued.left;
+      return queued.left.size();
+    }
+    const std::vector<std::byte>& message = queued.bytes;
     if (message.size() > bytes.size() || (message.size() < bytes.size() && !may_be_less))
       throw std::logic_error("a rank sent another length than was expected");
     if (!message.empty()) std::memcpy(bytes.data(), message.data(), message.size());
     return message.size();
   }
+
+  std::span<std::byte> room(Rank rank, std::size_t bytes) {
+    return {rooms_[std::size_t(rank)].emplace_back(std::make_unique_for_overwrite<std::byte[]>(bytes)).get(),
+            bytes};
+  }
+  bool has_room(Rank rank, std::span<const std::byte> bytes) const {
+    return std::ranges::any_of(rooms_[std::size_t(rank)],
+                               [&](const auto& room) { return room.get() == bytes.data(); });
+  }
+  /// So that the address sanitizer sees who looks into one of them later.
+  void clear_rooms(Rank rank) { rooms_[std::size_t(rank)].clear(); }
 
   void leave_note(Rank to, Note note) {
     const std::lock_guard lock(mutex_);
@@ -64,7 +90,20 @@ class Group {
   }
 
  private:
-  std::deque<std::vector<std::byte>>& queue(Rank from, Rank to) {
+  struct QueuedMessage {
+    QueuedMessage() = default;
+    explicit QueuedMessage(std::span<const std::byte> copied) : bytes(copied.begin(), copied.end()) {}
+    std::vector<std::byte> bytes;
+    std::span<const std::byte> left;  ///< not empty: where the message is
+  };
+
+  void post(Rank from, Rank to, QueuedMessage message) {
+    const std::lock_guard lock(mutex_);
+    queue(from, to).push_back(std::move(message));
+    arrived_.notify_all();
+  }
+
+  std::deque<QueuedMessage>& queue(Rank from, Rank to) {
     return queues_[std::size_t(from) * std::size_t(ranks_) + std::size_t(to)];
   }
 
@@ -79,24 +118,37 @@ class Group {
   int ranks_;
   std::mutex mutex_;
   std::condition_variable arrived_;
-  std::vector<std::deque<std::vector<std::byte>>> queues_;
-  std::vector<std::deque<Note>> notes_;  // by receiver
+  std::vector<std::deque<QueuedMessage>> queues_;
+  std::vector<std::deque<Note>> notes_;                           // by receiver
+  std::vector<std::vector<std::unique_ptr<std::byte[]>>> rooms_;  // by owner, who alone touches the list
   std::string broken_;
 };
 
 class ThreadLink : public Link {
  public:
-  ThreadLink(Group& group, Rank rank) : group_(group), rank_(rank) {}
+  ThreadLink(Group& group, Rank rank, bool share_memory)
+      : group_(group), rank_(rank), share_memory_(share_memory) {}
 
   Rank rank() const override { return rank_; }
   int size() const override { return group_.ranks(); }
 
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
-    for (const Outgoing& message : outgoing) group_.post(rank_, message.to, message.bytes);
+    for (const Outgoing& message : outgoing) {
+      if (message.may_be_seen && group_.has_room(rank_, message.bytes))
+        group_.leave(rank_, message.to, message.bytes);
+      else
+        group_.post(rank_, message.to, message.bytes);
+    }
     for (const Incoming& message : incoming) {
-      const std::size_t received = group_.take(message.from, rank_, message.bytes, message.received != nullptr);
+      const std::size_t received =
+          group_.take(message.from, rank_, message.bytes, message.received != nullptr, message.seen);
       if (message.received != nullptr) *message.received = received;
     }
+  }
+
+  std::span<std::byte> shared_room(std::size_t bytes) override {
+    if (!share_memory_) return {};
+    return group_.room(rank_, bytes);
   }
 
   void broadcast(Rank root, std::span<std::byte> bytes) override {
@@ -112,6 +164,7 @@ class ThreadLink : public Link {
     for (Rank other = 0; other < size(); ++other) group_.post(rank_, other, mine);
     for (Rank other = 0; other < size(); ++other)
       group_.take(other, rank_, all.subspan(std::size_t(other) * mine.size(), mine.size()));
+    group_.clear_rooms(rank_);
   }
 
   void post(Rank to, std::span<const std::byte> note) override {
@@ -128,11 +181,12 @@ class ThreadLink : public Link {
  private:
   Group& group_;
   Rank rank_;
+  bool share_memory_;
 };
 
 }  // namespace
 
-void run_ranks(int ranks, const std::function<void(Link&)>& body) {
+void run_ranks(int ranks, const std::function<void(Link&)>& body, bool share_memory) {
   Group group(ranks);
   std::mutex mutex;
   std::exception_ptr first;
@@ -141,7 +195,7 @@ void run_ranks(int ranks, const std::function<void(Link&)>& body) {
     threads.reserve(std::size_t(ranks));
     for (Rank rank = 0; rank < ranks; ++rank) {
       threads.emplace_back([&, rank] {
-        ThreadLink link(group, rank);
+        ThreadLink link(group, rank, share_memory);
         try {
           body(link);
         } catch (...) {

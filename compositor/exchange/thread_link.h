@@ -8,7 +8,8 @@
 namespace understudy::compositor {
 
 /// Runs `body` once per rank, each on a thread of its own, and returns when all have ended. Rethrows the first
-/// exception of any rank; the other ranks then get LinkLost instead of waiting for ever.
-void run_ranks(int ranks, const std::function<void(Link&)>& body);
+/// exception of any rank; the other ranks then get LinkLost instead of waiting for ever. With `share_memory`
+/// they see each other's rooms, as ranks of one machine do.
+void run_ranks(int ranks, const std::function<void(Link&)>& body, bool share_memory = true);
 
 }  // namespace understudy::compositor

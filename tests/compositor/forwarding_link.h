@@ -13,6 +13,7 @@ class ForwardingLink : public Link {
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     link_.transfer(outgoing, incoming);
   }
+  std::span<std::byte> shared_room(std::size_t bytes) override { return link_.shared_room(bytes); }
   void broadcast(Rank root, std::span<std::byte> bytes) override { link_.broadcast(root, bytes); }
   void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override {
     link_.gather_to_all(mine, all);

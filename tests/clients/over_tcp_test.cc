@@ -34,6 +34,7 @@ class OverTcp : public Stage {
 
   /// `understudy serve` with two nodes at a port of its own.
   void serve(const Words& options = {}) {
+    fs::create_directory(file("server"));
     server_.emplace(on_stage(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket", socket(),
                                    "--listen", ":0", "--secret-file", secret()} +
                              options),

@@ -95,8 +95,8 @@ constexpr std::array rows{
     Row{{"-n,--nodes", "UNDERSTUDY_NODES", "N", "0",
          "render on N MPI ranks of this machine; 0: inside the viewer, on threads"},
         set_number<&Options::nodes, 0, max_nodes>},
-    Row{{"--connect", "UNDERSTUDY_CONNECT", "PATH", "",
-         "render on the node group behind this socket of `understudy serve`"},
+    Row{{"--connect", "UNDERSTUDY_CONNECT", "WHERE", "",
+         "render on the node group of `understudy serve`: its socket, or HOST:PORT on another machine"},
         set_text<&Options::connect>},
     Row{{"--exchange", "UNDERSTUDY_EXCHANGE", "NAME", "auto",
          "how the nodes' partial pictures become one: serial, tree, direct-send, binary-swap, radix-k, or "

@@ -13,10 +13,11 @@ namespace understudy::spu {
 constexpr int max_nodes = 256;  ///< ranks of one node group
 
 struct Options {
-  int nodes = 0;        ///< 0: embedded
-  std::string connect;  ///< Unix socket of a running `understudy serve`; empty: none
-  std::string report;   ///< JSON file; empty: none
-  int verify = 0;       ///< every K frames; 0: the first frame of every volume only; -1: never
+  int nodes = 0;  ///< 0: embedded
+  std::string
+      connect;         ///< Unix socket of a running `understudy serve`, or for launchers host:port; empty: none
+  std::string report;  ///< JSON file; empty: none
+  int verify = 0;      ///< every K frames; 0: the first frame of every volume only; -1: never
   bool explain = false;
   Omissions never_left_out;
   bool disable = false;

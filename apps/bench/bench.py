@@ -24,11 +24,12 @@ import frame  # noqa: E402
 import paraview_frames  # noqa: E402
 import ranks  # noqa: E402
 import raycast  # noqa: E402
+import remote  # noqa: E402
 import scaling  # noqa: E402
 
 BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows,
               "ranks": ranks.rows, "balance": balance.rows, "blend": blend.rows, "exchange": exchange.rows,
-              "paraview": paraview_frames.rows}
+              "paraview": paraview_frames.rows, "remote": remote.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 
@@ -63,6 +64,8 @@ def text_of(row):
         text += f"   {row['ratio']:7.3f} x {row['ratio_to']}"
     if "difference" in row:
         text += f"   {row['difference']:+.1f} {row['unit']}"
+    if "bytes_up" in row:
+        text += f"   {row['bytes_up']:9.0f} bytes up {row['bytes_down']:9.0f} down {row['round_trips']:5.1f} round trips"
     if "rms" in row:
         text += f"   RMS {row['rms']:.2e}"
     if "rms_arithmetic" in row:

@@ -6,7 +6,9 @@
 
 #include "apps/understudy/compare.h"
 #include "apps/understudy/doctor.h"
+#include "apps/understudy/gate.h"
 #include "apps/understudy/play.h"
+#include "apps/understudy/porter.h"
 #include "apps/understudy/print.h"
 #include "apps/understudy/render.h"
 #include "apps/understudy/replay.h"
@@ -33,6 +35,8 @@ int main(int argc, char** argv) try {
   launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
   launcher::add_stage(app, chosen);
+  launcher::add_gate(app, chosen);
+  launcher::add_porter(app, chosen);
   launcher::add_render(app, chosen);
   launcher::add_study(app, chosen);
   launcher::add_compare(app, chosen);

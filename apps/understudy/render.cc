@@ -23,10 +23,12 @@
 #include "apps/understudy/number_list.h"
 #include "apps/understudy/own_node_group.h"
 #include "apps/understudy/picture.h"
+#include "apps/understudy/porter.h"
 #include "apps/understudy/render_report.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/shading_options.h"
 #include "compositor/service/loading_service.h"
+#include "compositor/tcp/address.h"
 #include "spu/options.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/volume_file.h"
@@ -50,7 +52,8 @@ struct RenderArguments {
   std::string volume;
   std::optional<int> nodes;
   std::filesystem::path hostfile;
-  std::string connect;  ///< a socket of nodes that run already
+  std::string connect;  ///< nodes that run already
+  LinkPlan link;        ///< if they are on another machine
   NodeChoices choices;
   ShadingArguments shading;
   std::string table = "grey";
@@ -268,7 +271,9 @@ int render(const RenderArguments& arguments) {
     figures = render_with(*service, scene, arguments);
   };
   try {
-    if (!arguments.connect.empty())
+    if (compositor::tcp_address_of(arguments.connect))
+      with_link(arguments.link, arguments.connect, arguments.choices.pixels, with_linked);
+    else if (!arguments.connect.empty())
       with_linked(arguments.connect);
     else if (placement.ranks > 0)
       backends = with_own_nodes({placement, arguments.choices}, with_linked);
@@ -303,10 +308,12 @@ void add_render(CLI::App& app, std::function<int()>& chosen) {
           ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(*render_command, arguments->hostfile);
   render_command
-      ->add_option("--connect", arguments->connect, "the socket of nodes that `understudy serve` keeps")
-      ->type_name("SOCKET")
+      ->add_option("--connect", arguments->connect,
+                   "nodes that `understudy serve` keeps: a socket, or HOST:PORT")
+      ->type_name("WHERE")
       ->excludes(nodes)
       ->excludes(render_command->get_option("--hostfile"));
+  add_link_options(*render_command, arguments->link);
   add_backend_option(*render_command, arguments->choices.backend);
   add_gpu_memory_option(*render_command, arguments->choices.gpu_memory);
   add_exchange_options(*render_command, arguments->choices);

@@ -66,6 +66,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
+  add_link_options(*subcommand, arguments->link);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

@@ -22,12 +22,16 @@
 #include "apps/understudy/environment.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/installation.h"
+#include "apps/understudy/link_figures.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
+#include "apps/understudy/porter.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
 #include "apps/understudy/stage.h"
 #include "apps/understudy/trace_option.h"
+#include "compositor/exchange/settings.h"
+#include "compositor/tcp/address.h"
 #include "spu/assemble.h"
 #include "spu/options.h"
 #include "spu/report/keys.h"
@@ -98,6 +102,43 @@ std::unique_ptr<ChildProcess> put_on_stage(const Installation& installation, Env
   return stage;
 }
 
+/// Of a viewer whose calls are made on another machine.
+void put_on_stage_elsewhere(Environment& viewer, const std::filesystem::path& socket) {
+  viewer["UNDERSTUDY_REMOTE"] = socket;
+  viewer["UNDERSTUDY_CHAIN"] = remote_chain;
+  viewer.erase("UNDERSTUDY_CONNECT");
+}
+
+/// How to get at what --connect names, if that is on another machine. Throws std::runtime_error for an address
+/// that is none, and for one without a secret.
+std::optional<LinkPlan> link_of(const RunArguments& arguments, const spu::Options& options) {
+  if (options.connect.empty() || options.disable) return {};
+  const auto address = compositor::tcp_address_of(options.connect);
+  if (!address) return {};
+  if (arguments.link.secret_file.empty())
+    throw std::runtime_error(
+        fmt::format("--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, "
+                    "copied to this machine",
+                    options.connect));
+  LinkPlan plan = arguments.link;
+  plan.address = address->text();
+  plan.wishes.to = arguments.remote ? compositor::LinkedTo::stage : compositor::LinkedTo::nodes;
+  compositor::ExchangeSettings settings;
+  compositor::set_layout(settings, options.pixels);
+  plan.wishes.pixels = settings.layout;
+  return plan;
+}
+
+/// Nodes elsewhere may come, and a wrong secret may be put right, while the viewer draws by itself.
+void tell_whether_link_is_there(const LinkPlan& link) {
+  try {
+    try_link(link);
+  } catch (const std::runtime_error& error) {
+    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until then", link.address,
+                    error.what()));
+  }
+}
+
 /// -n, if it was given: 0 of them is a wish too.
 std::optional<int> wished_nodes(const RunArguments& arguments, const spu::Options& options) {
   constexpr const char* variable = "UNDERSTUDY_NODES";
@@ -151,14 +192,17 @@ Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
   }
 }
 
-/// The report, with who cast the rays.
-std::string with_backends(const std::string& report, const std::vector<std::string>& backends) {
+/// The report, with what only the launcher knows: who cast the rays, and what went over TCP.
+std::string with_the_launchers(const std::string& report, const std::vector<std::string>& backends,
+                               const nlohmann::ordered_json& link) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
   json[spu::report_key::backends] = backends;
+  json[spu::report_key::link] = link;
   return json.dump(1, ' ') + "\n";
 }
 
 void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
+  const nlohmann::ordered_json link = link_figures(folder.path());
   const std::vector<spu::MappedCounters> counters = spu::read_counters(folder.path());
   std::vector<const spu::ProcessCounters*> processes;
   processes.reserve(counters.size());
@@ -167,11 +211,12 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
   if (options.explain) {
     std::fputs(spu::explanation_text(processes).c_str(), stderr);
     for (const std::string& choice : backends) say(choice);
+    if (!link.is_null()) say(link_text(link));
   }
   std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
   if (options.report.empty()) return;
   try {
-    spu::replace_file(options.report, with_backends(spu::report_json(processes), backends));
+    spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, link));
   } catch (const std::exception& error) {
     say(error.what());
   }
@@ -203,6 +248,17 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
         "unset one of them");
     return usage_error;
   }
+  std::optional<LinkPlan> link;
+  try {
+    link = link_of(arguments, options);
+    // The viewer has no other OpenGL, and is better not started than without any.
+    if (link && arguments.remote) try_link(*link);
+  } catch (const std::runtime_error& error) {
+    say(error.what());
+    return link ? 1 : usage_error;
+  }
+  if (!link && !arguments.link.secret_file.empty())
+    say("--secret-file is for --connect HOST:PORT; nodes and stages of this machine need no secret");
   const bool may_have_nodes = options.connect.empty() && !options.disable;
   Placement placement;
   try {
@@ -242,11 +298,21 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
                     arguments.hostfile.string()));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
-  if (!options.connect.empty() && !options.disable) tell_whether_nodes_can_answer(options.connect);
+  std::unique_ptr<ChildProcess> porter;
+  const std::filesystem::path link_socket = folder.path() / "link.sock";
+  if (link) {
+    if (!arguments.remote) tell_whether_link_is_there(*link);
+    porter = start_porter(installation, *link, link_socket, folder.path());
+    options.connect = link_socket;
+  } else if (!options.connect.empty() && !options.disable) {
+    tell_whether_nodes_can_answer(options.connect);
+  }
   std::optional<ChildProcess> viewer;
   Environment environment = viewer_environment(arguments, options, installation, folder, plan);
   std::unique_ptr<ChildProcess> stage;
-  if (arguments.remote) {
+  if (arguments.remote && link) {
+    put_on_stage_elsewhere(environment, link_socket);
+  } else if (arguments.remote) {
     RunArguments without_door = arguments;
     without_door.door.reset();
     try {
@@ -265,6 +331,7 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   }
   const Ending ending = wait_for(*viewer, nodes.get(), inbox);
   if (stage) stage->end(stage_patience_ms);
+  if (porter) porter->end(stage_patience_ms);
   nodes.reset();
   tell_what_happened(options, folder);
   return ending.exit_status();
@@ -317,6 +384,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
+  add_link_options(*subcommand, arguments->link);
   const std::map<std::string, Door> doors{
       {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
   subcommand
@@ -332,7 +400,7 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   subcommand->add_flag(
       "--remote", arguments->remote,
       "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
-      "pictures come back to its windows");
+      "pictures come back to its windows; with --connect HOST:PORT on that machine (understudy serve --stage)");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

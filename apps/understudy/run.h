@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/understudy/environment.h"
+#include "apps/understudy/porter.h"
 
 namespace understudy::launcher {
 
@@ -37,6 +38,7 @@ struct RunArguments {
   std::string gpu_memory = "auto";              ///< what that may take of a graphics card, in bytes
   std::string balance = "off";                  ///< who of the nodes gets how much of a volume
   std::filesystem::path hostfile;               ///< where the nodes are; empty: on this machine
+  LinkPlan link;                                ///< how to get at --connect HOST:PORT
   bool remote = false;                          ///< the viewer's calls are made by a stage, not in its process
 };
 

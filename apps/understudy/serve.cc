@@ -15,11 +15,14 @@
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
 #include "apps/understudy/environment.h"
+#include "apps/understudy/gate.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "apps/understudy/stage.h"
+#include "compositor/tcp/secret.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {
@@ -32,10 +35,71 @@ struct ServeArguments {
   std::string socket;
   std::string folder;       ///< empty: one of its own
   pid_t while_process = 0;  ///< 0: until asked to end
+  std::string listen;       ///< host:port for clients of other machines; empty: none
+  std::filesystem::path secret_file;
+  bool stage = false;
 };
 
 bool is_over(const ServeArguments& arguments) {
   return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
+}
+
+/// What clients of other machines come to.
+struct Doors {
+  std::unique_ptr<ChildProcess> stage;
+  OpenGate gate;
+};
+
+/// The stage has the options of this environment, and the nodes' socket.
+std::unique_ptr<ChildProcess> start_stage_of_nodes(const Installation& installation, const NodeGroupPlan& nodes,
+                                                   const std::filesystem::path& socket) {
+  Environment environment = current_environment();
+  environment.erase("UNDERSTUDY_REMOTE");
+  environment.erase("UNDERSTUDY_RUN_DIR");
+  environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
+  environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
+  return start_stage(installation, socket, environment);
+}
+
+Doors open_doors(const Installation& installation, const ServeArguments& arguments,
+                 const NodeGroupPlan& nodes) {
+  Doors doors;
+  if (arguments.listen.empty()) return doors;
+  const auto address = compositor::tcp_address_of(arguments.listen);
+  if (!address)
+    throw std::runtime_error(
+        fmt::format("--listen {}: this is no host:port; write :7070 for this machine alone, "
+                    "0.0.0.0:7070 for all of its networks",
+                    arguments.listen));
+  bool made = false;
+  compositor::read_or_make_secret(arguments.secret_file, made);
+  if (made)
+    fmt::print("understudy: made the secret {0}; copy it to where viewers are: scp {0} HOST:\n",
+               std::filesystem::absolute(arguments.secret_file).string());
+  GatePlan plan{.address = *address,
+                .secret_file = arguments.secret_file,
+                .nodes = nodes.socket,
+                .stage = {},
+                .folder = nodes.folder};
+  if (arguments.stage) {
+    plan.stage = nodes.folder / "stage.sock";
+    doors.stage = start_stage_of_nodes(installation, nodes, plan.stage);
+  }
+  doors.gate = start_gate(installation, plan);
+  return doors;
+}
+
+/// Said, and done without: clients of this machine are served.
+void look_after(Doors& doors) {
+  const auto ended = [](std::unique_ptr<ChildProcess>& process, const char* what) {
+    if (!process) return;
+    const std::optional<Ending> ending = process->poll_ending();
+    if (!ending) return;
+    fmt::print(stderr, "understudy: {} {}; start serve again\n", what, ending->text());
+    process.reset();
+  };
+  ended(doors.stage, "the stage, which draws for viewers of other machines,");
+  ended(doors.gate.process, "the gate, which lets clients of other machines in,");
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -52,18 +116,26 @@ int serve(const ServeArguments& arguments) {
   }
   const std::filesystem::path socket =
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  NodeGroup nodes(installation, {placement, socket, folder.path(), arguments.choices});
+  const NodeGroupPlan plan{placement, socket, folder.path(), arguments.choices};
+  NodeGroup nodes(installation, plan);
+  Doors doors = open_doors(installation, arguments, plan);
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
       if (received->number != SIGCHLD) return 0;
       nodes.look_after_children();
+      look_after(doors);
     }
     nodes.wait_and_serve(inbox.descriptor());
     if (announced || !nodes.ready()) continue;
     announced = true;
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
                nodes.ranks(), socket.string(), socket.string());
+    if (doors.gate.process)
+      fmt::print(
+          "understudy: and at {0}; use them with: understudy run {1}--connect {0} --secret-file FILE -- viewer "
+          "args…\n",
+          doors.gate.address.text(), doors.stage ? "[--remote] " : "");
     std::fflush(stdout);
   }
   return 0;
@@ -92,6 +164,23 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   add_exchange_options(*subcommand, arguments->choices);
+  CLI::Option* secret_file =
+      subcommand
+          ->add_option("--secret-file", arguments->secret_file,
+                       "with --listen: what clients must have too; made if there is no such file")
+          ->type_name("FILE");
+  CLI::Option* listen =
+      subcommand
+          ->add_option(
+              "--listen", arguments->listen,
+              "let clients of other machines in at HOST:PORT; without HOST: this machine's own only, 0.0.0.0: "
+              "all of its networks; port 0: any that is free")
+          ->type_name("[HOST]:PORT")
+          ->needs(secret_file);
+  subcommand
+      ->add_flag("--stage", arguments->stage,
+                 "make the calls of viewers without OpenGL, too (understudy run --remote --connect HOST:PORT)")
+      ->needs(listen);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

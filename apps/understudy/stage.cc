@@ -2,21 +2,19 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
+#include "apps/understudy/client_processes.h"
 #include "apps/understudy/frame_changes.h"
 #include "apps/understudy/offscreen_contexts.h"
 #include "apps/understudy/signal_inbox.h"
@@ -43,8 +41,6 @@ using compositor::MessageType;
 namespace limits = compositor::limits;
 
 constexpr std::chrono::seconds patience_with_start{10};
-/// For the processes of applications that have just ended.
-constexpr std::chrono::seconds patience_with_ends{1};
 /// Different faults of a stream that are said.
 constexpr std::size_t most_faults_told = 20;
 
@@ -159,63 +155,6 @@ int perform(FileDescriptor socket) {
   return 0;
 }
 
-void reap(std::set<pid_t>& performers) {
-  for (auto performer = performers.begin(); performer != performers.end();) {
-    const bool ended = ::waitpid(*performer, nullptr, WNOHANG) != 0;
-    performer = ended ? performers.erase(performer) : std::next(performer);
-  }
-}
-
-/// A performer: it goes when the listening process does.
-pid_t start_performer(FileDescriptor& application, int listener) {
-  const pid_t listening = ::getpid();
-  const pid_t child = ::fork();
-  if (child != 0) return child;
-  sigset_t none;
-  sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != listening) ::_exit(1);
-  ::close(listener);
-  const int status = perform(std::move(application));
-  std::fflush(nullptr);
-  ::_exit(status);
-}
-
-/// Whether a signal asks for the end.
-bool asked_to_end(SignalInbox& inbox, std::set<pid_t>& performers) {
-  while (const std::optional<ReceivedSignal> received = inbox.next()) {
-    if (received->number != SIGCHLD) return true;
-    reap(performers);
-  }
-  return false;
-}
-
-int listen(const std::string& socket) {
-  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
-  const FileDescriptor listener = compositor::listen_at(socket);
-  std::set<pid_t> performers;
-  while (!asked_to_end(inbox, performers)) {
-    std::array<pollfd, 2> waiting = {{{listener.get(), POLLIN, 0}, {inbox.descriptor(), POLLIN, 0}}};
-    ::poll(waiting.data(), waiting.size(), -1);
-    if (waiting[0].revents == 0) continue;
-    FileDescriptor application(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    if (!application) continue;
-    if (performers.size() >= limits::max_clients) {
-      fmt::print(stderr, "understudy: stage: {} applications are here already; sent one more away\n",
-                 performers.size());
-      continue;
-    }
-    const pid_t performer = start_performer(application, listener.get());
-    if (performer > 0) performers.insert(performer);
-  }
-  const auto until = Clock::now() + patience_with_ends;
-  for (reap(performers); !performers.empty() && Clock::now() < until; reap(performers))
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  ::unlink(socket.c_str());
-  return 0;
-}
-
 }  // namespace
 
 std::unique_ptr<ChildProcess> start_stage(const Installation& installation, const std::filesystem::path& socket,
@@ -239,7 +178,12 @@ void add_stage(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* subcommand = app.add_subcommand("stage", "makes the calls of viewers, for run --remote");
   subcommand->group("");
   subcommand->add_option("--socket", *socket)->required();
-  subcommand->callback([socket, &chosen] { chosen = [socket] { return listen(*socket); }; });
+  subcommand->callback([socket, &chosen] {
+    chosen = [socket] {
+      listen_for_clients(*socket, "stage", perform);
+      return 0;
+    };
+  });
 }
 
 }  // namespace understudy::launcher

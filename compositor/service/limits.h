@@ -32,6 +32,8 @@ constexpr std::uint64_t max_message_bytes = max_slice_bytes + (std::uint64_t(1) 
 constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
 constexpr std::uint64_t max_stage_message_bytes = std::uint64_t(1)
                                                   << 32;  ///< one call of an application may bring a volume
+constexpr std::uint64_t max_picture_message_bytes =
+    20 * max_window_pixels + (std::uint64_t(1) << 20);  ///< over TCP, with its pixels
 constexpr std::size_t read_ahead = std::size_t(1)
                                    << 20;  ///< memory given to a message before its bytes are here
 constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
@@ -39,6 +41,12 @@ constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
 constexpr std::size_t max_boxes_per_message = 4096;  ///< of texels
 constexpr int max_ranks = 4096;
 constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
+
+// Links over TCP (compositor/tcp).
+constexpr std::size_t min_secret_bytes = 16;
+constexpr std::size_t max_secret_bytes = 4096;
+constexpr std::size_t max_strangers = 256;  ///< that have not proved themselves; the oldest makes room
+constexpr std::size_t max_link_block_bytes = std::size_t(1) << 18;  ///< of a message, before it is compressed
 
 // Patience. A peer that is silent between two messages may be so for ever (a viewer that nobody turns); within
 // a message, or when an answer is due, it may not.
@@ -52,5 +60,6 @@ constexpr milliseconds send_patience{10'000};      ///< until a message has left
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
 constexpr milliseconds render_patience{20'000};    ///< a picture
 constexpr milliseconds stage_patience{120'000};    ///< a call that a stage makes, with all that went before it
+constexpr milliseconds link_patience{20'000};      ///< a link over TCP on which nothing moves that should
 
 }  // namespace understudy::compositor::limits

@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 9;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 10;        ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -51,7 +51,8 @@ enum class MessageType : std::uint16_t {
   calls,     ///< from the application
   answered,  ///< a reply
   picture,   ///< the other
-  last = picture
+  refined,   ///< pixels of a picture that came before, as they are: the view rests
+  last = refined
 };
 
 struct MessageHeader {

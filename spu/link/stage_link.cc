@@ -140,6 +140,7 @@ void StageLink::take(Message message) {
   if (message.type == MessageType::refused)
     throw std::runtime_error("gives up: " + compositor::decode_text(message.payload));
   if (message.type == MessageType::picture) return take_picture(message);
+  if (message.type == MessageType::refined) return refine_picture(message);
   auto answer = decode_answer(message.payload);
   if (message.type != MessageType::answered || !answer) throw MalformedMessage("spoke out of turn");
   {
@@ -157,23 +158,37 @@ void StageLink::take_picture(const Message& message) {
     if (frames_.empty()) throw MalformedMessage("sent a picture that nobody waits for");
     drawable = frames_.front();
   }
-  auto& [extent, pixels] = pictures_[drawable.number];
-  if (extent != change.extent) {
-    extent = change.extent;
-    pixels.assign(std::size_t(extent.width) * std::size_t(extent.height) * 4, 0);
+  Shown& shown = pictures_[drawable.number];
+  shown.drawable = drawable;
+  if (shown.extent != change.extent) {
+    shown.extent = change.extent;
+    shown.pixels.assign(std::size_t(change.extent.width) * std::size_t(change.extent.height) * 4, 0);
   }
-  const std::size_t row = std::size_t(change.width) * 4;
-  for (int y = 0; y < change.height; ++y) {
-    const std::size_t to = (std::size_t(change.y + y) * std::size_t(extent.width) + std::size_t(change.x)) * 4;
-    if (row != 0) std::memcpy(pixels.data() + to, change.pixels.data() + std::size_t(y) * row, row);
-  }
-  if (!ended_) front_.show(drawable, extent, pixels);
+  put(shown, change);
   ++counters().frames;
   {
     const std::scoped_lock lock(replies_);
     frames_.pop_front();
   }
   replied_.notify_all();
+}
+
+void StageLink::refine_picture(const Message& message) {
+  const PictureChange change = decode_picture(message.payload);
+  const auto shown = pictures_.find(change.drawable);
+  if (shown == pictures_.end() || shown->second.extent != change.extent)
+    throw MalformedMessage("refined a picture that was never sent");
+  put(shown->second, change);
+}
+
+void StageLink::put(Shown& shown, const PictureChange& change) {
+  const std::size_t row = std::size_t(change.width) * 4;
+  for (int y = 0; y < change.height; ++y) {
+    const std::size_t to =
+        (std::size_t(change.y + y) * std::size_t(change.extent.width) + std::size_t(change.x)) * 4;
+    if (row != 0) std::memcpy(shown.pixels.data() + to, change.pixels.data() + std::size_t(y) * row, row);
+  }
+  if (!ended_) front_.show(shown.drawable, shown.extent, shown.pixels);
 }
 
 void StageLink::send(const Records& records) {

@@ -62,6 +62,7 @@ class StageLink {
 
  private:
   struct Shown {
+    FrontDrawable drawable;
     Extent2D extent;
     std::vector<std::uint8_t> pixels;
   };
@@ -71,6 +72,8 @@ class StageLink {
   void receive_all();
   void take(compositor::Message message);
   void take_picture(const compositor::Message& message);
+  void refine_picture(const compositor::Message& message);
+  void put(Shown& shown, const PictureChange& change);
   template <class Condition>
   void wait_until(std::unique_lock<std::mutex>& lock, Condition condition);
 

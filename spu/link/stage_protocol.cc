@@ -56,28 +56,34 @@ Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks) {
 
 std::vector<std::byte> encode_head(const PictureChange& change) {
   Writer out;
+  out.integer(std::int64_t(change.drawable));
   for (const int value :
        {change.extent.width, change.extent.height, change.x, change.y, change.width, change.height})
     out.integer(value);
   return out.bytes();
 }
 
-PictureChange decode_picture(std::span<const std::byte> payload) {
-  constexpr std::size_t head_bytes = 6 * sizeof(std::uint64_t);
-  if (payload.size() < head_bytes) throw MalformedMessage("picture: shorter than its head");
-  Reader in("picture", payload.first(head_bytes));
+PictureChange decode_picture_head(std::span<const std::byte> payload) {
+  if (payload.size() < picture_head_bytes) throw MalformedMessage("picture: shorter than its head");
+  Reader in("picture", payload.first(picture_head_bytes));
   constexpr int most = compositor::limits::max_viewport_extent;
   PictureChange change;
+  change.drawable = in.word("drawable");
   change.extent.width = in.small("extent.width", 0, most);
   change.extent.height = in.small("extent.height", 0, most);
   change.x = in.small("x", 0, change.extent.width);
   change.y = in.small("y", 0, change.extent.height);
   change.width = in.small("width", 0, change.extent.width - change.x);
   change.height = in.small("height", 0, change.extent.height - change.y);
-  change.pixels = payload.subspan(head_bytes);
   if (std::uint64_t(change.extent.width) * std::uint64_t(change.extent.height) >
       compositor::limits::max_window_pixels)
     in.fail("extent", "is larger than windows are");
+  return change;
+}
+
+PictureChange decode_picture(std::span<const std::byte> payload) {
+  PictureChange change = decode_picture_head(payload);
+  change.pixels = payload.subspan(picture_head_bytes);
   if (change.pixels.size() != std::size_t(change.width) * std::size_t(change.height) * 4)
     throw MalformedMessage("picture: not as many pixels as announced");
   return change;

@@ -42,7 +42,8 @@ struct Calls {
 /// What changed of a drawable's picture since the last one: `width` x `height` pixels whose upper left corner
 /// is at x, y from the upper left. Nothing changed where one of them is 0.
 struct PictureChange {
-  Extent2D extent;  ///< of the drawable
+  std::uint64_t drawable = 0;  ///< as the application's calls number it
+  Extent2D extent;             ///< of the drawable
   int x = 0;
   int y = 0;
   int width = 0;
@@ -53,11 +54,14 @@ struct PictureChange {
 std::vector<std::byte> encode(const StageVersions& versions);
 /// The message is this, then the pixels.
 std::vector<std::byte> encode_head(const PictureChange& change);
+constexpr std::size_t picture_head_bytes = 7 * sizeof(std::uint64_t);
 
 // All of these throw compositor::MalformedMessage.
 StageVersions decode_versions(std::span<const std::byte> payload);
 /// `payload` must be aligned for words; what comes back lies in `chunks`, until the next message.
 Calls decode_calls(std::span<const std::byte> payload, ChunkReceiver& chunks);
+/// Without pixels; `payload` may go on behind the head.
+PictureChange decode_picture_head(std::span<const std::byte> payload);
 /// What comes back leads into `payload`.
 PictureChange decode_picture(std::span<const std::byte> payload);
 

@@ -26,6 +26,17 @@ constexpr const char* bytes_up = "bytes_up";
 constexpr const char* bytes_down = "bytes_down";
 constexpr const char* per_frame = "per_frame";
 
+// link: null unless --connect HOST:PORT. Of all connections of the run: what went over TCP.
+constexpr const char* link = "link";
+constexpr const char* address = "address";
+constexpr const char* links = "links";                  ///< how many connections
+constexpr const char* up = "up";                        ///< {messages, payload_bytes, bytes, blocks}
+constexpr const char* down = "down";                    ///< {messages, payload_bytes, bytes}
+constexpr const char* payload_bytes = "payload_bytes";  ///< before they were compressed
+constexpr const char* blocks = "blocks";                ///< {none, lz4, zstd}: how they were compressed
+constexpr const char* round_trip_ms = "round_trip_ms";  ///< as the kernel measures it
+constexpr const char* bytes_per_second_up = "bytes_per_second_up";  ///< likewise
+
 // processes[]
 constexpr const char* pid = "pid";
 constexpr const char* program = "program";

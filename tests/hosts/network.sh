@@ -1,9 +1,9 @@
 #!/bin/sh
-# network.sh SWITCH MICROSECONDS HOSTS FOLDER: that many hosts, host1 and so on, as network namespaces, each with one
-# link of 1 Gbit/s to a switch that hands frames on so much later. For a process in namespaces of its own (mounts,
+# network.sh SWITCH MICROSECONDS HOSTS FOLDER [RATE]: that many hosts, host1 and so on, as network namespaces, each with
+# one link of 1 Gbit/s, or of that rate, to a switch that hands frames on so much later. For a process in namespaces of its own (mounts,
 # network), which alone sees all of this; it goes with them. FOLDER gets the hosts' names, and what the switch says.
 set -e
-switch=$1 delay=$2 hosts=$3 folder=$4
+switch=$1 delay=$2 hosts=$3 folder=$4 rate=${5:-1gbit}
 
 mount -t tmpfs none /run
 ip link set lo up
@@ -17,7 +17,7 @@ for number in $(seq "$hosts"); do
   ip -n "$host" addr add "10.77.0.$number/24" dev eth0
   ip -n "$host" link set lo up
   ip -n "$host" link set eth0 up
-  ip netns exec "$host" tc qdisc add dev eth0 root tbf rate 1gbit burst 256kb latency 50ms
+  ip netns exec "$host" tc qdisc add dev eth0 root tbf rate "$rate" burst 256kb latency 50ms
   echo "10.77.0.$number $host" >>"$folder/names"
   ports="$ports port$number"
 done

@@ -109,10 +109,11 @@ std::vector<std::byte> picture_message(const PictureChange& change, std::size_t 
 }
 
 TEST(StageProtocol, PicturesStayWithinTheirDrawable) {
-  const PictureChange change{.extent = {40, 30}, .x = 10, .y = 20, .width = 30, .height = 10};
+  const PictureChange change{.drawable = 5, .extent = {40, 30}, .x = 10, .y = 20, .width = 30, .height = 10};
   const auto message = picture_message(change, 300);
   const PictureChange read = decode_picture(message);
   EXPECT_EQ(read.extent, change.extent);
+  EXPECT_EQ(read.drawable, 5U);
   EXPECT_EQ(read.x, 10);
   EXPECT_EQ(read.y, 20);
   EXPECT_EQ(read.pixels.size(), 1200U);

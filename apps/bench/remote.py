@@ -1,0 +1,171 @@
+"""Viewers whose nodes, or whose OpenGL, are at the other end of a line: milliseconds and bytes a frame.
+
+Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that are network namespaces of this machine,
+joined by 1 Gbit/s with 0.5 ms to the other end and back, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own
+OpenGL and nodes there, all of it on a stage there; as it is, or with JPEG pictures while the view turns, or with bytes for
+the nodes' pictures. The bundled viewer turns 256^3 voxels in 512^2 pixels; glxgears, and osgvolume at rest, are drawn by the
+stage. Ways are alternated within each round of a line. What travelled is counted on the longer of two runs, less the shorter.
+Only root can make such lines.
+"""
+
+import contextlib
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "demo")]
+import frame  # noqa: E402
+import viewers  # noqa: E402
+from display import VirtualDisplay  # noqa: E402
+
+HOSTS = viewers.ROOT / "tests" / "hosts"
+SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
+LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
+WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
+        "stage, quality 80": ["--remote", "--quality", "80"]}
+PORT = 7070
+ROUNDS = 2
+FRAMES = (6, 26)  # the shorter and the longer run
+GEARS_SECONDS = 8
+SIDE = 512
+
+
+def on(host):
+    return ["ip", "netns", "exec", host] if host else []
+
+
+@contextlib.contextmanager
+def server(folder, host):
+    """`understudy serve` with two nodes and a stage; where it listens, and the secret."""
+    secret = folder / "secret"
+    where = f"10.77.0.1:{PORT}" if host else f"127.0.0.1:{PORT}"
+    with open(folder / "serve.log", "w+", encoding="utf-8") as log:
+        process = subprocess.Popen(
+            [*on(host), str(viewers.PROGRAMS / "understudy"), "serve", "-n", "2", "--socket", str(folder / "nodes.sock"),
+             "--listen", where, "--secret-file", str(secret), "--stage"], stdout=log, stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL, env={**os.environ, **viewers.SOFTWARE, "DISPLAY": ""})
+        try:
+            until = time.monotonic() + 30
+            while "and at" not in (folder / "serve.log").read_text(encoding="utf-8"):
+                if process.poll() is not None or time.monotonic() > until:
+                    raise viewers.ViewerFailed((folder / "serve.log").read_text(encoding="utf-8"))
+                time.sleep(0.1)
+            yield ["--connect", where, "--secret-file", str(secret)]
+        finally:
+            process.terminate()
+            process.wait()
+
+
+class Client:
+    """Runs viewers on one side of a line."""
+
+    def __init__(self, folder, host, link, display):
+        self.folder, self.host, self.display = folder, host, display
+        self.link = link or ["-n", "2"]
+        self.local = link is None
+
+    def prefix(self, options):
+        if self.local:
+            options = [option for option in options if option == "--remote"]
+        return [*on(self.host), *viewers.understudy(*options, *self.link, "--report", self.folder / "report.json")]
+
+    def environment(self):
+        return {**viewers.SOFTWARE, "DISPLAY": self.display, "vblank_mode": "0"}
+
+    def travelled(self):
+        """Bytes up and down, and round trips, of the last run."""
+        report = viewers.read_report(self.folder / "report.json")
+        link, remote = report.get("link"), report.get("remote_link")
+        return {"up": link["up"]["bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
+                "round_trips": remote["round_trips"] if remote else link["up"]["messages"] if link else 0,
+                "frames": remote["frames"] if remote else report["frames"]}
+
+    def viewer(self, options, frames, orbit):
+        text = viewers.run([*self.prefix(options), viewers.PROGRAMS / "understudy-viewer", frame.cube(), "--mode", "table",
+                            "--window-size", SIDE, SIDE, "--frames", frames, "--orbit", orbit, "--print-times"],
+                           self.environment())
+        return [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
+
+    def turning(self, options, orbit=4):
+        """Milliseconds a frame, and what each takes of the line."""
+        counts = []
+        for frames in FRAMES:
+            times = self.viewer(options, frames, orbit)
+            counts.append(self.travelled())
+        between = FRAMES[1] - FRAMES[0]
+        return {"ms": statistics.fmean(times[FRAMES[0]:])} | {
+            what: (counts[1][what] - counts[0][what]) / between for what in ("up", "down", "round_trips")}
+
+    def gears(self, options):
+        """The same of glxgears, which draws until it is ended."""
+        command = ["timeout", GEARS_SECONDS, *self.prefix(options), "glxgears", "-geometry", f"{SIDE}x{SIDE}"]
+        subprocess.run([str(word) for word in command], env={**os.environ, **self.environment()}, stdin=subprocess.DEVNULL,
+                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        total = self.travelled()
+        frames = max(total["frames"], 1)
+        return {"ms": 1000 * GEARS_SECONDS / frames} | {what: total[what] / frames for what in ("up", "down", "round_trips")}
+
+
+def measure(line, folder, display, host_of_server=None, host_of_client=None):
+    """Rows of one line, as (name, figures)."""
+    with contextlib.ExitStack() as stack:
+        link = None if line == "one machine" else stack.enter_context(server(folder, host_of_server))
+        client = Client(folder, host_of_client, link, display)
+        ways = {way: WAYS[way] for way in (["nodes", "stage"] if link is None else WAYS)}
+        found = {way: [] for way in ways}
+        for number in range(ROUNDS):
+            for way, options in ways.items():
+                print(f"  {line}, round {number + 1} of {ROUNDS}, {way}", file=sys.stderr, flush=True)
+                found[way].append(client.turning(options))
+        figures = {f"turning/{way}": {key: statistics.median(one[key] for one in each) for key in each[0]}
+                   for way, each in found.items()}
+        figures["resting/stage"] = client.turning(["--remote"], orbit=0)
+        figures["glxgears/stage"] = client.gears(["--remote"])
+        return figures
+
+
+def in_namespaces(line, folder, display):
+    """The same between two hosts, in a process whose namespaces go with it."""
+    rate, one_way = LINES[line]
+    text = subprocess.run(
+        ["unshare", "--mount", "--net", "--pid", "--fork", "--mount-proc", "--propagation", "private", sys.executable, "-B",
+         str(HERE / "remote.py"), line, rate, str(one_way), str(folder), display],
+        stdout=subprocess.PIPE, text=True, check=True, stdin=subprocess.DEVNULL).stdout
+    return json.loads(text)
+
+
+def rows():
+    result = []
+    folder = viewers.OUT / "bench" / "remote"
+    folder.mkdir(parents=True, exist_ok=True)
+    with VirtualDisplay() as display:
+        for line, hosts in LINES.items():
+            if hosts and (os.geteuid() != 0 or not SWITCH.exists()):
+                print(f"  {line}: needs root, and {SWITCH}", file=sys.stderr)
+                continue
+            figures = in_namespaces(line, folder, display) if hosts else measure(line, folder, display)
+            for name, each in figures.items():
+                row = {"name": f"remote/{name}/{line}", "value": each["ms"], "unit": "ms", "bytes_up": each["up"],
+                       "bytes_down": each["down"], "round_trips": each["round_trips"]}
+                base = next((other for other in result if other["name"] == f"remote/{name}/one machine"), None)
+                if base:
+                    row |= {"ratio_to": base["name"], "ratio": row["value"] / base["value"]}
+                result.append(row)
+    return result
+
+
+def main(line, rate, one_way, folder, display):
+    subprocess.run(["sh", str(HOSTS / "network.sh"), str(SWITCH), one_way, "2", folder, rate], check=True,
+                   stdout=sys.stderr)
+    time.sleep(1)
+    json.dump(measure(line, Path(folder), display, "host1", "host2"), sys.stdout)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,32 @@
+// What both ends of a link over TCP must have: the contents of a file that only its owner may read.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace understudy::compositor {
+
+/// Wiped when it goes.
+class Secret {
+ public:
+  explicit Secret(std::span<const std::byte> contents);
+  Secret(const Secret&) = default;
+  Secret& operator=(const Secret&) = delete;
+  ~Secret();
+
+  /// 32 bytes, derived from all of the contents.
+  std::span<const unsigned char> key() const { return key_; }
+
+ private:
+  std::array<unsigned char, 32> key_{};
+};
+
+/// Throws std::runtime_error, with what to do: no such file, others may read it, too short to be a secret.
+Secret read_secret(const std::filesystem::path& file);
+
+/// The same; makes the file where there is none, with mode 0600 and 32 random bytes. True in `made` then.
+Secret read_or_make_secret(const std::filesystem::path& file, bool& made);
+
+}  // namespace understudy::compositor

@@ -1,0 +1,183 @@
+#include "compositor/tcp/tcp_link.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "compositor/service/limits.h"
+#include "compositor/tcp/tcp_socket.h"
+
+namespace understudy::compositor {
+
+namespace {
+
+/// Shorter blocks travel as they are.
+constexpr std::size_t least_compressed = 512;
+
+/// The peer went before it had said all: a listener with too many strangers may do that, and takes the next
+/// try.
+class WentEarly : public HandshakeFailed {
+ public:
+  using HandshakeFailed::HandshakeFailed;
+};
+
+std::vector<std::byte> read_exactly(int socket, std::size_t size, Deadline deadline) {
+  std::vector<std::byte> bytes(size);
+  for (std::size_t have = 0; have < size;) {
+    const ssize_t got = ::recv(socket, bytes.data() + have, size - have, MSG_DONTWAIT);
+    if (got > 0) {
+      have += std::size_t(got);
+    } else if (got == 0 || (errno != EAGAIN && errno != EINTR)) {
+      throw WentEarly("it closed the connection without a word: look at host and port");
+    } else if (Clock::now() >= deadline || !wait_until_ready(socket, POLLIN, deadline)) {
+      throw HandshakeFailed("it says nothing: look at host and port");
+    }
+  }
+  return bytes;
+}
+
+void write_all(int socket, std::span<const std::byte> bytes) {
+  // Some hundred bytes at the beginning of a connection: they always fit.
+  if (::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) != ssize_t(bytes.size()))
+    throw WentEarly("it closed the connection without a word: look at host and port");
+}
+
+FileDescriptor prove(const TcpAddress& address, const Secret& secret, const LinkWishes& wishes,
+                     Deadline deadline) {
+  FileDescriptor socket = connect_to(address, deadline);
+  ClientHandshake handshake(secret, wishes);
+  write_all(socket.get(), handshake.hello());
+  write_all(socket.get(), handshake.answer(read_exactly(socket.get(), link_challenge_bytes, deadline)));
+  handshake.finish(read_exactly(socket.get(), link_verdict_bytes, deadline));
+  return socket;
+}
+
+}  // namespace
+
+FileDescriptor connect_link(const TcpAddress& address, const Secret& secret, const LinkWishes& wishes,
+                            Deadline deadline) {
+  constexpr int tries = 5;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      return prove(address, secret, wishes, deadline);
+    } catch (const WentEarly& error) {
+      if (attempt == tries || Clock::now() >= deadline)
+        throw std::runtime_error(fmt::format("whoever listens at {}: {}", address.text(), error.what()));
+      std::this_thread::sleep_for(std::chrono::milliseconds(20 * attempt));
+    } catch (const HandshakeFailed& error) {
+      throw std::runtime_error(fmt::format("whoever listens at {}: {}", address.text(), error.what()));
+    }
+  }
+}
+
+double TcpLink::bytes_per_second() const {
+  return line_figures(socket_.get()).bytes_per_second;
+}
+
+void TcpLink::write(std::span<const Bytes> pieces, bool more) {
+  std::vector<iovec> left;
+  // sendmsg() takes pointers to non-const and does not write.
+  for (const Bytes& piece : pieces)
+    if (!piece.empty()) left.push_back({const_cast<std::byte*>(piece.data()), piece.size()});
+  msghdr message{};
+  message.msg_iov = left.data();
+  message.msg_iovlen = left.size();
+  while (message.msg_iovlen > 0) {
+    const ssize_t sent =
+        ::sendmsg(socket_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT | (more ? int(MSG_MORE) : 0));
+    if (sent < 0) {
+      if (errno == EINTR) continue;
+      if (errno != EAGAIN && errno != EWOULDBLOCK)
+        throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
+      if (!wait_until_ready(socket_.get(), POLLOUT, Clock::now() + limits::link_patience))
+        throw ConnectionLost("does not read what it is sent");
+      continue;
+    }
+    sent_.bytes += std::size_t(sent);
+    for (std::size_t gone = std::size_t(sent); message.msg_iovlen > 0;) {
+      iovec& piece = *message.msg_iov;
+      if (gone < piece.iov_len) {
+        piece.iov_base = static_cast<std::byte*>(piece.iov_base) + gone;
+        piece.iov_len -= gone;
+        break;
+      }
+      gone -= piece.iov_len;
+      ++message.msg_iov;
+      --message.msg_iovlen;
+    }
+  }
+}
+
+void TcpLink::send_block(MessageType type, Bytes block, bool last) {
+  CodecChoice& choice = choices_[std::size_t(type)];
+  Codec codec = block.size() < least_compressed ? Codec::none : choice.best(bytes_per_second());
+  Bytes travels = block;
+  if (codec != Codec::none) {
+    const auto start = Clock::now();
+    const bool shorter = compressor_.compress(codec, block, compressed_);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    choice.note(codec, block.size(), shorter ? compressed_.size() : block.size(), seconds);
+    if (shorter)
+      travels = compressed_;
+    else
+      codec = Codec::none;
+  } else if (block.size() >= least_compressed) {
+    choice.note(Codec::none, block.size(), block.size(), 0);
+  }
+  ++sent_.blocks[std::size_t(codec)];
+  const BlockHead head = BlockHead::of(block.size(), travels.size(), codec);
+  const std::array<Bytes, 2> pieces = {std::as_bytes(std::span(&head, 1)), travels};
+  write(pieces, !last);
+}
+
+void TcpLink::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts) {
+  MessageHeader header;
+  header.type = type;
+  header.sequence = sequence;
+  for (const Bytes& part : parts) header.payload_bytes += part.size();
+  const Bytes head = std::as_bytes(std::span(&header, 1));
+  write({&head, 1}, header.payload_bytes > 0);
+  std::uint64_t left = header.payload_bytes;
+  for (Bytes part : parts) {
+    while (!part.empty()) {
+      const Bytes block = part.first(std::min(part.size(), limits::max_link_block_bytes));
+      part = part.subspan(block.size());
+      left -= block.size();
+      send_block(type, block, left == 0);
+    }
+  }
+  ++sent_.messages;
+  sent_.payload_bytes += header.payload_bytes;
+}
+
+Message TcpLink::receive() {
+  for (;;) {
+    const std::span<std::byte> room = reader_.room();
+    const ssize_t got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
+    if (got > 0) {
+      received_.bytes += std::size_t(got);
+      if (std::optional<Message> message = reader_.took(std::size_t(got))) {
+        ++received_.messages;
+        received_.payload_bytes += message->payload.size();
+        return std::move(*message);
+      }
+    } else if (got == 0) {
+      throw ConnectionLost("closed the connection");
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      const bool within = reader_.unfinished();
+      const Deadline until = Clock::now() + (within ? limits::link_patience : std::chrono::hours(24));
+      if (!wait_until_ready(socket_.get(), POLLIN, until) && within)
+        throw ConnectionLost("stopped in the midst of a message");
+    } else if (errno != EINTR) {
+      throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
+    }
+  }
+}
+
+}  // namespace understudy::compositor

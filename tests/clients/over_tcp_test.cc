@@ -1,0 +1,201 @@
+// Viewers whose nodes, or whose OpenGL, are behind a TCP connection: pictures are those of one machine, and
+// whoever has not the secret is told so and leaves nothing behind.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+
+#include "compositor/tcp/tcp_link.h"
+#include "compositor/tcp/tcp_socket.h"
+#include "tests/apps/viewer/virtual_display.h"
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using understudy::compositor::Clock;
+
+class OverTcp : public Stage {
+ protected:
+  void SetUp() override {
+    if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
+      GTEST_SKIP() << lacking;
+  }
+
+  /// `understudy serve` with two nodes at a port of its own.
+  void serve(const Words& options = {}) {
+    fs::create_directory(file("server"));
+    server_.emplace(on_stage(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket", socket(),
+                                   "--listen", ":0", "--secret-file", secret()} +
+                             options),
+                    file("server"));
+    std::smatch found;
+    std::string said;
+    ASSERT_TRUE(comes_true([&] {
+      said = server_->out();
+      return std::regex_search(said, found, std::regex("and at (127\\.0\\.0\\.1:[0-9]+)")) ||
+             !server_->running();
+    }));
+    ASSERT_TRUE(server_->running()) << server_->err();
+    address_ = found[1];
+  }
+  std::string socket() const { return file("nodes.sock").string(); }
+  std::string secret() const { return file("secret").string(); }
+  Words over_tcp(const std::string& key = "secret") const {
+    return {"--connect", address_, "--secret-file", file(key).string()};
+  }
+  Words frame(const std::string& name) const {
+    return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});
+  }
+  void end_server() {
+    server_->signal(SIGTERM);
+    EXPECT_EQ(server_->finish().status, 0) << server_->err();
+    server_.reset();
+    EXPECT_EQ(leftovers(), "");
+  }
+
+  /// Children of the server and their children, but those of mpirun.
+  std::vector<pid_t> gate_and_its_children() const {
+    std::vector<pid_t> found;
+    for (const pid_t process : processes("understudy"))
+      if (process != server_->pid()) found.push_back(process);
+    return found;
+  }
+  static std::size_t descriptors_of(pid_t process) {
+    std::error_code gone;
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(fmt::format("/proc/{}/fd", process), gone))
+      ++count;
+    return count;
+  }
+  std::size_t descriptors() const {
+    std::size_t count = descriptors_of(server_->pid());
+    for (const pid_t process : gate_and_its_children()) count += descriptors_of(process);
+    return count;
+  }
+  static std::ptrdiff_t shared_memory() { return std::distance(fs::directory_iterator("/dev/shm"), {}); }
+
+  std::optional<Child> server_;
+  std::string address_;
+};
+
+TEST_F(OverTcp, NodesDrawWhatTheyDrawAtAUnixSocket) {
+  serve();
+  struct stat status {};
+  ASSERT_EQ(stat(secret().c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600U);
+  run_well(under({"--connect", socket()}) + frame("unix.png"));
+  const Outcome outcome =
+      run_well(under(over_tcp() + Words{"--report", file("report.json")}) + frame("tcp.png"));
+  const nlohmann::json report = json("report.json");
+  EXPECT_EQ(substituted(report), 1) << outcome.err;
+  EXPECT_EQ(report.at("link").at("address"), address_);
+  EXPECT_GT(report.at("link").at("up").at("payload_bytes"), 256 * 256 * 110);
+  fmt::print("{}\n", report.at("link").dump());
+  EXPECT_EQ(png("unix.png").rgb, png("tcp.png").rgb);
+  run_well(under(over_tcp() + Words{"--pixels", "byte"}) + frame("byte.png"));
+  EXPECT_GE(told("pixels of a byte", png("unix.png"), png("byte.png")).psnr, 45);
+  // The same of a volume in a file.
+  const Words render = {
+      (programs / "understudy").string(), "render", "synthetic:40x40x40", "--size", "97x61", "--out"};
+  run_well(render + Words{file("u.png").string(), "--connect", socket()});
+  run_well(render + Words{file("t.png").string()} + over_tcp());
+  EXPECT_EQ(png("u.png").rgb, png("t.png").rgb);
+  end_server();
+}
+
+TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
+  serve();
+  std::ofstream(file("wrong")) << "what somebody made up";
+  chmod(file("wrong").c_str(), 0600);
+  const Outcome wrong =
+      run_well(under(over_tcp("wrong") + Words{"--report", file("report.json")}) + frame("own.png"));
+  EXPECT_THAT(wrong.err, HasSubstr("copy its --secret-file"));
+  EXPECT_TRUE(comes_true([&] { return server_->err().find("was not let in") != std::string::npos; }));
+  EXPECT_EQ(json("report.json").at("link"), nullptr);
+  // A viewer that has no OpenGL is not started then, nor without a stage.
+  const Outcome none = run(under(Words{"--remote"} + over_tcp("wrong")) + frame("none.png"));
+  EXPECT_EQ(none.status, 1) << none.err;
+  EXPECT_FALSE(fs::exists(file("none.png")));
+  const Outcome no_stage = run(under(Words{"--remote"} + over_tcp()) + frame("none.png"));
+  EXPECT_EQ(no_stage.status, 1);
+  EXPECT_THAT(no_stage.err, HasSubstr("--stage"));
+  const Outcome without = run(under({"--connect", address_}) + frame("none.png"));
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.err, HasSubstr("needs --secret-file"));
+  end_server();
+}
+
+TEST_F(OverTcp, AThousandConnectionsLeaveNothingAtTheServer) {
+  serve();
+  run_well(under(over_tcp()) + frame("before.png"));
+  const auto quiet = [&] { return gate_and_its_children().size() == 1; };
+  ASSERT_TRUE(comes_true(quiet));
+  const std::size_t before = descriptors();
+  const auto memory_before = shared_memory();
+  {
+    using namespace understudy::compositor;
+    const TcpAddress address = tcp_address_of(address_).value();
+    std::vector<FileDescriptor> crowd;
+    for (int i = 0; i < 1000; ++i) {
+      crowd.push_back(connect_to(address, Clock::now() + std::chrono::seconds(20)));
+      const std::string words = i % 2 == 0 ? "GET / HTTP/1.0\r\n\r\n" : std::string(200, 'x');
+      if (i % 3 != 0) ::send(crowd.back().get(), words.data(), words.size(), MSG_NOSIGNAL);
+      if (i == 500) run_well(under(over_tcp()) + frame("beside.png"));
+    }
+    run_well(under(over_tcp()) + frame("after.png"));
+  }
+  EXPECT_EQ(png("before.png").rgb, png("beside.png").rgb);
+  EXPECT_EQ(png("before.png").rgb, png("after.png").rgb);
+  EXPECT_TRUE(comes_true([&] { return quiet() && descriptors() <= before; }))
+      << descriptors() << " of " << before;
+  EXPECT_LE(shared_memory(), memory_before);
+  end_server();
+}
+
+TEST_F(OverTcp, AStageDrawsForViewersWithoutOpenGL) {
+  serve({"--stage"});
+  const Words without_opengl = {"env", "LIBGL_DRIVERS_PATH=/nowhere"};
+  run_well(under({"--remote", "-n", "2"}) + without_opengl + frame("local.png"), {{"DISPLAY", ""}});
+  const Outcome outcome = run_well(under(Words{"--remote", "--report", file("report.json")} + over_tcp()) +
+                                       without_opengl + frame("tcp.png"),
+                                   {{"DISPLAY", ""}});
+  const nlohmann::json report = json("report.json");
+  EXPECT_EQ(report.at("remote"), true) << outcome.err;
+  EXPECT_GT(report.at("link").at("up").at("bytes"), 100'000);
+  EXPECT_EQ(png("local.png").rgb, png("tcp.png").rgb);
+  end_server();
+}
+
+TEST_F(OverTcp, JpegWhileTheViewTurnsAndEveryBitOnceItRests) {
+  if (const std::string lacking = missing({Need::x_server}); !lacking.empty()) GTEST_SKIP() << lacking;
+  const auto display = viewer_test::VirtualDisplay::start();
+  ASSERT_TRUE(display) << "Xvfb does not start";
+  serve({"--stage"});
+  const auto bytes_down = [&](const std::string& name, const Words& options) {
+    run_well(under(Words{"--remote", "--report", file(name + ".json")} + over_tcp() + options) +
+                 Words{TURNS_AND_RESTS, file(name), "12"},
+             {{"DISPLAY", display->name()}});
+    return json(name + ".json").at("link").at("down").at("payload_bytes").get<int>();
+  };
+  const int exact = bytes_down("exact", {});
+  const int lossy = bytes_down("lossy", {"--quality", "40"});
+  fmt::print("bytes down: {} as they are, {} with JPEG\n", exact, lossy);
+  EXPECT_LT(lossy, exact / 2);
+  EXPECT_NE(contents(file("lossy.turning")), contents(file("exact.turning")));
+  EXPECT_EQ(contents(file("lossy")), contents(file("exact")));
+  end_server();
+}
+
+}  // namespace
+}  // namespace clients

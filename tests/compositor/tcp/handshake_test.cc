@@ -1,0 +1,204 @@
+// Who is let in, and what everybody else is told: nothing is believed that has not been proved.
+#include "compositor/tcp/handshake.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "compositor/tcp/address.h"
+#include "compositor/tcp/secret.h"
+#include "tests/compositor/scratch_folder.h"
+
+namespace understudy::compositor {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::ScratchFolder;
+
+Secret secret_of(const std::string& text) {
+  return Secret(std::as_bytes(std::span(text)));
+}
+
+std::string failure(const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const HandshakeFailed& error) {
+    return error.what();
+  }
+  return {};
+}
+
+const LinkWishes some_wishes = {LinkedTo::stage, Layout::rgba8, 75, true};
+
+TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  ClientHandshake client(secret, some_wishes);
+  ServerHandshake server(secret);
+  ASSERT_EQ(server.wants(), link_hello_bytes);
+  const auto challenge = server.answer(client.hello());
+  ASSERT_EQ(server.wants(), link_proof_bytes);
+  EXPECT_FALSE(server.proved());
+  EXPECT_TRUE(server.answer(client.answer(challenge)).empty());
+  EXPECT_TRUE(server.proved());
+  EXPECT_EQ(server.wants(), 0U);
+  EXPECT_EQ(server.wishes().to, LinkedTo::stage);
+  EXPECT_EQ(server.wishes().pixels, Layout::rgba8);
+  EXPECT_EQ(server.wishes().jpeg_quality, 75);
+  EXPECT_TRUE(server.wishes().only_asks);
+  EXPECT_NO_THROW(client.finish(server.verdict(LinkVerdict::welcome)));
+  EXPECT_THAT(failure([&] { client.finish(server.verdict(LinkVerdict::too_many)); }),
+              HasSubstr("try again later"));
+  EXPECT_THAT(failure([&] { client.finish(server.verdict(LinkVerdict::not_offered)); }), HasSubstr("--stage"));
+}
+
+TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
+  const Secret theirs = secret_of("one secret of a client");
+  const Secret ours = secret_of("another one, of a server");
+  ClientHandshake client(theirs, {});
+  ServerHandshake server(ours);
+  const auto proof = client.answer(server.answer(client.hello()));
+  EXPECT_THAT(failure([&] { server.answer(proof); }), HasSubstr("--secret-file"));
+  EXPECT_FALSE(server.proved());
+  const std::vector<std::byte> words(server.last_words().begin(), server.last_words().end());
+  ASSERT_EQ(words.size(), link_verdict_bytes);
+  // No byte of what only a holder of the secret could say.
+  EXPECT_TRUE(std::all_of(words.begin() + 8, words.end(), [](std::byte byte) { return byte == std::byte(0); }));
+  EXPECT_THAT(failure([&] { client.finish(words); }), HasSubstr("copy its --secret-file"));
+}
+
+TEST(Handshake, AServerWithoutTheSecretIsNotTrusted) {
+  const Secret ours = secret_of("the secret of a client");
+  const Secret theirs = secret_of("what somebody made up");
+  ClientHandshake client(ours, {});
+  ServerHandshake impostor(theirs);
+  client.answer(impostor.answer(client.hello()));
+  EXPECT_THAT(failure([&] { client.finish(impostor.verdict(LinkVerdict::welcome)); }),
+              HasSubstr("do not trust it"));
+}
+
+TEST(Handshake, ProofsServeOnce) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  ClientHandshake client(secret, {});
+  ServerHandshake first(secret);
+  const auto proof = client.answer(first.answer(client.hello()));
+  EXPECT_NO_THROW(first.answer(proof));
+  // The same words to the same server again, which has another random number.
+  ServerHandshake second(secret);
+  second.answer(client.hello());
+  EXPECT_THROW(second.answer(proof), HandshakeFailed);
+  // And the server's own words, sent back to it.
+  const std::vector<std::byte> verdict = first.verdict(LinkVerdict::welcome);
+  ServerHandshake third(secret);
+  third.answer(client.hello());
+  EXPECT_THROW(third.answer(std::span(verdict).subspan(8)), HandshakeFailed);
+}
+
+TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  ClientHandshake client(secret, some_wishes);
+  for (std::size_t at = 0; at < link_hello_bytes; ++at) {
+    std::vector<std::byte> changed = client.hello();
+    changed[at] ^= std::byte(1);
+    EXPECT_THROW(
+        {
+          ServerHandshake server(secret);
+          server.answer(client.answer(server.answer(changed)));
+        },
+        HandshakeFailed)
+        << "byte " << at;
+  }
+}
+
+TEST(Handshake, OtherVersionsAreToldOnBothSides) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  ClientHandshake newer(secret, {}, link_version + 1);
+  ServerHandshake server(secret);
+  EXPECT_THAT(failure([&] { server.answer(newer.hello()); }), HasSubstr("one version of Understudy"));
+  ASSERT_EQ(server.last_words().size(), link_challenge_bytes);
+  EXPECT_THAT(failure([&] { newer.answer(server.last_words()); }), HasSubstr("one version of Understudy"));
+}
+
+TEST(Handshake, GarbageIsNeverBelieved) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  std::mt19937 random(7);
+  const auto garbage = [&](std::size_t size) {
+    std::vector<std::byte> bytes(size);
+    for (std::byte& byte : bytes) byte = std::byte(random());
+    return bytes;
+  };
+  for (int round = 0; round < 200; ++round) {
+    ServerHandshake strict(secret);
+    EXPECT_THROW(strict.answer(garbage(link_hello_bytes)), HandshakeFailed);
+    EXPECT_THROW(strict.answer(garbage(round)), HandshakeFailed);
+    ClientHandshake client(secret, {});
+    ServerHandshake server(secret);
+    server.answer(client.hello());
+    EXPECT_THROW(server.answer(garbage(link_proof_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.answer(garbage(link_challenge_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.finish(garbage(link_verdict_bytes)), HandshakeFailed);
+  }
+}
+
+TEST(Secret, IsMadeOnceForItsOwnerAlone) {
+  const ScratchFolder folder;
+  const std::string file = folder / "secret";
+  bool made = false;
+  const Secret first = read_or_make_secret(file, made);
+  EXPECT_TRUE(made);
+  struct stat status {};
+  ASSERT_EQ(::stat(file.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600U);
+  EXPECT_EQ(status.st_size, 32);
+  const Secret second = read_or_make_secret(file, made);
+  EXPECT_FALSE(made);
+  EXPECT_TRUE(std::ranges::equal(first.key(), second.key()));
+  // Nothing else was left there.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(std::string(folder / "")), {}), 1);
+}
+
+TEST(Secret, WhatOthersMayReadOrGuessIsNone) {
+  const ScratchFolder folder;
+  const auto refused = [&](const char* name, const std::string& contents, mode_t mode) {
+    const std::string file = folder / name;
+    std::ofstream(file) << contents;
+    ::chmod(file.c_str(), mode);
+    try {
+      read_secret(file);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused("readable", std::string(32, 'x'), 0644), HasSubstr("chmod 600"));
+  EXPECT_THAT(refused("short", "x", 0600), HasSubstr("16 to 4096 bytes"));
+  EXPECT_THAT(refused("long", std::string(5000, 'x'), 0600), HasSubstr("16 to 4096 bytes"));
+  EXPECT_THROW(read_secret(folder / "missing"), std::runtime_error);
+  EXPECT_THROW(read_secret(std::string(folder / "")), std::runtime_error);
+  bool made = false;
+  EXPECT_THROW(read_or_make_secret("/nowhere/at/all", made), std::runtime_error);
+}
+
+TEST(Address, OneFunctionReadsThemAll) {
+  const auto text = [](const std::string& written) {
+    const auto address = tcp_address_of(written);
+    return address ? address->text() : "a path";
+  };
+  EXPECT_EQ(text("host:80"), "host:80");
+  EXPECT_EQ(text("192.0.2.1:7070"), "192.0.2.1:7070");
+  EXPECT_EQ(text("[2001:db8::1]:7070"), "[2001:db8::1]:7070");
+  EXPECT_EQ(text(":7070"), "127.0.0.1:7070");
+  EXPECT_EQ(text("7070"), "127.0.0.1:7070");
+  EXPECT_EQ(text("/run/nodes:1.sock"), "a path");
+  EXPECT_EQ(text("nodes.sock"), "a path");
+  EXPECT_EQ(text(""), "a path");
+  for (const char* wrong : {"host:", "host:x", "host:70000", "host:-1", "::1:80", "host:80 "})
+    EXPECT_THROW(tcp_address_of(wrong), std::runtime_error) << wrong;
+}
+
+}  // namespace
+}  // namespace understudy::compositor

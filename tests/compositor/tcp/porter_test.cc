@@ -1,0 +1,225 @@
+// Applications and nodes that meet over TCP: pictures are those of a Unix socket, a line that is cut for a
+// while goes on where it was, and one that is gone ends both sides.
+#include "compositor/tcp/porter.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "compositor/tcp/gate.h"
+#include "compositor/tcp/render_porter.h"
+#include "compositor/tcp/tcp_socket.h"
+#include "tests/compositor/node_group.h"
+
+namespace understudy::compositor::testing {
+namespace {
+
+/// Between two TCP sockets, both ways, until it is told to stop, or for ever.
+class Relay {
+ public:
+  explicit Relay(const TcpAddress& to) : listener_(listen_at(TcpAddress{"127.0.0.1", 0})), to_(to) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+  TcpAddress address() const { return own_address(listener_.get()); }
+  void pause(bool paused) { paused_ = paused; }
+  void cut() { cut_ = true; }
+
+ private:
+  void run(const std::stop_token& stop) {
+    std::vector<std::pair<FileDescriptor, FileDescriptor>> pairs;
+    std::vector<std::byte> bytes(1 << 16);
+    const auto forward = [&](int from, int to) {
+      const ssize_t got = ::recv(from, bytes.data(), bytes.size(), MSG_DONTWAIT);
+      for (ssize_t sent = 0; sent < got;) {
+        const ssize_t now = ::send(to, bytes.data() + sent, std::size_t(got - sent), MSG_NOSIGNAL);
+        if (now > 0) sent += now;
+        if (now <= 0 && !wait_until_ready(to, POLLOUT, soon())) return false;
+      }
+      return got > 0 || (got < 0 && errno == EAGAIN);
+    };
+    while (!stop.stop_requested()) {
+      if (cut_) pairs.clear();
+      if (FileDescriptor peer{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)})
+        pairs.emplace_back(std::move(peer), connect_to(to_, soon()));
+      if (!paused_)
+        std::erase_if(pairs, [&](const auto& pair) {
+          return !forward(pair.first.get(), pair.second.get()) || !forward(pair.second.get(), pair.first.get());
+        });
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+
+  FileDescriptor listener_;
+  TcpAddress to_;
+  std::atomic<bool> paused_ = false;
+  std::atomic<bool> cut_ = false;
+  std::jthread thread_;
+};
+
+class PorterTest : public NodeGroupTest {
+ protected:
+  void SetUp() override {
+    gate_thread_ = std::jthread([this](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        std::vector<pollfd> fds;
+        gate_.poll_fds(fds);
+        ::poll(fds.data(), fds.size(), 1);
+        gate_.step();
+      }
+    });
+  }
+  void TearDown() override {
+    service_.reset();
+    application_.clear();
+    gate_thread_ = {};
+    carriers_.clear();
+    NodeGroupTest::TearDown();
+  }
+
+  /// What an application is given that is linked over TCP.
+  RenderService& connect_over(const TcpAddress& address, const LinkWishes& wishes = {}) {
+    const std::string path = folder_ / "porter";
+    const FileDescriptor listener = listen_at(path);
+    application_.emplace_back([this, address, wishes, fd = ::dup(listener.get())] {
+      const FileDescriptor listening(fd);
+      if (!wait_until_ready(listening.get(), POLLIN, soon())) return;
+      Connection here(
+          FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)));
+      TcpLink link(connect_link(address, secret_, wishes, soon()), limits::max_picture_message_bytes);
+      why_ = ApplicationPorter(here, link).run();
+    });
+    service_ = linked_service(path, 20'000);
+    ::unlink(path.c_str());
+    return *service_;
+  }
+
+  const Secret secret_ = Secret(std::as_bytes(std::span("sixteen bytes or more")));
+  std::vector<std::jthread> carriers_;
+  Gate gate_ = Gate(
+      TcpAddress{"127.0.0.1", 0}, secret_, [](const LinkWishes&) { return LinkVerdict::welcome; },
+      [this](FileDescriptor socket, const LinkWishes& wishes) {
+        carriers_.emplace_back([this, fd = std::make_shared<FileDescriptor>(std::move(socket)), wishes] {
+          TcpLink link(std::move(*fd), limits::max_message_bytes);
+          Connection here(connect_to(path_, soon()));
+          NodesPorter(here, link, wishes).run();
+        });
+      },
+      [](const std::string& line) { std::printf("%s\n", line.c_str()); });
+  std::jthread gate_thread_;
+  std::string why_;
+  std::vector<std::jthread> application_;
+  std::unique_ptr<RenderService> service_;
+};
+
+TEST_F(PorterTest, PicturesAreThoseOfAUnixSocketToTheBit) {
+  start(3);
+  const Texture texture = some_texture();
+  const auto here = connect();
+  RenderService& there = connect_over(gate_.address());
+  EXPECT_EQ(there.nodes(), 3);
+  Texture other = texture;
+  other.description.id = 8;
+  upload(*here, texture);
+  upload(there, other);
+  for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {
+    auto request = some_request(texture, op);
+    const volume::Image expected = whole_picture(here->render(request), request);
+    request.volume = 8;
+    EXPECT_EQ(whole_picture(there.render(request), request).rgba, expected.rgba);
+    // A larger window: new memory at both ends.
+    request = volume::testing::request_for(other, volume::testing::usual_camera(301, 203), 301, 203, 50);
+    const volume::Image large = whole_picture(there.render(request), request);
+    request.volume = texture.description.id;
+    EXPECT_EQ(whole_picture(here->render(request), request).rgba, large.rgba);
+  }
+  // A refusal comes through as one, and the link goes on.
+  auto unknown = some_request(texture);
+  unknown.volume = 99;
+  EXPECT_THROW(there.render(unknown), RequestRefused);
+  there.forget_volume(8);
+}
+
+TEST_F(PorterTest, NarrowerPicturesHaveTheErrorThatWasAskedFor) {
+  start(2);
+  const Texture texture = some_texture();
+  const auto request = some_request(texture);
+  const auto here = connect();
+  upload(*here, texture);
+  const volume::Image expected = whole_picture(here->render(request), request);
+  for (const auto& [wishes, most, rms] :
+       {std::tuple(LinkWishes{LinkedTo::nodes, Layout::rgba16f}, 1.0 / 2048, 1.0 / 2048),
+        std::tuple(LinkWishes{LinkedTo::nodes, Layout::rgba8}, 1.0 / 510 + 1e-6, 1.0 / 510),
+        std::tuple(LinkWishes{LinkedTo::nodes, Layout::rgba32f, 85}, 0.3, 0.03)}) {
+    RenderService& there = connect_over(gate_.address(), wishes);
+    upload(there, texture);
+    double largest = 0;
+    double sum = 0;
+    const volume::Image got = whole_picture(there.render(request), request);
+    for (std::size_t i = 0; i < got.rgba.size(); ++i) {
+      const double difference = std::abs(double(got.rgba[i]) - double(expected.rgba[i]));
+      largest = std::max(largest, difference);
+      sum += difference * difference;
+    }
+    const double measured = std::sqrt(sum / double(got.rgba.size()));
+    std::printf("largest %.2e, rms %.2e\n", largest, measured);
+    EXPECT_LE(largest, most);
+    EXPECT_LE(measured, rms);
+    EXPECT_GT(largest, 0) << "it was narrower";
+    if (wishes.jpeg_quality > 0) {
+      EXPECT_EQ(whole_picture(there.render(request), request).rgba, expected.rgba) << "the view rests";
+    }
+    service_.reset();
+    application_.clear();
+  }
+}
+
+TEST_F(PorterTest, ALineThatIsCutForAWhileGoesOnWhereItWas) {
+  start(2);
+  Relay relay(gate_.address());
+  const Texture texture = some_texture();
+  const auto request = some_request(texture);
+  RenderService& there = connect_over(relay.address());
+  upload(there, texture);
+  const volume::Image before = whole_picture(there.render(request), request);
+  relay.pause(true);
+  const std::jthread again([&] {
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    relay.pause(false);
+  });
+  EXPECT_EQ(whole_picture(there.render(request), request).rgba, before.rgba);
+}
+
+TEST_F(PorterTest, ALineThatIsGoneIsALostService) {
+  start(2);
+  Relay relay(gate_.address());
+  const Texture texture = some_texture();
+  const auto request = some_request(texture);
+  RenderService& there = connect_over(relay.address());
+  upload(there, texture);
+  relay.cut();
+  EXPECT_THROW(there.render(request), ServiceLost);
+  // The nodes serve others, and a new link.
+  upload(connect_over(gate_.address()), texture);
+  EXPECT_NO_THROW(service_->render(request));
+}
+
+TEST_F(PorterTest, AnApplicationThatLeavesEndsItsWayThrough) {
+  start(1);
+  const auto before = open_descriptors();
+  for (int i = 0; i < 5; ++i) {
+    const Texture texture = some_texture();
+    upload(connect_over(gate_.address()), texture);
+    service_.reset();
+    application_.clear();
+    EXPECT_EQ(why_, "");
+  }
+  gate_thread_ = {};
+  carriers_.clear();
+  EXPECT_TRUE(eventually([&] { return open_descriptors() <= before; })) << open_descriptors() << " " << before;
+}
+
+}  // namespace
+}  // namespace understudy::compositor::testing

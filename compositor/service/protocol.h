@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 9;         ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 10;        ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -42,6 +42,9 @@ enum class MessageType : std::uint16_t {
   load_volume,    ///< from an application to rank 0
   continue_load,  ///< the same
   loading,        ///< the reply to both
+  // how often values occur in one (load_protocol.h)
+  histogram,  ///< from an application to rank 0
+  counted,    ///< the reply
   // what pixels would show without a step (integral_parts.h)
   integrals,   ///< from an application to rank 0
   integrated,  ///< the reply

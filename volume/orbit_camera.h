@@ -10,6 +10,8 @@ struct OrbitCamera {
   double elevation = 20;  ///< degrees above the plane of x and y
   double distance = 4;    ///< in half diagonals of the volume; below 1 the eye may be inside
   double roll = 0;        ///< degrees that the camera turns about its line of sight; 180: z is down
+
+  bool operator==(const OrbitCamera&) const = default;
 };
 
 /// Degrees, of the shorter side.

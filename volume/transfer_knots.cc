@@ -100,9 +100,15 @@ void check(const TransferKnots& knots) {
         fmt::format("all knots stand at {}; give them different places", knots.knots.front().at));
 }
 
+std::vector<std::string> built_in_knot_names() {
+  std::vector<std::string> names;
+  for (const Named& row : named()) names.emplace_back(row.name);
+  return names;
+}
+
 std::string built_in_knots() {
   std::string names;
-  for (const Named& row : named()) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  for (const std::string& name : built_in_knot_names()) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
 

@@ -24,6 +24,7 @@ void check(const TransferKnots& knots);
 
 /// A built-in one. Throws std::invalid_argument, with the names that there are.
 TransferKnots knots_named(const std::string& name);
+std::vector<std::string> built_in_knot_names();
 /// "grey, engine, ..."
 std::string built_in_knots();
 

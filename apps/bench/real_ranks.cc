@@ -122,7 +122,7 @@ void measure(const Settings& settings, const std::vector<Scene>& scenes, const W
   nodes.choices.exchange = compositor::name_of(way.algorithm);
   nodes.choices.home = name_of(way.home);
   nodes.choices.overlap = nodes.choices.packed = "off";
-  launcher::with_own_nodes(nodes, [&](const std::string& socket) {
+  launcher::with_own_nodes(nodes, [&](const std::string& socket, const std::stop_token&) {
     constexpr std::chrono::minutes patience{5};
     const auto service =
         compositor::linked_loading_service(socket, {patience, patience, patience, patience, patience});

@@ -35,7 +35,9 @@ volume::TransferKnots::Knot knot_in(const Json& from) {
   return knot;
 }
 
-volume::TransferKnots knots_in(const Json& json) {
+}  // namespace
+
+volume::TransferKnots knots_in(const nlohmann::json& json) {
   volume::TransferKnots knots;
   const std::string positions = json.value("positions", "range");
   if (positions != "range" && positions != "values")
@@ -53,8 +55,6 @@ volume::TransferKnots knots_in(const Json& json) {
   check(knots);
   return knots;
 }
-
-}  // namespace
 
 volume::TransferKnots read_knots(const std::string& file_or_name) {
   if (!std::filesystem::exists(file_or_name)) return volume::knots_named(file_or_name);

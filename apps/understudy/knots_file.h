@@ -4,11 +4,15 @@
 // that of one voxel's length.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "volume/transfer_knots.h"
 
 namespace understudy::launcher {
+
+/// As such a file has them. Throws std::exception: what is wrong.
+volume::TransferKnots knots_in(const nlohmann::json& json);
 
 /// A file, where there is one of this name, or a built-in table. Throws std::runtime_error and
 /// std::invalid_argument: which file, what is wrong, what to do.

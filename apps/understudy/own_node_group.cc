@@ -44,8 +44,9 @@ FileDescriptor either(std::initializer_list<int> descriptors) {
 
 }  // namespace
 
-std::vector<std::string> with_own_nodes(const OwnNodes& own,
-                                        const std::function<void(const std::string& socket)>& job) {
+std::vector<std::string> with_own_nodes(
+    const OwnNodes& own,
+    const std::function<void(const std::string& socket, const std::stop_token& stop)>& job) {
   const Installation installation = this_installation();
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty())
     throw std::runtime_error(obstacle);
@@ -62,9 +63,9 @@ std::vector<std::string> with_own_nodes(const OwnNodes& own,
   const FileDescriptor events = either({inbox.descriptor(), job_over.get()});
   std::exception_ptr trouble;
   bool interrupted = false;
-  std::jthread thread([&] {
+  std::jthread thread([&](const std::stop_token& stop) {
     try {
-      job(socket);
+      job(socket, stop);
     } catch (...) {
       trouble = std::current_exception();
     }
@@ -82,7 +83,10 @@ std::vector<std::string> with_own_nodes(const OwnNodes& own,
     }
     if (!interrupted) group->wait_and_serve(events.get());
   }
-  if (interrupted) group.reset();
+  if (interrupted) {
+    thread.request_stop();
+    group.reset();
+  }
   thread.join();
   if (interrupted) throw std::runtime_error("interrupted");
   if (trouble) std::rethrow_exception(trouble);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct OwnNodes {
 
 /// Starts the ranks and runs `job` on a thread of its own, with the nodes' socket, while this thread looks
 /// after them. Returns what the nodes said about who casts their rays. A signal that asks for the end takes the
-/// nodes away, so that the job fails soon. What the job throws is thrown on. Throws std::runtime_error where no
-/// nodes can be started.
-std::vector<std::string> with_own_nodes(const OwnNodes& own,
-                                        const std::function<void(const std::string& socket)>& job);
+/// nodes away and asks the job to stop, so that it fails soon. What the job throws is thrown on. Throws
+/// std::runtime_error where no nodes can be started.
+std::vector<std::string> with_own_nodes(
+    const OwnNodes& own,
+    const std::function<void(const std::string& socket, const std::stop_token& stop)>& job);
 
 }  // namespace understudy::launcher

@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -165,9 +164,7 @@ void write_png(const std::filesystem::path& path, const Picture& picture) {
   png.image.height = static_cast<png_uint_32>(picture.height);
   png.image.format = PNG_FORMAT_RGBA;
   std::vector<std::uint8_t> bytes(picture.rgba.size());
-  std::transform(picture.rgba.begin(), picture.rgba.end(), bytes.begin(), [](float value) {
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
-  });
+  std::transform(picture.rgba.begin(), picture.rgba.end(), bytes.begin(), byte_of);
   if (png_image_write_to_file(&png.image, path.c_str(), 0, bytes.data(), 0, nullptr) == 0)
     fail(path, png.image.message);
 }

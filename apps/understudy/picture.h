@@ -1,6 +1,7 @@
 // Pictures in files: PNG, and PFM (Debevec's portable float map) for composited frames before they are rounded.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -19,6 +20,13 @@ struct Picture {
   float* pixel(int x, int y) { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
   const float* pixel(int x, int y) const { return &rgba[4 * (static_cast<std::size_t>(y) * width + x)]; }
 };
+
+/// 0 to 1 as a byte, rounded to nearest; values outside are clamped, and what is no number is 0.
+constexpr std::uint8_t byte_of(float value) {
+  const float scaled = 255.0F * (value > 0 ? value < 1 ? value : 1.0F : 0.0F);
+  const int whole = int(scaled);
+  return std::uint8_t(scaled - float(whole) >= 0.5F ? whole + 1 : whole);
+}
 
 /// Reads a PNG or a PFM by its first bytes. Beside `frame.pfm`, `frame_alpha.pfm` is its alpha when it exists.
 /// Throws std::runtime_error with the path and what is wrong.

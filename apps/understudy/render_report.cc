@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "apps/understudy/file_scene.h"
+
 namespace understudy::launcher {
 namespace {
 
@@ -60,20 +62,6 @@ Json picture_json(const RenderFigures& figures) {
 }
 
 }  // namespace
-
-volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks) {
-  volume::TexelFigures figures;
-  for (const compositor::RankLoad& rank : ranks) {
-    if (rank.low <= rank.high) {  // a rank may have no share
-      const bool first = figures.low > figures.high;
-      figures.low = first ? rank.low : std::min(figures.low, rank.low);
-      figures.high = first ? rank.high : std::max(figures.high, rank.high);
-    }
-    figures.largest_error = std::max(figures.largest_error, rank.largest_error);
-    figures.not_numbers += rank.not_numbers;
-  }
-  return figures;
-}
 
 std::string summary_text(const RenderFigures& figures) {
   const auto& size = figures.description.size;

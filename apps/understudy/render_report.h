@@ -27,9 +27,6 @@ struct RenderFigures {
   std::vector<compositor::RankLoad> ranks;  ///< after the last frame
 };
 
-/// The values in the volume and how they became texels, summed over the ranks.
-volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks);
-
 std::string summary_text(const RenderFigures& figures);
 /// Throws std::runtime_error.
 void write_render_report(const std::string& path, const RenderFigures& figures);

@@ -107,6 +107,7 @@ std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& co
       case MessageType::load_volume:
       case MessageType::continue_load:
       case MessageType::integrals:
+      case MessageType::histogram:
         return Request{number, std::move(*message)};
       default:
         throw MalformedMessage("an application does not send this type of message");

@@ -100,6 +100,7 @@ class Node {
   std::vector<Outcome> agree(const OwnOutcome& mine, const std::optional<VolumeKey>& filling);
   std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
+  std::vector<std::uint64_t> sum_histograms();
 
   Link& link_;
   RankRenderer renderer_;
@@ -127,7 +128,8 @@ class Node {
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
   std::vector<Rank> integral_order_;
-  std::size_t integrated_ = 0;  // the first of them are known
+  std::size_t integrated_ = 0;            // the first of them are known
+  std::vector<std::uint64_t> histogram_;  // in hand, of this rank's cells
 };
 
 using Clock = std::chrono::steady_clock;
@@ -217,6 +219,7 @@ void Node::follow() {
       composite(outcomes, counts);
     }
     if (order.type == MessageType::integrals) compose_integrals();
+    if (order.type == MessageType::histogram) sum_histograms();
   }
 }
 
@@ -366,6 +369,8 @@ void Node::request(Clients& clients, Clients::Request request) {
   }
   if (order.type == MessageType::integrals)
     return clients.reply(request, MessageType::integrated, encode(compose_integrals()));
+  if (order.type == MessageType::histogram)
+    return clients.reply(request, MessageType::counted, encode_histogram(sum_histograms()));
   if (order.type != MessageType::render) return clients.reply(request, MessageType::done, {});
 
   RenderedReply rendered;
@@ -462,6 +467,11 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         integrals_.resize(question.pixels.size());
         break;
       }
+      case MessageType::histogram: {
+        const HistogramQuestion question = decode_histogram_question(payload);
+        histogram_ = renderer_.histogram({order.client, question.volume}, question.bins);
+        break;
+      }
       default:
         throw MalformedMessage("an application does not send this type of message");
     }
@@ -471,6 +481,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
   if (order.overlapped) draw_in_bands(mine);
   std::vector<Outcome> outcomes = agree(mine, filling);
   if (order.type == MessageType::render && !first_refusal(outcomes)) clear_hidden(outcomes);
+  if (order.type == MessageType::render && !first_refusal(outcomes)) loads_.drew(rendered_, mine.counts);
   if (rebalancer_ && order.type == MessageType::render && !first_refusal(outcomes)) {
     std::vector<RankWork> work;
     work.reserve(outcomes.size());
@@ -597,6 +608,16 @@ std::vector<volume::PixelIntegral> Node::compose_integrals() {
   for (auto part = all.begin(); part != all.end(); part += std::ptrdiff_t(pixels))
     parts.emplace_back(part, part + std::ptrdiff_t(pixels));
   return composed_integrals(parts, integral_order_);
+}
+
+// Of the whole volume, from the parts of all ranks.
+std::vector<std::uint64_t> Node::sum_histograms() {
+  const std::size_t bins = histogram_.size();
+  std::vector<std::uint64_t> all(std::size_t(link_.size()) * bins);
+  link_.gather_to_all(std::as_bytes(std::span(histogram_)), std::as_writable_bytes(std::span(all)));
+  std::vector<std::uint64_t> sums(bins);
+  for (std::size_t i = 0; i < all.size(); ++i) sums[i % bins] += all[i];
+  return sums;
 }
 
 }  // namespace

@@ -20,6 +20,10 @@ class EmbeddedLoadingService : public LoadingService {
     return told(key_of(id), [&](VolumeKey key) { loads_.read_on(key); });
   }
 
+  std::vector<std::uint64_t> histogram(volume::VolumeId id, const volume::HistogramBins& bins) override {
+    return renderer_.histogram(key_of(id), bins);
+  }
+
   void begin_volume(const volume::VolumeDescription& volume) override {
     loads_.forget(key_of(volume.id));
     renderer_.begin(application, volume);
@@ -40,6 +44,7 @@ class EmbeddedLoadingService : public LoadingService {
   Rendered render(const volume::RenderRequest& request) override {
     volume::FrameCounts counts;
     image_ = renderer_.render(application, request, counts);
+    loads_.drew(key_of(request.volume), counts);
     return {image_.view(), counts};
   }
   std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,

@@ -63,6 +63,15 @@ class LinkedService : public LoadingService {
     return load(MessageType::continue_load, encode_id(id));
   }
 
+  std::vector<std::uint64_t> histogram(volume::VolumeId id, const volume::HistogramBins& bins) override {
+    give_up_posted();
+    const Message reply = request(MessageType::histogram, encode(HistogramQuestion{id, bins}), patience_.reply,
+                                  MessageType::counted);
+    auto counts = conversation([&] { return decode_histogram(reply.payload); });
+    if (counts.size() != std::size_t(bins.count)) lose("counted by other bins than were asked for");
+    return counts;
+  }
+
   void begin_change(volume::VolumeId id, std::uint64_t version) override {
     give_up_posted();
     post(MessageType::begin_change, encode(Change{id, version}));

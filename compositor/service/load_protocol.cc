@@ -1,5 +1,8 @@
 #include "compositor/service/load_protocol.h"
 
+#include <array>
+#include <stdexcept>
+
 #include "compositor/service/limits.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/wire.h"
@@ -63,6 +66,10 @@ std::vector<std::byte> encode(std::span<const RankLoad> ranks) {
                                       rank.peak_bytes, rank.not_numbers})
       out.integer(std::int64_t(value));
     for (const double value : {rank.low, rank.high, rank.largest_error}) out.real(value);
+    for (const std::array<int, 3>& corner : {rank.cells.low, rank.cells.high})
+      for (const int cell : corner) out.integer(cell);
+    out.real(rank.picture_ms);
+    out.integer(std::int64_t(rank.picture_samples));
   }
   return out.bytes();
 }
@@ -77,9 +84,51 @@ std::vector<RankLoad> decode_loads(std::span<const std::byte> payload) {
                                  &rank.peak_bytes, &rank.not_numbers})
       *value = in.word("figures of a rank");
     for (double* value : {&rank.low, &rank.high, &rank.largest_error}) *value = in.real("values of a rank");
+    for (std::array<int, 3>* corner : {&rank.cells.low, &rank.cells.high})
+      for (int& cell : *corner) cell = in.small("cells of a rank", -1, volume::max_axis_texels + 1);
+    rank.picture_ms = in.real("picture_ms of a rank");
+    rank.picture_samples = in.word("picture_samples of a rank");
   }
   in.end();
   return ranks;
+}
+
+std::vector<std::byte> encode(const HistogramQuestion& question) {
+  Writer out;
+  out.integer(std::int64_t(question.volume));
+  out.real(question.bins.low);
+  out.real(question.bins.high);
+  out.integer(question.bins.count);
+  return out.bytes();
+}
+
+HistogramQuestion decode_histogram_question(std::span<const std::byte> payload) {
+  Reader in("histogram", payload);
+  HistogramQuestion question;
+  question.volume = in.word("volume");
+  question.bins.low = in.real("low");
+  question.bins.high = in.real("high");
+  question.bins.count = in.small("count", 1, volume::max_histogram_bins);
+  try {
+    volume::check(question.bins);
+  } catch (const std::invalid_argument& error) {
+    in.fail("bins", error.what());
+  }
+  in.end();
+  return question;
+}
+
+std::vector<std::byte> encode_histogram(std::span<const std::uint64_t> counts) {
+  Writer out;
+  out.run(std::as_bytes(counts));
+  return out.bytes();
+}
+
+std::vector<std::uint64_t> decode_histogram(std::span<const std::byte> payload) {
+  Reader in("histogram's reply", payload);
+  std::vector<std::uint64_t> counts = in.values<std::uint64_t>("counts", volume::max_histogram_bins);
+  in.end();
+  return counts;
 }
 
 }  // namespace understudy::compositor

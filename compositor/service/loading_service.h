@@ -9,6 +9,7 @@
 
 #include "compositor/service.h"
 #include "compositor/service/linked.h"
+#include "volume/brick/histogram.h"
 #include "volume/file/texel_stream.h"
 
 namespace understudy::compositor {
@@ -32,6 +33,10 @@ struct RankLoad {
   double high = -1;
   double largest_error = 0;  ///< between a value and that of its texel
   std::uint64_t not_numbers = 0;
+  volume::TexelBox cells;  ///< its own, as the volume is divided now
+  // Of the last picture, where there was one.
+  double picture_ms = 0;
+  std::uint64_t picture_samples = 0;  ///< taken
 
   bool done() const { return texels_done == texels_in_all; }
 };
@@ -45,6 +50,9 @@ class LoadingService : public RenderService {
   /// Every rank reads on for a while; the volume is complete once all are done(). From then on this only tells
   /// what each rank has.
   virtual std::vector<RankLoad> continue_load(volume::VolumeId id) = 0;
+
+  /// How many texels of a complete volume each bin has, summed over the ranks.
+  virtual std::vector<std::uint64_t> histogram(volume::VolumeId id, const volume::HistogramBins& bins) = 0;
 };
 
 /// In this process, on all cores: one rank.

@@ -61,7 +61,15 @@ RankLoad Loads::figures(VolumeKey key) const {
   RankLoad figures = found->second.figures;
   figures.brick_bytes = renderer_.bytes(key);
   figures.peak_bytes = peak_resident_bytes();
+  figures.cells = renderer_.cells(key);
   return figures;
+}
+
+void Loads::drew(VolumeKey key, const volume::FrameCounts& counts) {
+  const auto found = loads_.find(key);
+  if (found == loads_.end()) return;
+  found->second.figures.picture_ms = counts.render_ms;
+  found->second.figures.picture_samples = counts.samples_taken;
 }
 
 void Loads::complete(VolumeKey key) {

@@ -42,6 +42,9 @@ enum class MessageType : std::uint16_t {
   load_volume,    ///< from an application to rank 0
   continue_load,  ///< the same
   loading,        ///< the reply to both
+  // how often values occur in one (load_protocol.h)
+  histogram,  ///< from an application to rank 0
+  counted,    ///< the reply
   // what pixels would show without a step (integral_parts.h)
   integrals,   ///< from an application to rank 0
   integrated,  ///< the reply

@@ -193,6 +193,17 @@ std::size_t RankRenderer::bytes(VolumeKey key) const {
   return find(key).bricks.bytes();
 }
 
+const TexelBox& RankRenderer::cells(VolumeKey key) const {
+  return find(key).tree.box(rank_);
+}
+
+std::vector<std::uint64_t> RankRenderer::histogram(VolumeKey key, const HistogramBins& bins) const {
+  const Volume& volume = find(key);
+  if (volume.state != Volume::State::complete)
+    throw RequestRefused(fmt::format("volume {} is not complete yet", key.volume));
+  return refusing([&] { return volume::histogram(volume.bricks, bins); });
+}
+
 void RankRenderer::end(VolumeKey key) {
   Volume& volume = find(key);
   if (volume.state == Volume::State::filling) refusing([&] { volume.bricks.finish(); });

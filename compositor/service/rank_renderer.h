@@ -14,6 +14,7 @@
 
 #include "compositor/service/integral_parts.h"
 #include "volume/brick/brick_store.h"
+#include "volume/brick/histogram.h"
 #include "volume/image.h"
 #include "volume/partition.h"
 #include "volume/raycast/brick_renderer.h"
@@ -49,6 +50,10 @@ class RankRenderer {
   const volume::VolumeDescription& description(VolumeKey key) const;
   /// What the bricks of this rank take.
   std::size_t bytes(VolumeKey key) const;
+  /// This rank's own cells.
+  const volume::TexelBox& cells(VolumeKey key) const;
+  /// How many texels of a complete volume, those of this rank's own cells, each bin has.
+  std::vector<std::uint64_t> histogram(VolumeKey key, const volume::HistogramBins& bins) const;
   void end(VolumeKey key);
   void forget(VolumeKey key);
   void forget_client(std::uint64_t client);

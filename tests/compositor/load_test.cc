@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -148,6 +149,60 @@ TEST_F(LoadTest, WhatIsWrongWithAFileComesBackAndTheServiceGoesOn) {
     EXPECT_GT(loading->render(some_request(texture)).counts.samples_taken, 0U);
     dismiss();
   }
+}
+
+TEST_F(LoadTest, EveryTexelIsCountedOnceByHoweverManyRanks) {
+  for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32}) {
+    const Texture texture = some_texture(7, type);
+    const std::string file = write("v_41x37x29_" + std::string(name_of(type)) + ".raw", texture.texels);
+    const volume::HistogramBins bins{0.2, 0.7, 100};
+    std::vector<std::uint64_t> expected(100);
+    std::uint64_t inside = 0;
+    const std::size_t size = volume::bytes_per_texel(type);
+    for (std::size_t at = 0; at < texture.texels.size(); at += size) {
+      double value = 0;
+      if (type == TexelType::f32) {
+        float texel = 0;
+        std::memcpy(&texel, &texture.texels[at], size);
+        value = double(texel);
+      } else {
+        std::uint16_t texel = 0;  // of u8 the lower half
+        std::memcpy(&texel, &texture.texels[at], size);
+        value = texel / (type == TexelType::u8 ? 255.0 : 65535.0);
+      }
+      if (value < 0.2 || value > 0.7) continue;
+      ++expected[std::min<std::size_t>(99, std::size_t((value - 0.2) * (100 / (0.7 - 0.2))))];
+      ++inside;
+    }
+    ASSERT_GT(inside, 10000U);
+    ASSERT_LT(inside, 41U * 37U * 29U);
+    for (const int ranks : {0, 1, 3, 5}) {
+      const auto loading = service(ranks);
+      EXPECT_THROW(loading->histogram(7, bins), RequestRefused) << "there is no volume";
+      load(*loading, {texture.description, file, {}, {}});
+      EXPECT_EQ(loading->histogram(7, bins), expected) << ranks << " ranks, " << name_of(type);
+      dismiss();
+    }
+  }
+}
+
+TEST_F(LoadTest, RanksTellTheirCellsAndWhatTheLastPictureTook) {
+  const auto loading = service(3);
+  const Texture texture = some_texture(7, TexelType::u8);
+  load(*loading, {texture.description, write("v_41x37x29_u8.raw", texture.texels), {}, {}});
+  const volume::KdTree tree(texture.description, 3);
+  const volume::FrameCounts counts = loading->render(some_request(texture)).counts;
+  const std::vector<RankLoad> ranks = loading->continue_load(7);
+  ASSERT_EQ(ranks.size(), 3U);
+  std::uint64_t samples = 0;
+  double slowest = 0;
+  for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
+    EXPECT_EQ(ranks[rank].cells, tree.box(int(rank)));
+    samples += ranks[rank].picture_samples;
+    slowest = std::max(slowest, ranks[rank].picture_ms);
+  }
+  EXPECT_EQ(samples, counts.samples_taken);
+  EXPECT_EQ(slowest, counts.render_ms);
 }
 
 TEST(LoadProtocol, MessagesComeBackAsTheyWereAndCutOnesAreMalformed) {

@@ -10,6 +10,7 @@
 
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
+#include "compositor/service/load_protocol.h"
 #include "volume/raycast/pair_lookup.h"
 #include "volume/raycast/ray_caster.h"
 
@@ -135,6 +136,13 @@ std::vector<Kind> all_kinds() {
        }},
       {"integrated", encode(std::array{volume::PixelIntegral{0.25, 0.5, 1.5, 1}, volume::PixelIntegral{}}),
        [](auto b) { return encode(decode_integrals(b)); }},
+      {"loads",
+       encode(std::vector<RankLoad>{{1, 2, 3, 4, 5, -6.5, 7, 8, 9, {{-1, 0, 1}, {2, 3, 4}}, 10.5, 11}, {}}),
+       [](auto b) { return encode(decode_loads(b)); }},
+      {"histogram", encode(HistogramQuestion{7, {-0.5, 1.5, 200}}),
+       [](auto b) { return encode(decode_histogram_question(b)); }},
+      {"counted", encode_histogram(std::array<std::uint64_t, 3>{1, 0, ~std::uint64_t(0)}),
+       [](auto b) { return encode_histogram(decode_histogram(b)); }},
       {"id", encode_id(~std::uint64_t(0)), [](auto b) { return encode_id(decode_id(b)); }},
       {"size", encode_size(4096), [](auto b) { return encode_size(decode_size(b)); }},
       {"text", encode_text("why not"), [](auto b) { return encode_text(decode_text(b)); }},

@@ -1,0 +1,83 @@
+// The conversation with the program: it proves that it knows the secret, and comes back when it was cut.
+
+const again_ms = 1000;
+
+// The secret comes behind '#', which no browser sends anywhere; a reload of this tab finds it again.
+function secretAtHand() {
+  const found = /^#secret=([0-9a-f]+)$/.exec(location.hash);
+  if (found) {
+    sessionStorage.setItem('secret', found[1]);
+    history.replaceState(null, '', location.pathname);
+  }
+  return sessionStorage.getItem('secret');
+}
+
+async function proofOf(secret, challenge) {
+  const bytes = text => new TextEncoder().encode(text);
+  const key = await crypto.subtle.importKey('raw', bytes(secret), {name: 'HMAC', hash: 'SHA-256'}, false, ['sign']);
+  const proof = new Uint8Array(await crypto.subtle.sign('HMAC', key, bytes('understudy view ' + challenge)));
+  return Array.from(proof, byte => byte.toString(16).padStart(2, '0')).join('');
+}
+
+export class Connection {
+  // on: {message(json), picture(head, bytes), closed(), askForSecret(reason)}
+  constructor(on) {
+    this.on = on;
+    this.socket = null;
+    this.open();
+  }
+
+  open() {
+    if (!window.isSecureContext) {
+      this.on.askForSecret('Over plain http from another machine a browser has no cryptography to prove that it ' +
+        `knows the secret. Run ssh -L ${location.port}:127.0.0.1:${location.port} ${location.hostname}, and open ` +
+        `http://localhost:${location.port}/ with the same #secret=… here.`);
+      return;
+    }
+    const secret = secretAtHand();
+    if (!secret) {
+      this.on.askForSecret(null);
+      return;
+    }
+    const socket = new WebSocket(location.origin.replace(/^http/, 'ws') + '/socket');
+    socket.binaryType = 'arraybuffer';
+    let refused = false;
+    socket.onmessage = async event => {
+      if (typeof event.data !== 'string') {
+        const length = new DataView(event.data).getUint32(0, true);
+        const head = JSON.parse(new TextDecoder().decode(new Uint8Array(event.data, 4, length)));
+        this.on.picture(head, new Uint8Array(event.data, 4 + length));
+        return;
+      }
+      const message = JSON.parse(event.data);
+      if (message.kind === 'challenge') {
+        socket.send(JSON.stringify({proof: await proofOf(secret, message.challenge)}));
+      } else if (message.kind === 'refused') {
+        refused = true;
+        sessionStorage.removeItem('secret');
+        this.on.askForSecret(message.reason);
+      } else {
+        this.socket = socket;
+        this.on.message(message);
+      }
+    };
+    socket.onclose = () => {
+      this.socket = null;
+      if (refused) return;
+      this.on.closed();
+      setTimeout(() => this.open(), again_ms);
+    };
+  }
+
+  useSecret(text) {
+    const digits = text.trim().replace(/^.*#secret=/, '');
+    sessionStorage.setItem('secret', digits);
+    this.open();
+  }
+
+  send(message) {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    return true;
+  }
+}

@@ -1,0 +1,171 @@
+// The transfer function: knots over the volume's values, above the volume's histogram.
+
+const radius = 6;
+
+// Opacities of one voxel are mostly small: their cube roots stand side by side.
+const heightOf = opacity => Math.cbrt(opacity);
+const opacityAt = height => height ** 3;
+
+const css = ([r, g, b], alpha = 1) => `rgb(${r * 255} ${g * 255} ${b * 255} / ${alpha})`;
+export const hexOf = colour => '#' + colour.map(v => Math.round(v * 255).toString(16).padStart(2, '0')).join('');
+export const colourIn = hex => [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16) / 255);
+
+export class TransferEditor {
+  // on: {changed(), selected(knot or null), hovered(place or null)}
+  constructor(canvas, on) {
+    this.canvas = canvas;
+    this.on = on;
+    this.knots = [];
+    this.bins = [];
+    this.selected = -1;
+    this.dragging = false;
+    canvas.addEventListener('pointerdown', event => this.press(event));
+    canvas.addEventListener('pointermove', event => this.move(event));
+    canvas.addEventListener('pointerup', () => { this.dragging = false; });
+    canvas.addEventListener('pointerleave', () => this.on.hovered(null));
+    canvas.addEventListener('dblclick', () => this.remove());
+    canvas.addEventListener('keydown', event => {
+      if (event.key === 'Delete' || event.key === 'Backspace') this.remove();
+    });
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  // Of the histogram what lies between the least and the greatest value, as parts of that range.
+  showHistogram(histogram, low, high) {
+    const width = (histogram.high - histogram.low) / histogram.counts.length;
+    this.bins = histogram.counts.map((count, i) => ({
+      from: (histogram.low + i * width - low) / (high - low),
+      to: (histogram.low + (i + 1) * width - low) / (high - low), count}));
+    this.draw();
+  }
+
+  show(knots) {
+    this.knots = knots.map(knot => ({...knot, colour: [...knot.colour]}));
+    this.select(-1);
+  }
+
+  select(index) {
+    this.selected = index;
+    this.on.selected(this.knots[index] ?? null);
+    this.draw();
+  }
+
+  recolour(colour) {
+    if (this.selected < 0) return;
+    this.knots[this.selected].colour = colour;
+    this.changed();
+  }
+
+  remove() {
+    if (this.selected < 0 || this.knots.length <= 2) return;
+    this.knots.splice(this.selected, 1);
+    this.select(-1);
+    this.on.changed();
+  }
+
+  changed() {
+    this.on.selected(this.knots[this.selected] ?? null);
+    this.draw();
+    this.on.changed();
+  }
+
+  // Knots at the rim keep clear of it.
+  get frame() {
+    const {width, height} = this.canvas.getBoundingClientRect();
+    return {left: radius + 2, top: radius + 2, width: width - 2 * radius - 4, height: height - 2 * radius - 4};
+  }
+
+  placeOf(event) {
+    const {left, top} = this.canvas.getBoundingClientRect(), frame = this.frame;
+    const inside = value => Math.min(1, Math.max(0, value));
+    return [inside((event.clientX - left - frame.left) / frame.width),
+            inside(1 - (event.clientY - top - frame.top) / frame.height)];
+  }
+
+  at(x) {
+    const next = this.knots.findIndex(knot => knot.at > x);
+    if (next === 0) return this.knots[0];
+    if (next < 0) return this.knots.at(-1);
+    const [a, b] = [this.knots[next - 1], this.knots[next]];
+    const share = (x - a.at) / (b.at - a.at);
+    return {colour: a.colour.map((value, k) => value + share * (b.colour[k] - value)),
+            opacity: a.opacity + share * (b.opacity - a.opacity)};
+  }
+
+  press(event) {
+    this.canvas.setPointerCapture(event.pointerId);
+    const [x, y] = this.placeOf(event), frame = this.frame;
+    const far = this.knots.map(knot =>
+      Math.hypot((knot.at - x) * frame.width, (heightOf(knot.opacity) - y) * frame.height));
+    const nearest = far.indexOf(Math.min(...far));
+    this.dragging = true;
+    if (far[nearest] <= 2 * radius) return this.select(nearest);
+    const index = this.knots.filter(knot => knot.at <= x).length;
+    this.knots.splice(index, 0, {at: x, colour: [...this.at(x).colour], opacity: opacityAt(y)});
+    this.selected = index;
+    this.changed();
+  }
+
+  move(event) {
+    const [x, y] = this.placeOf(event);
+    this.on.hovered(x);
+    if (!this.dragging || this.selected < 0) return;
+    const knot = this.knots[this.selected];
+    knot.at = Math.min(this.knots[this.selected + 1]?.at ?? 1, Math.max(this.knots[this.selected - 1]?.at ?? 0, x));
+    knot.opacity = opacityAt(y);
+    this.changed();
+  }
+
+  draw() {
+    const ratio = window.devicePixelRatio, {width, height} = this.canvas.getBoundingClientRect(), frame = this.frame;
+    if (!width) return;
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    const context = this.canvas.getContext('2d');
+    context.scale(ratio, ratio);
+    const x = at => frame.left + at * frame.width, y = part => frame.top + (1 - part) * frame.height;
+
+    const most = Math.log1p(Math.max(1, ...this.bins.map(bin => bin.count)));
+    context.fillStyle = '#3a4350';
+    context.beginPath();
+    for (const [i, bin] of this.bins.entries()) {
+      const height = y(Math.log1p(bin.count) / most);
+      if (i === 0) context.moveTo(x(bin.from), y(0));
+      context.lineTo(x(bin.from), height);
+      context.lineTo(x(bin.to), height);
+      if (i === this.bins.length - 1) context.lineTo(x(bin.to), y(0));
+    }
+    context.fill();
+    context.font = '9px system-ui, sans-serif';
+    for (const opacity of [0.001, 0.01, 0.1, 1]) {
+      context.fillStyle = '#ffffff14';
+      context.fillRect(frame.left, y(heightOf(opacity)), frame.width, 1);
+      context.fillStyle = '#8d95a3';
+      context.fillText(String(opacity), frame.left + 2, y(heightOf(opacity)) + 9);
+    }
+    if (this.knots.length < 2) return;
+
+    const fill = context.createLinearGradient(x(0), 0, x(1), 0);
+    for (const knot of this.knots) fill.addColorStop(Math.min(1, Math.max(0, knot.at)), css(knot.colour, 0.45));
+    context.beginPath();
+    context.moveTo(x(0), y(0));
+    // Straight lines of opacity are curves of its cube root.
+    const steps = Math.max(64, Math.round(frame.width));
+    for (let i = 0; i <= steps; ++i) context.lineTo(x(i / steps), y(heightOf(this.at(i / steps).opacity)));
+    context.lineTo(x(1), y(0));
+    context.fillStyle = fill;
+    context.fill();
+    context.strokeStyle = '#ffffffc0';
+    context.lineWidth = 1;
+    context.stroke();
+    this.knots.forEach((knot, i) => {
+      context.beginPath();
+      context.arc(x(knot.at), y(heightOf(knot.opacity)), radius, 0, 7);
+      context.fillStyle = css(knot.colour);
+      context.fill();
+      context.lineWidth = i === this.selected ? 2.5 : 1.25;
+      context.strokeStyle = i === this.selected ? '#f0a04b' : '#ffffff';
+      context.stroke();
+    });
+  }
+}

@@ -1,0 +1,313 @@
+// The page: what the hand does becomes requests, one at a time; what comes back is shown.
+import {Connection} from '/connection.js';
+import {TransferEditor, colourIn, hexOf} from '/editor.js';
+import {colourOf, drawBoxes} from '/overlay.js';
+
+const rest_ms = 150;       // after the last move the picture at rest is asked for
+const most_side = 4096;    // of a picture, as the program has it
+const wheel_step = 1.0015; // for one unit of a wheel's way
+
+const element = id => document.getElementById(id);
+const stage = element('stage'), picture = element('picture'), boxes = element('boxes');
+
+let volume = null;         // what there is to be seen
+let asked = {};            // since the last request
+let asked_at = null;       // when the hand moved first since then
+let on_its_way = null;     // {sequence, since}: one request at most
+let moving = false, rest_timer = 0;
+let took_ms = null;
+let sequence = 0;
+let shown = null, ranks = [];
+const rate = [];           // when the last pictures came
+
+// ---- requests
+
+// Everything that makes a view, for a page that is loaded again or a connection that comes back.
+function remembered() {
+  return JSON.parse(sessionStorage.getItem('view') ?? 'null');
+}
+function remember(part) {
+  sessionStorage.setItem('view', JSON.stringify({...remembered(), ...part}));
+}
+
+function ask(part, moves) {
+  asked_at ??= performance.now();
+  if (part.rotate && asked.rotate) part.rotate = [asked.rotate[0], part.rotate[1]];
+  if (part.pan && asked.pan) part.pan = part.pan.map((value, k) => value + asked.pan[k]);
+  if (part.zoom && asked.zoom) part.zoom.by *= asked.zoom.by;
+  asked = {...asked, ...part};
+  moving = moves;
+  clearTimeout(rest_timer);
+  if (moves) rest_timer = setTimeout(() => ask({}, false), rest_ms);
+  send();
+  tellWhetherBusy();
+}
+
+// For whoever watches the page without eyes.
+function tellWhetherBusy() {
+  document.documentElement.dataset.busy = on_its_way || asked_at !== null || moving ? 'yes' : 'no';
+}
+
+function send() {
+  if (on_its_way || asked_at === null || !volume) return;
+  const message = {...asked, sequence: ++sequence, still: !moving};
+  if (took_ms !== null) message.took_ms = took_ms;
+  if (!connection.send(message)) return;
+  const {table, volume: shows, surfaces, light, step, lossless} = message;
+  remember(JSON.parse(JSON.stringify({table, volume: shows, surfaces, light, step, lossless})));
+  on_its_way = {sequence, since: asked_at};
+  asked = {};
+  asked_at = null;
+  took_ms = null;
+}
+
+async function show(head, bytes) {
+  const bitmap = await createImageBitmap(new Blob([bytes], {type: 'image/' + head.format}));
+  if (picture.width !== bitmap.width || picture.height !== bitmap.height) {
+    picture.width = bitmap.width;
+    picture.height = bitmap.height;
+  }
+  picture.getContext('2d').drawImage(bitmap, 0, 0);
+  bitmap.close();
+  shown = head;
+  remember({camera: head.camera});
+  overlay();
+  answered(head.sequence);
+  const now = performance.now();
+  rate.push(now);
+  while (rate[0] < now - 1000) rate.shift();
+  const ms = head.ms, whole = head.still ? '' : `, ${rate.length} a second`;
+  element('frame').textContent = `${head.width} × ${head.height} ${head.format === 'png' ? 'without loss' : 'as JPEG'}: ` +
+    `${last_ms.toFixed(0)} ms from hand to eye (cast ${ms.render.toFixed(1)}, composite ${ms.composite.toFixed(1)}, ` +
+    `pack ${ms.pack.toFixed(1)})${whole}`;
+  if (!head.still) element('exactness').textContent = '';
+  document.documentElement.dataset.shown = `${head.sequence} ${head.still ? 'still' : 'moving'}`;
+}
+
+let last_ms = 0;
+function answered(number) {
+  if (!on_its_way || number < on_its_way.sequence) return;
+  last_ms = performance.now() - on_its_way.since;
+  took_ms = last_ms;
+  on_its_way = null;
+  send();
+  tellWhetherBusy();
+}
+
+// ---- what the program says
+
+function hear(message) {
+  if (message.kind === 'status') {
+    if (message.state !== 'ready') on_its_way = null;
+    banner(message.state === 'ready' ? null : message.text, message.state === 'loading' ? message.done : null);
+  } else if (message.kind === 'volume') {
+    begin(message);
+  } else if (message.kind === 'figures') {
+    ranks = message.ranks;
+    showRanks();
+    overlay();
+    element('exactness').textContent = message.error === undefined ? '' :
+      `error ${message.error.toFixed(4)} at most, against the integral of ${message.rays} rays`;
+    document.documentElement.dataset.figures = message.sequence;
+  } else if (message.kind === 'impossible') {
+    element('exactness').textContent = message.text;
+    answered(message.sequence);
+  }
+}
+
+function begin(message) {
+  volume = message;
+  on_its_way = null;
+  document.title = `${message.name} · Understudy`;
+  element('name').textContent = message.name;
+  element('about').textContent = `${message.size.join(' × ')} of ${message.type}, ${number(message.low)} to ` +
+    `${number(message.high)}, ` +
+    (message.nodes ? `${message.nodes} node${message.nodes > 1 ? 's' : ''}` : 'in one process');
+  element('low').textContent = number(message.low);
+  element('high').textContent = number(message.high);
+  const before = remembered() ?? {};
+  editor.showHistogram(message.histogram, message.low, message.high);
+  editor.show(before.table?.knots ?? message.table);
+  element('tables').replaceChildren(...Object.entries(message.tables).map(([name, knots]) => {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = name;
+    button.onclick = () => { editor.show(knots); ask({table: {knots: editor.knots}}, false); };
+    return button;
+  }));
+  element('shows-volume').checked = before.volume ?? message.volume;
+  const surface = (before.surfaces ?? message.surfaces)[0];
+  element('shows-surface').checked = Boolean(surface);
+  if (surface) {
+    element('surface-at').value = surface.at;
+    element('surface-colour').value = hexOf(surface.colour);
+    element('surface-opacity').value = surface.opacity;
+  }
+  element('light').checked = before.light ?? message.light;
+  element('step').value = before.step ?? message.step;
+  element('lossless').checked = before.lossless ?? false;
+  tellControls();
+  ask({...before, size: sizeOf(stage)}, false);
+}
+
+function banner(text, part) {
+  element('banner').hidden = text === null;
+  element('banner').classList.toggle('quiet', part !== null);
+  element('banner-text').textContent = text ?? '';
+  element('banner-progress').hidden = part === null;
+  if (part !== null) element('banner-progress').value = part;
+}
+
+function number(value) {
+  return Number.isInteger(value) ? String(value) : value.toPrecision(4);
+}
+
+function showRanks() {
+  const slowest = Math.max(...ranks.map(rank => rank.ms), 1e-9);
+  const most = Math.max(...ranks.map(rank => rank.samples), 1);
+  element('ranks').replaceChildren(...ranks.map((rank, i) => {
+    const row = document.createElement('div');
+    row.className = 'rank';
+    row.title = `${(rank.bytes / 2 ** 20).toFixed(1)} MiB of bricks, ${rank.samples} samples`;
+    const swatch = document.createElement('i');
+    swatch.style.background = colourOf(i);
+    const name = document.createElement('span');
+    name.textContent = String(i);
+    const bars = document.createElement('span');
+    bars.className = 'bars';
+    for (const part of [rank.ms / slowest, rank.samples / most]) {
+      const bar = document.createElement('b');
+      bar.style.width = `${100 * part}%`;
+      bars.append(bar);
+    }
+    const text = document.createElement('output');
+    text.textContent = `${rank.ms.toFixed(1)} ms`;
+    row.append(swatch, name, bars, text);
+    return row;
+  }));
+}
+
+function overlay() {
+  const {width, height} = stage.getBoundingClientRect();
+  boxes.width = width * window.devicePixelRatio;
+  boxes.height = height * window.devicePixelRatio;
+  drawBoxes(boxes, element('shows-boxes').checked ? shown?.matrix : null, ranks);
+}
+
+// ---- the hand on the picture
+
+function sizeOf(of) {
+  const {width, height} = of.getBoundingClientRect();
+  return [width, height].map(side =>
+    Math.min(most_side, Math.max(16, Math.round(side * window.devicePixelRatio))));
+}
+
+// In halves of the shorter side, right and up from the middle.
+function pointAt(x, y) {
+  const {left, top, width, height} = stage.getBoundingClientRect(), half = Math.min(width, height) / 2;
+  return [(x - left - width / 2) / half, (height / 2 - (y - top)) / half];
+}
+
+const held = new Map();  // pointers that are down: where they were last
+picture.addEventListener('contextmenu', event => event.preventDefault());
+picture.addEventListener('pointerdown', event => {
+  picture.setPointerCapture(event.pointerId);
+  held.set(event.pointerId, [event.clientX, event.clientY]);
+});
+for (const end of ['pointerup', 'pointercancel'])
+  picture.addEventListener(end, event => held.delete(event.pointerId));
+picture.addEventListener('pointermove', event => {
+  const before = held.get(event.pointerId);
+  if (!before) return;
+  const now = [event.clientX, event.clientY];
+  held.set(event.pointerId, now);
+  if (held.size === 1) {
+    const from = pointAt(...before), to = pointAt(...now);
+    const pans = event.shiftKey || event.buttons > 1;
+    ask(pans ? {pan: [to[0] - from[0], to[1] - from[1]]} : {rotate: [from, to]}, true);
+    return;
+  }
+  const [, other] = [...held].find(([id]) => id !== event.pointerId);
+  const apart = place => Math.hypot(place[0] - other[0], place[1] - other[1]);
+  const middle = place => pointAt((place[0] + other[0]) / 2, (place[1] + other[1]) / 2);
+  const from = middle(before), to = middle(now);
+  ask({zoom: {by: Math.min(10, Math.max(0.1, apart(now) / Math.max(1, apart(before)))), at: to},
+       pan: [to[0] - from[0], to[1] - from[1]]}, true);
+});
+picture.addEventListener('wheel', event => {
+  event.preventDefault();
+  const way = event.deltaY * (event.deltaMode === 1 ? 20 : event.deltaMode === 2 ? 300 : 1);
+  const by = Math.min(10, Math.max(0.1, wheel_step ** -way));
+  ask({zoom: {by, at: pointAt(event.clientX, event.clientY)}}, true);
+}, {passive: false});
+picture.addEventListener('keydown', event => {
+  const turns = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1]};
+  if (turns[event.key]) ask({rotate: [[0, 0], turns[event.key]]}, true);
+  else if (event.key === '+' || event.key === '-') ask({zoom: {by: event.key === '+' ? 1.15 : 1 / 1.15, at: [0, 0]}}, true);
+  else return;
+  event.preventDefault();
+});
+new ResizeObserver(() => { if (volume) ask({size: sizeOf(stage)}, true); }).observe(stage);
+
+// ---- the controls
+
+const editor = new TransferEditor(element('editor'), {
+  changed: () => ask({table: {knots: editor.knots}}, true),
+  selected: knot => {
+    element('knot').style.visibility = knot ? 'visible' : 'hidden';
+    if (!knot) return;
+    element('knot-colour').value = hexOf(knot.colour);
+    element('knot-text').textContent = `at ${valueAt(knot.at)}, opacity ${knot.opacity.toPrecision(3)}`;
+  },
+  hovered: place => { element('hovered').textContent = place === null ? '' : valueAt(place); },
+});
+function valueAt(place) {
+  return volume ? Number((volume.low + place * (volume.high - volume.low)).toPrecision(4)).toString() : '';
+}
+element('knot').style.visibility = 'hidden';
+element('knot-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
+element('knot-remove').addEventListener('click', () => editor.remove());
+
+function tellControls() {
+  element('surface-value').textContent = valueAt(Number(element('surface-at').value));
+  element('step-text').textContent = Number(element('step').value).toFixed(2);
+}
+function surfaces() {
+  if (!element('shows-surface').checked) return [];
+  return [{at: Number(element('surface-at').value), colour: colourIn(element('surface-colour').value),
+           opacity: Number(element('surface-opacity').value)}];
+}
+element('shows-volume').addEventListener('change', event => ask({volume: event.target.checked}, false));
+element('shows-surface').addEventListener('change', () => ask({surfaces: surfaces()}, false));
+for (const id of ['surface-at', 'surface-colour', 'surface-opacity'])
+  element(id).addEventListener('input', () => {
+    element('shows-surface').checked = true;
+    tellControls();
+    ask({surfaces: surfaces()}, true);
+  });
+element('light').addEventListener('change', event => ask({light: event.target.checked}, false));
+element('step').addEventListener('input', event => { tellControls(); ask({step: Number(event.target.value)}, true); });
+element('lossless').addEventListener('change', event => ask({lossless: event.target.checked}, false));
+element('home').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
+element('shows-boxes').addEventListener('change', overlay);
+
+// ---- the conversation
+
+element('ask').addEventListener('submit', event => {
+  event.preventDefault();
+  element('ask').hidden = true;
+  connection.useSecret(element('secret').value);
+});
+const connection = new Connection({
+  message: hear,
+  picture: (head, bytes) => show(head, bytes).catch(error => { element('exactness').textContent = String(error); answered(head.sequence); }),
+  closed: () => {
+    on_its_way = null;
+    volume = null;
+    banner('The program is not there; it is tried again.', null);
+  },
+  askForSecret: reason => {
+    if (reason) element('ask-reason').textContent = reason;
+    element('ask').hidden = false;
+  },
+});

@@ -1,0 +1,145 @@
+#include "apps/understudy/view/page_messages.h"
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/understudy/view/picture_encoding.h"
+#include "volume/brick/cell_lattice.h"
+#include "volume/file/scalar_type.h"
+
+namespace understudy::launcher {
+namespace {
+
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr int moving_quality = 85;
+
+Json json_of(const volume::TransferKnots& table, double low, double high) {
+  Json knots = Json::array();
+  for (const volume::TransferKnots::Knot& knot : table.knots) {
+    // Pages place knots in the range, whatever the file said.
+    const double at = table.of_values ? (knot.at - low) / (high - low) : knot.at;
+    knots.push_back({{"at", at}, {"colour", knot.colour}, {"opacity", knot.opacity}});
+  }
+  return knots;
+}
+
+Json json_of(const ViewCamera& camera) {
+  return {{"azimuth", camera.orbit.azimuth},
+          {"elevation", camera.orbit.elevation},
+          {"distance", camera.orbit.distance},
+          {"roll", camera.orbit.roll},
+          {"shift", camera.shift}};
+}
+
+/// In texture space; the outer half texel belongs to the outermost cells.
+Json json_of(const volume::TexelBox& cells, const volume::VolumeDescription& volume) {
+  const volume::TexelBox all = volume::cell_lattice(volume).box();
+  Json corners = Json::array({Json::array(), Json::array()});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double size = volume.size[k];
+    corners[0].push_back(cells.low[k] <= all.low[k] ? 0.0 : (cells.low[k] + 0.5) / size);
+    corners[1].push_back(cells.high[k] >= all.high[k] ? 1.0 : (cells.high[k] + 0.5) / size);
+  }
+  return corners;
+}
+
+/// JSON has no other numbers, and text from elsewhere may be any bytes.
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string status_message(Readiness readiness, std::string_view text, double part_done) {
+  const char* const name = readiness == Readiness::loading ? "loading"
+                           : readiness == Readiness::lost  ? "lost"
+                                                           : "ready";
+  return dumped({{"kind", "status"}, {"state", name}, {"text", text}, {"done", part_done}});
+}
+
+std::string volume_message(const ShownVolume& volume, const ViewState& state) {
+  const FileScene& scene = volume.scene();
+  const volume::TexelFigures& values = volume.values();
+  const double low = values.low <= values.high ? values.low : 0.0;
+  const double high = values.low < values.high ? values.high : low + 1;
+  Json tables = Json::object();
+  for (const std::string& name : volume::built_in_knot_names())
+    tables[name] = json_of(volume::knots_named(name), low, high);
+  Json surfaces = Json::array();
+  for (const SurfaceChoice& surface : state.picture().shading.surfaces)
+    surfaces.push_back({{"at", surface.of_range ? surface.at : (surface.at - low) / (high - low)},
+                        {"colour", {surface.colour[0], surface.colour[1], surface.colour[2]}},
+                        {"opacity", surface.colour[3]}});
+  const ShownVolume::Histogram& histogram = volume.histogram();
+  return dumped(
+      {{"kind", "volume"},
+       {"name", std::filesystem::path(scene.load.file).filename().string()},
+       {"size", scene.file.size},
+       {"spacing", scene.file.spacing},
+       {"type", volume::name_of(scene.file.type)},
+       {"low", low},
+       {"high", high},
+       {"histogram", {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
+       {"tables", tables},
+       {"table", json_of(state.picture().knots, low, high)},
+       {"volume", state.picture().shading.shows_volume},
+       {"surfaces", surfaces},
+       {"light", state.picture().shading.light.has_value()},
+       {"step", state.picture().step},
+       {"camera", json_of(state.camera())},
+       {"nodes", volume.nodes()}});
+}
+
+std::string figures_message(std::uint64_t sequence, const FileScene& scene,
+                            const std::optional<ShownVolume::Exactness>& exactness,
+                            const std::vector<compositor::RankLoad>& ranks) {
+  Json loads = Json::array();
+  for (const compositor::RankLoad& rank : ranks)
+    loads.push_back({{"box", json_of(rank.cells, scene.load.volume)},
+                     {"ms", rank.picture_ms},
+                     {"samples", rank.picture_samples},
+                     {"bytes", rank.brick_bytes}});
+  Json figures{{"kind", "figures"}, {"sequence", sequence}, {"ranks", loads}};
+  if (exactness) {
+    figures["error"] = exactness->error;
+    figures["rays"] = exactness->rays;
+  }
+  return dumped(figures);
+}
+
+std::string refusal_message(std::uint64_t sequence, std::string_view reason) {
+  return dumped({{"kind", "impossible"}, {"sequence", sequence}, {"text", reason}});
+}
+
+std::vector<std::byte> picture_message(const ViewState& state, const ShownVolume::Drawn& drawn) {
+  const Clock::time_point start = Clock::now();
+  const std::vector<std::byte> picture =
+      state.lossless() ? png_of(drawn.picture) : jpeg_of(drawn.picture, moving_quality);
+  const std::string head =
+      dumped({{"kind", "picture"},
+              {"sequence", state.sequence()},
+              {"still", state.still()},
+              {"width", drawn.picture.width},
+              {"height", drawn.picture.height},
+              {"format", state.lossless() ? "png" : "jpeg"},
+              {"camera", json_of(state.camera())},
+              {"matrix", drawn.request.texture_to_clip},
+              {"samples", drawn.counts.samples_taken},
+              {"ms",
+               {{"render", drawn.counts.render_ms},
+                {"composite", drawn.counts.composite_ms},
+                {"picture", drawn.ms},
+                {"pack", std::chrono::duration<double, std::milli>(Clock::now() - start).count()}}}});
+  std::vector<std::byte> message(4 + head.size() + picture.size());
+  for (std::size_t i = 0; i < 4; ++i) message[i] = std::byte(head.size() >> 8 * i & 255U);
+  std::memcpy(message.data() + 4, head.data(), head.size());
+  std::memcpy(message.data() + 4 + head.size(), picture.data(), picture.size());
+  return message;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,60 @@
+#include "apps/understudy/view/picture_encoding.h"
+
+#include <fmt/format.h>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "apps/understudy/picture.h"
+
+namespace understudy::launcher {
+
+RgbPicture over_black(const volume::ImageView& image, const volume::Rect& window) {
+  RgbPicture picture{window.width, window.height, {}};
+  picture.rgb.assign(3 * window.pixels(), 0);
+  for (int y = 0; y < image.rect.height; ++y) {
+    const float* from = &image.rgba[4 * std::size_t(y) * std::size_t(image.rect.width)];
+    const int row = window.height - 1 - (image.rect.y + y - window.y);
+    const int column = image.rect.x - window.x;
+    std::uint8_t* to = &picture.rgb[3 * (std::size_t(row) * std::size_t(window.width) + std::size_t(column))];
+    for (int x = 0; x < image.rect.width; ++x, from += 4, to += 3)
+      for (int channel = 0; channel < 3; ++channel) to[channel] = byte_of(from[channel]);
+  }
+  return picture;
+}
+
+std::vector<std::byte> png_of(const RgbPicture& picture) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = png_uint_32(picture.width);
+  png.height = png_uint_32(picture.height);
+  png.format = PNG_FORMAT_RGB;
+  png.flags = PNG_IMAGE_FLAG_FAST;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::vector<std::byte> bytes(size);
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) == 0)
+    throw std::runtime_error(fmt::format("a picture of {} x {} is not to be written as PNG: {}", picture.width,
+                                         picture.height, static_cast<const char*>(png.message)));
+  bytes.resize(size);
+  return bytes;
+}
+
+std::vector<std::byte> jpeg_of(const RgbPicture& picture, int quality) {
+  const std::unique_ptr<void, int (*)(tjhandle)> compressor(tjInitCompress(), tjDestroy);
+  if (!compressor) throw std::runtime_error("there is no JPEG compressor");
+  // As large as any JPEG of this size, so that nothing is allocated within.
+  unsigned long size = tjBufSize(picture.width, picture.height, TJSAMP_420);
+  std::vector<std::byte> bytes(size);
+  auto* to = reinterpret_cast<unsigned char*>(bytes.data());
+  if (tjCompress2(compressor.get(), picture.rgb.data(), picture.width, 0, picture.height, TJPF_RGB, &to, &size,
+                  TJSAMP_420, quality, TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0)
+    throw std::runtime_error(fmt::format("a picture of {} x {} is not to be written as JPEG: {}", picture.width,
+                                         picture.height, tjGetErrorStr2(compressor.get())));
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,89 @@
+#include "apps/understudy/view/shown_volume.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "spu/volume/budget/calibration.h"
+
+namespace understudy::launcher {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Rays that are integrated of a picture at rest, and what that may take.
+constexpr std::size_t rays_at_once = 256;
+constexpr double most_ms = 40;
+
+bool has_integral(const volume::RenderRequest& request) {
+  return request.op == volume::Operator::over && request.surfaces.empty() && !request.light &&
+         request.cut_at_bricks == 0;
+}
+
+}  // namespace
+
+void ShownVolume::load(const std::function<void(const std::vector<compositor::RankLoad>&)>& progress) {
+  image_ = {};  // belongs to the service
+  service_.reset();
+  service_ = make_();
+  std::vector<compositor::RankLoad> ranks = service_->begin_load(scene_.load);
+  progress(ranks);
+  while (!std::ranges::all_of(ranks, &compositor::RankLoad::done)) {
+    ranks = service_->continue_load(scene_.load.volume.id);
+    progress(ranks);
+  }
+  values_ = texel_figures(ranks);
+  histogram_ = measured_histogram();
+}
+
+// Bins of integers are a whole number of them wide: where some had one more, they would stand out.
+ShownVolume::Histogram ShownVolume::measured_histogram() {
+  Histogram result;
+  if (values_.low > values_.high) return result;
+  const volume::TexelMapping& mapping = scene_.mapping;
+  double low = values_.low, high = values_.high > low ? values_.high : low + 1;
+  int count = volume::max_histogram_bins;
+  if (mapping.type != volume::TexelType::f32) {
+    const double unit = std::abs(mapping.scale);
+    const double steps = std::round((high - low) / unit) + 1;
+    const double width = std::max(1.0, std::ceil(steps / volume::max_histogram_bins));
+    count = int(std::ceil(steps / width));
+    low -= unit / 2;
+    high = low + count * width * unit;
+  }
+  const double a = mapping.normalised(low), b = mapping.normalised(high);
+  result.low = low;
+  result.high = high;
+  result.counts = service_->histogram(scene_.load.volume.id, {std::min(a, b), std::max(a, b), count});
+  if (a > b) std::ranges::reverse(result.counts);  // texels fall where values rise
+  return result;
+}
+
+ShownVolume::Drawn ShownVolume::draw(const ViewState& state) {
+  request_ = state.request(scene_, values_);
+  const Clock::time_point start = Clock::now();
+  const compositor::Rendered rendered = service_->render(request_);
+  image_ = rendered.image;
+  return {over_black(image_, request_.window), request_, rendered.counts,
+          std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
+}
+
+std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
+  if (!has_integral(request_) || image_.rect.empty()) return std::nullopt;
+  const std::vector<volume::Pixel> pixels = spu::spread_over(image_.rect, rays_looked_at_, rays_at_once);
+  rays_looked_at_ += rays_at_once;
+  const std::vector<volume::PixelIntegral> integrals = service_->integrals(request_, pixels, most_ms);
+  return Exactness{spu::greatest_error(image_, std::span(pixels).first(integrals.size()), integrals),
+                   integrals.size()};
+}
+
+std::vector<compositor::RankLoad> ShownVolume::ranks() {
+  // The picture of the service is valid until the next call but integrals().
+  if (image_.rgba.data() != kept_.data()) {
+    kept_.assign(image_.rgba.begin(), image_.rgba.end());
+    image_.rgba = kept_;
+  }
+  return service_->continue_load(scene_.load.volume.id);
+}
+
+}  // namespace understudy::launcher

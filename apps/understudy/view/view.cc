@@ -1,0 +1,78 @@
+#include "apps/understudy/view/view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "apps/understudy/file_scene.h"
+#include "apps/understudy/loading_nodes.h"
+#include "apps/understudy/view/view_state.h"
+#include "apps/understudy/view/web_view.h"
+#include "apps/understudy/view/window.h"
+#include "compositor/service.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr int max_frames = 100000;
+constexpr int last_port = 65535;
+
+struct ViewArguments {
+  SceneArguments scene;
+  LoadingNodes nodes;
+  std::optional<int> port;
+  std::string host = WebAddress().host;
+  WindowScript script;
+};
+
+int view(const ViewArguments& arguments) {
+  FileScene scene = scene_of(arguments.scene);
+  if (std::min(scene.picture.width, scene.picture.height) < least_view_side ||
+      std::max(scene.picture.width, scene.picture.height) > most_view_side)
+    throw std::invalid_argument(fmt::format("a view of {} pixels; give {} to {} a side", arguments.scene.size,
+                                            least_view_side, most_view_side));
+  widen_margin(scene);
+  with_loading_nodes(arguments.nodes, [&](const ServiceMaker& make, const std::stop_token& stop) {
+    if (arguments.port)
+      show_on_web(scene, make, stop, {arguments.host, *arguments.port});
+    else
+      show_in_window(scene, make, stop, arguments.script);
+  });
+  return 0;
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* command =
+      app.add_subcommand("view", "a volume in a file to look at, in a browser or a window, without OpenGL");
+  add_scene_options(*command, arguments->scene);
+  add_loading_nodes(*command, arguments->nodes);
+  CLI::Option* web = command
+                         ->add_option("--web", arguments->port,
+                                      "in browsers, by the link that is printed; 0: any port that is free")
+                         ->check(CLI::Range(0, last_port))
+                         ->type_name("PORT");
+  command
+      ->add_option("--bind", arguments->host,
+                   "listen there instead of on this machine alone; what travels is not encrypted, and "
+                   "browsers elsewhere need `ssh -L` (docs/view.md)")
+      ->type_name("HOST")
+      ->needs(web)
+      ->capture_default_str();
+  CLI::Option* frames =
+      command->add_option("--frames", arguments->script.frames, "close the window after so many")
+          ->check(CLI::Range(1, max_frames))
+          ->excludes(web);
+  command->add_option("--orbit", arguments->script.orbit, "degrees of azimuth from one frame to the next")
+      ->needs(frames);
+  command->add_option("--save", arguments->script.save, "the last frame")->type_name("P.png")->needs(frames);
+  command->callback([arguments, &chosen] { chosen = [arguments] { return view(*arguments); }; });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,55 @@
+// What a viewer's page asks for, as JSON text (README.md lists the keys). Whoever sends it may be anybody:
+// every length and every number is compared with a limit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "apps/understudy/shading_options.h"
+#include "apps/understudy/view/camera.h"
+#include "volume/transfer_knots.h"
+
+namespace understudy::launcher {
+
+constexpr std::size_t max_view_message_bytes = std::size_t(32) << 10U;
+constexpr int least_view_side = 16;
+constexpr int most_view_side = 4096;
+constexpr std::size_t max_view_knots = 256;
+constexpr double least_view_step = 0.25;  ///< voxels
+constexpr double most_view_step = 4;
+
+/// The message cannot be believed; the text says which key, and what is wrong with it.
+class MalformedView : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What is not there stays as it was.
+struct ViewMessage {
+  std::uint64_t sequence = 0;     ///< comes back with the picture
+  bool still = true;              ///< false: while the camera moves
+  std::optional<bool> lossless;   ///< while it moves as well
+  std::optional<double> took_ms;  ///< the last picture, from the hand to the eye
+  std::optional<std::array<int, 2>> size;
+  std::optional<ViewCamera> camera;
+  std::optional<std::array<PicturePoint, 2>> rotate;  ///< from, to
+  std::optional<PicturePoint> pan;
+  struct Zoom {
+    double by = 1;
+    PicturePoint at{};
+  };
+  std::optional<Zoom> zoom;
+  std::optional<volume::TransferKnots> table;
+  std::optional<bool> shows_volume;
+  std::optional<std::vector<SurfaceChoice>> surfaces;  ///< at places of the range
+  std::optional<bool> light;
+  std::optional<double> step;  ///< voxels
+};
+
+/// Throws MalformedView.
+ViewMessage decode_view_message(std::string_view text);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,99 @@
+#include "apps/understudy/view/view_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/raycast/segment_scene.h"
+
+namespace understudy::launcher {
+namespace {
+
+/// Where no light was asked for on the command line, it shines from the eye on everything.
+volume::Light usual_lamp(const FileScene& scene) {
+  ShadingArguments arguments;
+  arguments.light = "all";
+  return *shading_of(arguments, scene.extent()).light;
+}
+
+/// A picture is never divided by more along a side.
+constexpr double coarsest = 6;
+
+}  // namespace
+
+ViewState::ViewState(const FileScene& scene)
+    : camera_{scene.picture.camera, {}},
+      picture_(scene.picture),
+      lamp_(scene.picture.shading.light.value_or(usual_lamp(scene))) {}
+
+void ViewState::apply(const ViewMessage& message) {
+  sequence_ = message.sequence;
+  still_ = message.still;
+  if (message.lossless) lossless_moving_ = *message.lossless;
+  if (message.took_ms) learn(*message.took_ms);
+  if (message.size) {
+    picture_.width = (*message.size)[0];
+    picture_.height = (*message.size)[1];
+  }
+  if (message.camera) camera_ = *message.camera;
+  if (message.rotate) camera_ = rotated(camera_, (*message.rotate)[0], (*message.rotate)[1]);
+  if (message.pan) camera_ = panned(camera_, *message.pan);
+  if (message.zoom) camera_ = zoomed(camera_, message.zoom->by, message.zoom->at);
+  if (message.table) picture_.knots = *message.table;
+  Shading& shading = picture_.shading;
+  if (message.shows_volume) shading.shows_volume = *message.shows_volume;
+  if (message.surfaces) shading.surfaces = *message.surfaces;
+  if (message.light) shading.light = *message.light ? std::optional(lamp_) : std::nullopt;
+  if (message.step) picture_.step = *message.step;
+}
+
+std::array<int, 2> ViewState::size() const {
+  const std::array<int, 2> whole{picture_.width, picture_.height};
+  if (still_ || !ms_a_pixel_) return whole;
+  const double ms = *ms_a_pixel_ * picture_.width * picture_.height;
+  if (ms <= moving_ms) return whole;
+  const double by = std::min(coarsest, std::sqrt(ms / moving_ms));
+  return {std::max(1, int(picture_.width / by)), std::max(1, int(picture_.height / by))};
+}
+
+void ViewState::took(const std::array<int, 2>& size, double ms) {
+  last_size_ = size;
+  if (!ms_a_pixel_) learn(ms);
+}
+
+void ViewState::learn(double ms) {
+  const double pixels = double(last_size_[0]) * last_size_[1];
+  if (pixels == 0) return;
+  constexpr double weight = 0.3;
+  ms_a_pixel_ = ms_a_pixel_ ? *ms_a_pixel_ + weight * (ms / pixels - *ms_a_pixel_) : ms / pixels;
+}
+
+volume::RenderRequest ViewState::request(const FileScene& scene, const volume::TexelFigures& values) const {
+  PictureSettings picture = picture_;
+  picture.camera = camera_.orbit;
+  const std::array<int, 2> now = size();
+  picture.width = now[0];
+  picture.height = now[1];
+  Shading& shading = picture.shading;
+  if (!shading.surfaces.empty() || shading.light) {
+    // These show under `over`, with samples or segments.
+    shading.op = volume::Operator::over;
+    if (shading.method == volume::Method::adaptive) shading.method = volume::Method::post_classified;
+  }
+  volume::RenderRequest request = request_of(scene, picture, values);
+  shift(request, camera_.shift);
+  return request;
+}
+
+void widen_margin(FileScene& scene) {
+  PictureSettings widest = scene.picture;
+  widest.step = std::max(widest.step, most_view_step);
+  widest.shading.op = volume::Operator::over;
+  widest.shading.method = volume::Method::pre_integrated;
+  widest.shading.light = usual_lamp(scene);
+  widest.shading.surfaces = {SurfaceChoice{}};
+  const int margin = volume::margin_needed(scene.load.volume, unclassified_request(scene, widest));
+  if (margin <= *std::ranges::max_element(scene.file.size))
+    scene.load.volume.margin = std::max(scene.load.volume.margin, margin);
+}
+
+}  // namespace understudy::launcher

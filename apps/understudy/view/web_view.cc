@@ -1,0 +1,265 @@
+#include "apps/understudy/view/web_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "apps/understudy/load_progress.h"
+#include "apps/understudy/view/page_messages.h"
+#include "apps/understudy/view/secret.h"
+#include "apps/understudy/view/shown_volume.h"
+#include "apps/understudy/view/view_message.h"
+#include "apps/understudy/view/web_server.h"
+
+namespace understudy::launcher {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Viewer = WebServer::Viewer;
+
+constexpr std::size_t secret_bytes = 16;
+/// Between two attempts to have nodes again.
+constexpr std::chrono::seconds a_while{1};
+/// Of a picture at rest.
+constexpr std::size_t enough_rays = 256;
+/// What is said of a load that goes on.
+constexpr std::chrono::milliseconds progress_interval{100};
+
+double part_done(const std::vector<compositor::RankLoad>& ranks) {
+  std::uint64_t done = 0, all = 0;
+  for (const compositor::RankLoad& rank : ranks) {
+    done += rank.texels_done;
+    all += rank.texels_in_all;
+  }
+  return all == 0 ? 1 : double(done) / double(all);
+}
+
+class WebView {
+ public:
+  WebView(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
+          const WebAddress& address)
+      : scene_(scene),
+        stop_(stop),
+        volume_(scene, make),
+        server_(address.host, address.port, random_digits(secret_bytes),
+                {[this](Viewer viewer) { join(viewer); },
+                 [this](Viewer viewer, std::string_view text) { hear(viewer, text); },
+                 [this](Viewer viewer) { sent(viewer); }, [this](Viewer viewer) { leave(viewer); }}) {}
+
+  const WebServer& server() const { return server_; }
+
+  void run() {
+    load();
+    while (!stop_.stop_requested()) {
+      try {
+        serve();
+      } catch (const compositor::ServiceLost& lost) {
+        recover(lost.what());
+      }
+    }
+  }
+
+ private:
+  struct Seat {
+    ViewState state;
+    bool wants_picture = false;
+    bool is_sent_one = false;  ///< which has not left yet
+  };
+
+  /// Of a picture at rest that its viewer has already.
+  struct Examination {
+    Viewer viewer = 0;
+    std::uint64_t sequence = 0;
+    std::vector<compositor::RankLoad> ranks;
+    ShownVolume::Exactness exactness;
+  };
+
+  // On the server's thread.
+
+  void join(Viewer viewer) {
+    const std::lock_guard lock(mutex_);
+    Seat& seat = seats_.emplace(viewer, Seat{ViewState(scene_)}).first->second;
+    server_.send_text(viewer, status_);
+    if (is_ready_) server_.send_text(viewer, volume_message(volume_, seat.state));
+  }
+
+  void hear(Viewer viewer, std::string_view text) {
+    const std::lock_guard lock(mutex_);
+    const auto found = seats_.find(viewer);
+    if (found == seats_.end()) return;
+    try {
+      // Whatever was wanted before and has not been begun, this takes its place.
+      found->second.state.apply(decode_view_message(text));
+      found->second.wants_picture = true;
+    } catch (const MalformedView& error) {
+      server_.send_text(viewer, refusal_message(found->second.state.sequence(), error.what()));
+    }
+    something_new_.notify_all();
+  }
+
+  void sent(Viewer viewer) {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = seats_.find(viewer); found != seats_.end()) found->second.is_sent_one = false;
+    something_new_.notify_all();
+  }
+
+  void leave(Viewer viewer) {
+    const std::lock_guard lock(mutex_);
+    seats_.erase(viewer);
+  }
+
+  // On the caller's.
+
+  void say(Readiness readiness, std::string_view text, double done) {
+    const std::lock_guard lock(mutex_);
+    is_ready_ = readiness == Readiness::ready;
+    status_ = status_message(readiness, text, done);
+    server_.send_text_to_all(status_);
+  }
+
+  void load() {
+    std::optional<Clock::time_point> said;
+    say(Readiness::loading, "loading", 0);
+    volume_.load([&](const std::vector<compositor::RankLoad>& ranks) {
+      if (stop_.stop_requested()) throw compositor::ServiceLost("stopped");
+      if (said && Clock::now() - *said < progress_interval) return;
+      said = Clock::now();
+      say(Readiness::loading, progress_text(ranks), part_done(ranks));
+    });
+    say(Readiness::ready, "", 1);
+    const std::lock_guard lock(mutex_);
+    for (const auto& [viewer, seat] : seats_) server_.send_text(viewer, volume_message(volume_, seat.state));
+  }
+
+  void recover(const std::string& why) {
+    examination_.reset();
+    std::string reason = why;
+    while (!stop_.stop_requested()) {
+      std::fprintf(stderr, "understudy: the render nodes are gone (%s); the volume is read again\n",
+                   reason.c_str());
+      say(Readiness::lost,
+          "The render nodes are gone; the volume is read again as soon as there are others. " + reason, 0);
+      pause();
+      try {
+        return load();
+      } catch (const compositor::ServiceLost& lost) {
+        reason = lost.what();
+      } catch (const compositor::RequestRefused& refused) {
+        reason = refused.what();
+      }
+    }
+  }
+
+  void pause() {
+    std::unique_lock lock(mutex_);
+    something_new_.wait_for(lock, stop_, a_while, [] { return false; });
+  }
+
+  /// Whose turn it is: nobody twice before everybody once.
+  std::map<Viewer, Seat>::iterator next_seat() {
+    const auto wants = [](const auto& entry) {
+      return entry.second.wants_picture && !entry.second.is_sent_one;
+    };
+    const auto after = seats_.upper_bound(last_);
+    const auto found = std::find_if(after, seats_.end(), wants);
+    if (found != seats_.end()) return found;
+    const auto before = std::find_if(seats_.begin(), after, wants);
+    return before != after ? before : seats_.end();
+  }
+
+  void serve() {
+    std::optional<ViewState> state;
+    Viewer viewer = 0;
+    {
+      std::unique_lock lock(mutex_);
+      if (examination_ && next_seat() == seats_.end()) {
+        lock.unlock();
+        return examine();
+      }
+      if (!something_new_.wait(lock, stop_, [&] { return next_seat() != seats_.end(); })) return;
+      examination_.reset();
+      const auto seat = next_seat();
+      viewer = last_ = seat->first;
+      seat->second.wants_picture = false;
+      seat->second.is_sent_one = true;
+      state = seat->second.state;
+    }
+    try {
+      draw_for(viewer, *state);
+    } catch (const compositor::RequestRefused& refused) {
+      refuse(viewer, *state, refused.what());
+    } catch (const std::invalid_argument& error) {
+      refuse(viewer, *state, error.what());
+    } catch (const compositor::ServiceLost&) {
+      const std::lock_guard lock(mutex_);
+      if (const auto seat = seats_.find(viewer); seat != seats_.end()) {
+        seat->second.is_sent_one = false;
+        seat->second.wants_picture = true;
+      }
+      throw;
+    }
+  }
+
+  void draw_for(Viewer viewer, const ViewState& state) {
+    const Clock::time_point start = Clock::now();
+    const ShownVolume::Drawn drawn = volume_.draw(state);
+    server_.send_picture(viewer, picture_message(state, drawn));
+    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    {
+      const std::lock_guard lock(mutex_);
+      const auto seat = seats_.find(viewer);
+      if (seat == seats_.end()) return;
+      seat->second.state.took({drawn.picture.width, drawn.picture.height}, ms);
+      // Nobody waits for figures.
+      if (!state.still() || next_seat() != seats_.end()) return;
+    }
+    examination_ = {viewer, state.sequence(), volume_.ranks(), {}};
+    server_.send_text(viewer, figures_message(state.sequence(), scene_, {}, examination_->ranks));
+  }
+
+  /// A few rays of the last picture more, while nobody wants another.
+  void examine() {
+    const auto more = volume_.exactness();
+    if (!more) return examination_.reset();
+    ShownVolume::Exactness& seen = examination_->exactness;
+    seen = {std::max(seen.error, more->error), seen.rays + more->rays};
+    server_.send_text(examination_->viewer,
+                      figures_message(examination_->sequence, scene_, seen, examination_->ranks));
+    if (seen.rays >= enough_rays || more->rays == 0) examination_.reset();
+  }
+
+  void refuse(Viewer viewer, const ViewState& state, const char* reason) {
+    server_.send_text(viewer, refusal_message(state.sequence(), reason));
+    sent(viewer);
+  }
+
+  const FileScene& scene_;
+  const std::stop_token stop_;
+  ShownVolume volume_;
+  std::optional<Examination> examination_;
+  std::mutex mutex_;
+  std::condition_variable_any something_new_;
+  std::map<Viewer, Seat> seats_;
+  Viewer last_ = 0;
+  bool is_ready_ = false;
+  std::string status_ = status_message(Readiness::loading, "loading", 0);
+  WebServer server_;  // ends first
+};
+
+}  // namespace
+
+void show_on_web(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
+                 const WebAddress& address) {
+  WebView view(scene, make, stop, address);
+  std::printf("understudy: look at it under %s\n", view.server().link().c_str());
+  std::fflush(stdout);
+  view.run();
+}
+
+}  // namespace understudy::launcher

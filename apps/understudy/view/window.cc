@@ -1,0 +1,309 @@
+#include "apps/understudy/view/window.h"
+
+#include <SDL.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "apps/understudy/load_progress.h"
+#include "apps/understudy/view/picture_encoding.h"
+#include "apps/understudy/view/shown_volume.h"
+#include "apps/understudy/view/view_state.h"
+
+namespace understudy::launcher {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// After the last move, the picture at rest is drawn.
+constexpr std::chrono::milliseconds rest{150};
+constexpr int wait_ms = 50;
+constexpr double wheel_step = 1.15;
+constexpr double key_step = 0.1;
+
+[[noreturn]] void fail(const char* what) {
+  throw std::runtime_error(
+      fmt::format("{} ({}); on a machine without a display give --web 0, and look at it in a browser", what,
+                  SDL_GetError()));
+}
+
+/// SDL for as long as there is a window.
+struct Video {
+  Video() {
+    // OpenGL, if there is any, is not needed to show a picture.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+    SDL_SetHint(SDL_HINT_RENDER_DRIVER, "software");
+    // Signals that ask for the end are not SDL's.
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) fail("there is no display for a window");
+  }
+  Video(const Video&) = delete;
+  Video& operator=(const Video&) = delete;
+  ~Video() { SDL_Quit(); }
+};
+
+class Window {
+ public:
+  Window(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
+         const WindowScript& script)
+      : name_(std::filesystem::path(scene.load.file).filename().string()),
+        stop_(stop),
+        script_(script),
+        volume_(scene, make),
+        state_(scene),
+        window_(SDL_CreateWindow(name_.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
+                                 scene.picture.width, scene.picture.height, SDL_WINDOW_RESIZABLE),
+                SDL_DestroyWindow) {
+    if (!window_) fail("there can be no window");
+  }
+
+  void run() {
+    try {
+      load();
+    } catch (const compositor::ServiceLost&) {
+      if (!over_ && !stop_.stop_requested()) throw;
+    }
+    for (int frame = 0; !over_ && !stop_.stop_requested();) {
+      try {
+        if (script_.frames > 0) {
+          play(frame);
+          over_ = ++frame == script_.frames;
+        } else {
+          live();
+        }
+      } catch (const compositor::ServiceLost& lost) {
+        recover(lost.what());
+      }
+    }
+  }
+
+ private:
+  void load() {
+    volume_.load([&](const std::vector<compositor::RankLoad>& ranks) {
+      say(progress_text(ranks));
+      hear(0);
+      if (over_ || stop_.stop_requested()) throw compositor::ServiceLost("the window is closed");
+    });
+    due_ = true;
+  }
+
+  void recover(const std::string& why) {
+    std::string reason = why;
+    while (!over_ && !stop_.stop_requested()) {
+      std::fprintf(stderr, "understudy: the render nodes are gone (%s); the volume is read again\n",
+                   reason.c_str());
+      say("the render nodes are gone; the volume is read again");
+      hear(1000);
+      try {
+        return load();
+      } catch (const compositor::ServiceLost& lost) {
+        reason = lost.what();
+      }
+    }
+  }
+
+  void play(int frame) {
+    ViewMessage message;
+    message.still = frame + 1 == script_.frames;
+    if (frame > 0) {
+      message.camera = state_.camera();
+      message.camera->orbit.azimuth += script_.orbit;
+    }
+    state_.apply(message);
+    const ShownVolume::Drawn drawn = draw();
+    hear(0);
+    if (!message.still || script_.save.empty()) return;
+    const std::vector<std::byte> png = png_of(drawn.picture);
+    std::ofstream file(script_.save, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+    file.close();
+    if (!file)
+      throw std::runtime_error(
+          fmt::format("{} cannot be written; check that the folder exists and has room", script_.save));
+  }
+
+  void live() {
+    hear(due_ ? 0 : wait_ms);
+    if (due_) {
+      due_ = false;
+      draw();
+      if (state_.still())
+        if (const auto exactness = volume_.exactness())
+          say(fmt::format("{:.0f} ms, error {:.4f} of {} rays", drawn_ms_, exactness->error, exactness->rays));
+    } else if (!state_.still() && Clock::now() - moved_ > rest) {
+      state_.apply({});
+      due_ = true;
+    }
+  }
+
+  ShownVolume::Drawn draw() {
+    const Clock::time_point start = Clock::now();
+    ShownVolume::Drawn drawn = volume_.draw(state_);
+    show(drawn.picture);
+    drawn_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    state_.took({drawn.picture.width, drawn.picture.height}, drawn_ms_);
+    last_ms_ = drawn_ms_;
+    say(fmt::format("{:.0f} ms, {} x {}", drawn_ms_, drawn.picture.width, drawn.picture.height));
+    return drawn;
+  }
+
+  void show(const RgbPicture& picture) {
+    // A copy that SDL may write to is not needed: it only reads.
+    auto* pixels = const_cast<std::uint8_t*>(picture.rgb.data());
+    const std::unique_ptr<SDL_Surface, void (*)(SDL_Surface*)> from(
+        SDL_CreateRGBSurfaceWithFormatFrom(pixels, picture.width, picture.height, 24, 3 * picture.width,
+                                           SDL_PIXELFORMAT_RGB24),
+        SDL_FreeSurface);
+    SDL_Surface* const to = SDL_GetWindowSurface(window_.get());
+    if (!from || to == nullptr) fail("the window takes no picture");
+    if (SDL_BlitScaled(from.get(), nullptr, to, nullptr) != 0 || SDL_UpdateWindowSurface(window_.get()) != 0)
+      fail("the window takes no picture");
+  }
+
+  void say(const std::string& what) {
+    SDL_SetWindowTitle(window_.get(), fmt::format("{} · {}", name_, what).c_str());
+  }
+
+  void hear(int most_ms) {
+    SDL_Event event;
+    if (SDL_WaitEventTimeout(&event, most_ms) == 0) return;
+    do take(event);
+    while (SDL_PollEvent(&event) != 0);
+  }
+
+  void take(const SDL_Event& event) {
+    ViewMessage message;
+    message.still = false;
+    switch (event.type) {
+      case SDL_QUIT:
+        over_ = true;
+        return;
+      case SDL_WINDOWEVENT:
+        if (event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED)
+          message.size = {std::clamp(event.window.data1, least_view_side, most_view_side),
+                          std::clamp(event.window.data2, least_view_side, most_view_side)};
+        else if (event.window.event == SDL_WINDOWEVENT_EXPOSED)
+          message.still = state_.still();
+        else
+          return;
+        break;
+      case SDL_MOUSEMOTION: {
+        const PicturePoint to = point_at(event.motion.x, event.motion.y);
+        const PicturePoint from =
+            point_at(event.motion.x - event.motion.xrel, event.motion.y - event.motion.yrel);
+        const bool shifts = (SDL_GetModState() & KMOD_SHIFT) != 0;
+        if ((event.motion.state & SDL_BUTTON_LMASK) != 0 && !shifts)
+          message.rotate = {from, to};
+        else if ((event.motion.state & (SDL_BUTTON_LMASK | SDL_BUTTON_MMASK | SDL_BUTTON_RMASK)) != 0)
+          message.pan = {to[0] - from[0], to[1] - from[1]};
+        else
+          return;
+        break;
+      }
+      case SDL_MOUSEWHEEL: {
+        int x = 0, y = 0;
+        SDL_GetMouseState(&x, &y);
+        message.zoom = {std::pow(wheel_step, event.wheel.y), point_at(x, y)};
+        break;
+      }
+      case SDL_KEYDOWN:
+        if (!take_key(event.key.keysym.sym, message)) return;
+        break;
+      default:
+        return;
+    }
+    if (!message.still) moved_ = Clock::now();
+    // Of the picture before, as it was shown.
+    if (last_ms_) message.took_ms = std::exchange(last_ms_, std::nullopt);
+    state_.apply(message);
+    due_ = true;
+  }
+
+  bool take_key(SDL_Keycode key, ViewMessage& message) {
+    const Shading& shading = state_.picture().shading;
+    switch (key) {
+      case SDLK_q:
+      case SDLK_ESCAPE:
+        over_ = true;
+        return false;
+      case SDLK_LEFT:
+        message.rotate = {PicturePoint{0, 0}, PicturePoint{-key_step, 0}};
+        return true;
+      case SDLK_RIGHT:
+        message.rotate = {PicturePoint{0, 0}, PicturePoint{key_step, 0}};
+        return true;
+      case SDLK_UP:
+        message.rotate = {PicturePoint{0, 0}, PicturePoint{0, key_step}};
+        return true;
+      case SDLK_DOWN:
+        message.rotate = {PicturePoint{0, 0}, PicturePoint{0, -key_step}};
+        return true;
+      case SDLK_PLUS:
+      case SDLK_EQUALS:
+        message.zoom = {wheel_step, {}};
+        return true;
+      case SDLK_MINUS:
+        message.zoom = {1 / wheel_step, {}};
+        return true;
+      case SDLK_HOME:
+        message.camera = ViewCamera{volume_.scene().picture.camera, {}};
+        return true;
+      case SDLK_l:
+        message.light = !shading.light.has_value();
+        return true;
+      case SDLK_v:
+        message.shows_volume = !shading.shows_volume;
+        return true;
+      case SDLK_s:
+        message.surfaces = shading.surfaces.empty()
+                               ? std::vector<SurfaceChoice>{{0.4, true, {0.9F, 0.75F, 0.55F, 1}}}
+                               : std::vector<SurfaceChoice>{};
+        return true;
+      case SDLK_LEFTBRACKET:
+      case SDLK_RIGHTBRACKET: {
+        if (shading.surfaces.empty() || !shading.surfaces.front().of_range) return false;
+        message.surfaces = shading.surfaces;
+        double& at = message.surfaces->front().at;
+        at = std::clamp(at + (key == SDLK_LEFTBRACKET ? -0.01 : 0.01), 0.01, 1.0);
+        return true;
+      }
+      default:
+        return false;
+    }
+  }
+
+  PicturePoint point_at(int x, int y) const {
+    const auto& picture = state_.picture();
+    const double half = std::min(picture.width, picture.height) / 2.0;
+    return {(x - picture.width / 2.0) / half, (picture.height / 2.0 - y) / half};
+  }
+
+  const std::string name_;
+  const std::stop_token stop_;
+  const WindowScript& script_;
+  Video video_;
+  ShownVolume volume_;
+  ViewState state_;
+  std::unique_ptr<SDL_Window, void (*)(SDL_Window*)> window_;
+  bool over_ = false;
+  bool due_ = true;  // a picture
+  Clock::time_point moved_{};
+  double drawn_ms_ = 0;
+  std::optional<double> last_ms_;  // of the last picture, until it is told
+};
+
+}  // namespace
+
+void show_in_window(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,
+                    const WindowScript& script) {
+  Window(scene, make, stop, script).run();
+}
+
+}  // namespace understudy::launcher

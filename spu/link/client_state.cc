@@ -240,6 +240,7 @@ void ClientState::note(CallId call, const std::uint64_t* words) {
       client_.active_texture = GLenum(words[0]) - GL_TEXTURE0;
       return;
     case CallId::EnableClientState:
+      restarts_ |= GLenum(words[0]) == GL_PRIMITIVE_RESTART_NV;
       return enable_array(GLenum(words[0]), true);
     case CallId::DisableClientState:
       return enable_array(GLenum(words[0]), false);

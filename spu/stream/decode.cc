@@ -291,7 +291,7 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
         return {};
       }
       const PictureShape shape = picture_shape(call.id, call.words.data());
-      const auto extent = inside_begin_ ? std::nullopt : picture_extent(shape, tight_pixels);
+      const auto extent = begin_and_end_.inside() ? std::nullopt : picture_extent(shape, tight_pixels);
       if (!extent || *extent > most_output_bytes) {
         call.skip = true;
         return {};
@@ -327,7 +327,7 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
 std::string Decoder::check_arrays(Call& call, const DispatchTable& gl) {
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].rule == ExtentRule::client_array && call.words[p] != 0 && !inside_begin_ &&
+    if (parameters[p].rule == ExtentRule::client_array && call.words[p] != 0 && !begin_and_end_.inside() &&
         ask(gl, GL_ARRAY_BUFFER_BINDING) == 0) {
       call.words[p] = 0;
     }
@@ -340,7 +340,7 @@ std::string Decoder::check_arrays(Call& call, const DispatchTable& gl) {
         : rule == ExtentRule::image || rule == ExtentRule::counted_or_unpack ? GL_PIXEL_UNPACK_BUFFER_BINDING
         : rule == ExtentRule::image_out                                      ? GL_PIXEL_PACK_BUFFER_BINDING
                                                                              : GL_NONE;
-    if (offset && binding != GL_NONE && (inside_begin_ || ask(gl, binding) == 0))
+    if (offset && binding != GL_NONE && (begin_and_end_.inside() || ask(gl, binding) == 0))
       return in_call(call.id, fmt::format("{} is an offset, but no buffer is bound", parameters[p].name()));
     if (offset && rule == ExtentRule::index_lists) call.skip = true;
   }
@@ -351,7 +351,7 @@ std::string Decoder::check_arrays(Call& call, const DispatchTable& gl) {
     client_memory_ = true;
   }
   if (!client_memory_ || !draws_arrays(call.id)) return {};
-  if (inside_begin_) {
+  if (begin_and_end_.inside()) {
     const auto range = element_range(gl, call.id, call.words.data());
     if (!range || range->first < arrays_range_.first || range->last > arrays_range_.last) call.skip = true;
     return {};
@@ -414,7 +414,7 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
 Decoded Decoder::make(Call& call, const DispatchTable& gl) {
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
   Decoded decoded;
-  if (call.picture_in && !inside_begin_) {
+  if (call.picture_in && !begin_and_end_.inside()) {
     const PixelStore store = pixel_store(gl, unpack_names);
     set_pixel_store(gl, unpack_names, store, tight_pixels);
     decoded.result = invoke(gl, call.id, call.words.data());
@@ -422,8 +422,7 @@ Decoded Decoder::make(Call& call, const DispatchTable& gl) {
   } else {
     decoded.result = invoke(gl, call.id, call.words.data());
   }
-  if (call.id == CallId::Begin) inside_begin_ = true;
-  if (call.id == CallId::End || call.id == CallId::EndList) inside_begin_ = false;
+  begin_and_end_.follow(call.id, call.words.data());
   return decoded;
 }
 

@@ -15,6 +15,7 @@
 
 #include "dispatch/call_shape.h"
 #include "dispatch/table.h"
+#include "spu/stream/begin_and_end.h"
 #include "spu/stream/call_answer.h"
 #include "spu/stream/client_arrays.h"
 #include "spu/stream/object_names.h"
@@ -90,7 +91,7 @@ class Decoder {
   std::uint64_t* scratch(std::size_t bytes);
 
   const StreamOrigin origin_;
-  bool inside_begin_ = false;
+  BeginAndEnd begin_and_end_;
   bool client_memory_ = false;  ///< an array was pointed at the sender's memory
   std::vector<ClientArray> arrays_;
   std::vector<std::uint64_t> array_words_;  ///< copies of the elements that arrays_ point at

@@ -74,42 +74,14 @@ GLint Encoder::ask(GLenum name) {
 }
 
 void Encoder::follow_begin_and_end(CallId call, const std::uint64_t* words, Records& to) {
-  switch (call) {
-    case CallId::Begin:
-      if (inside_begin_) break;
-      inside_begin_ = true;
-      list_leaves_ = true;
-      elements_since_begin_ = {};
-      begin_position_ = to.words().size();
-      begin_generation_ = to.generation();
-      break;
-    case CallId::End:
-      inside_begin_ = false;
-      list_leaves_ = false;
-      break;
-    case CallId::NewList:
-      list_ = GLuint(words[0]);
-      list_only_compiles_ = GLenum(words[1]) == GL_COMPILE;
-      inside_before_list_ = inside_begin_;
-      list_leaves_.reset();
-      break;
-    case CallId::EndList:
-      // What a list holds has happened only if it was executed as well.
-      if (list_only_compiles_) inside_begin_ = inside_before_list_;
-      list_effects_[list_] = list_leaves_;
-      list_only_compiles_ = false;
-      break;
-    case CallId::CallList: {
-      const auto effect = list_effects_.find(GLuint(words[0]));
-      if (effect == list_effects_.end() || !effect->second) break;
-      inside_begin_ = *effect->second;
-      list_leaves_ = effect->second;
-      elements_since_begin_ = {};
-      begin_generation_ = ~std::uint64_t(0);
-      break;
-    }
-    default:
-      break;
+  const bool begins = call == CallId::Begin && !begin_and_end_.inside();
+  const bool by_list = begin_and_end_.follow(call, words);
+  if (begins || by_list) elements_since_begin_ = {};
+  if (begins) {
+    begin_position_ = to.words().size();
+    begin_generation_ = to.generation();
+  } else if (by_list) {
+    begin_generation_ = ~std::uint64_t(0);
   }
 }
 
@@ -122,7 +94,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   if (binding == GL_NONE && word == 0) return argument;
   // Calls that need a binding are errors between glBegin and glEnd: OpenGL reads nothing.
   if (binding != GL_NONE) {
-    if (inside_begin_) return argument;
+    if (inside_begin()) return argument;
     if (ask(binding) != 0) {
       argument.reference = {ReferenceKind::address, word};
       return argument;
@@ -282,12 +254,12 @@ void Encoder::insert_arrays_before_begin(Records& to) {
 
 void Encoder::encode(CallId call, const std::uint64_t* words, Records& to) {
   const bool draws = client_memory_ && draws_arrays(call);
-  if (draws && inside_begin_) note_element(call, words);
-  if (client_memory_ && call == CallId::Begin && !inside_begin_) arrays_at_begin_ = client_arrays(ask());
-  const bool ended = inside_begin_ && call == CallId::End;
+  if (draws && inside_begin()) note_element(call, words);
+  if (client_memory_ && call == CallId::Begin && !inside_begin()) arrays_at_begin_ = client_arrays(ask());
+  const bool ended = inside_begin() && call == CallId::End;
   follow_begin_and_end(call, words, to);
   bool between_events = false;
-  if (draws && !inside_begin_) between_events = begin_arrays(call, words, to);
+  if (draws && !inside_begin()) between_events = begin_arrays(call, words, to);
   const CallShape& shape = call_shape(call);
   if (shape.plain()) {
     append_plain_call(to, call, words);

@@ -15,6 +15,7 @@
 
 #include "dispatch/call_shape.h"
 #include "dispatch/table.h"
+#include "spu/stream/begin_and_end.h"
 #include "spu/stream/client_arrays.h"
 #include "spu/stream/record.h"
 
@@ -40,7 +41,7 @@ class Encoder {
   void hide_addresses() { hides_addresses_ = true; }
 
   /// The application is between glBegin and glEnd: OpenGL answers no questions.
-  bool inside_begin() const { return inside_begin_; }
+  bool inside_begin() const { return begin_and_end_.inside(); }
 
  private:
   /// A pointer argument on its way into a record.
@@ -64,14 +65,7 @@ class Encoder {
   std::function<void()> before_question_;
   std::vector<Argument> arguments_;  ///< kept for its memory
   bool hides_addresses_ = false;
-  bool inside_begin_ = false;
-  // Display lists may begin what others end. What each leaves behind, once executed: inside, outside, or as it
-  // was.
-  std::map<GLuint, std::optional<bool>> list_effects_;
-  GLuint list_ = 0;  ///< being defined
-  std::optional<bool> list_leaves_;
-  bool list_only_compiles_ = false;
-  bool inside_before_list_ = false;
+  BeginAndEnd begin_and_end_;
   /// The application pointed an array at its own memory at least once: draws must look.
   bool client_memory_ = false;
   std::vector<ClientArray> arrays_at_begin_;

@@ -58,7 +58,7 @@ std::vector<std::byte> contents_before(CallId call, const std::uint64_t* words, 
 
 std::string Decoder::provide_picture(Call& call, std::size_t p, const DispatchTable& gl) {
   call.skip = true;
-  if (inside_begin_) return {};
+  if (begin_and_end_.inside()) return {};
   const auto image = image_answer(call.id, call.words.data(), gl);
   if (!image) return {};
   if (image->bytes > most_linked_output_bytes)
@@ -90,7 +90,8 @@ void Decoder::answer_outputs(const Call& call) {
     if (bytes == 0) continue;
     // Values end where one does; of untyped data nobody knows what the last byte may be.
     const std::size_t value = parameter.pointer > 1 ? sizeof(void*) : value_size(parameter.type);
-    if (parameter.type == ValueType::untyped) {
+    // (Where the call does not say how much it writes, it is the text of a program.)
+    if (parameter.type == ValueType::untyped && pointee_bytes(call.id, p, call.words.data())) {
       bytes = call.bytes[p];
     } else {
       bytes = std::min((bytes + value - 1) / value * value, call.bytes[p]);
@@ -133,7 +134,7 @@ Decoded Decoder::make_and_answer(Call& call, const DispatchTable& gl) {
   GLint mode = GL_RENDER;
   if (call.id == CallId::RenderMode) gl.GetIntegerv(GL_RENDER_MODE, &mode);
   std::vector<std::byte> contents;
-  const bool maps = maps_a_buffer(call.id) && !inside_begin_;
+  const bool maps = maps_a_buffer(call.id) && !begin_and_end_.inside();
   if (maps && contents_matter(call.id, call.words.data()))
     contents = contents_before(call.id, call.words.data(), gl);
   Decoded decoded = make(call, gl);

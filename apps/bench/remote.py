@@ -4,7 +4,9 @@ Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that
 joined by 1 Gbit/s with 0.5 ms to the other end and back, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own
 OpenGL and nodes there, all of it on a stage there; as it is, or with JPEG pictures while the view turns, or with bytes for
 the nodes' pictures. The bundled viewer turns 256^3 voxels in 512^2 pixels; glxgears, and osgvolume at rest, are drawn by the
-stage. Ways are alternated within each round of a line. What travelled is counted on the longer of two runs, less the shorter.
+stage. Ways are alternated within each round of a line. What travelled is counted on the longer of two runs, less the shorter:
+upwards before it was compressed, as the volume, which is compressed by what the line seemed to be, travels in both runs;
+downwards as it travelled.
 Only root can make such lines.
 """
 
@@ -82,7 +84,7 @@ class Client:
         """Bytes up and down, and round trips, of the last run."""
         report = viewers.read_report(self.folder / "report.json")
         link, remote = report.get("link"), report.get("remote_link")
-        return {"up": link["up"]["bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
+        return {"up": link["up"]["payload_bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
                 "round_trips": remote["round_trips"] if remote else link["up"]["messages"] if link else 0,
                 "frames": remote["frames"] if remote else report["frames"]}
 

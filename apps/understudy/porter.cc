@@ -1,17 +1,22 @@
 #include "apps/understudy/porter.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
 
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <map>
 #include <stdexcept>
+#include <thread>
 
 #include "apps/understudy/client_processes.h"
 #include "apps/understudy/environment.h"
 #include "apps/understudy/link_figures.h"
 #include "apps/understudy/run_folder.h"
+#include "apps/understudy/signal_inbox.h"
 #include "compositor/service/limits.h"
 #include "compositor/tcp/render_porter.h"
 #include "compositor/tcp/tcp_link.h"
@@ -38,6 +43,26 @@ FileDescriptor linked(const LinkPlan& plan) {
   return compositor::connect_link(*address, secret, plan.wishes, Clock::now() + limits::hello_patience);
 }
 
+/// Ends both connections when a signal asks for the end, so that who carries between them comes to an end and
+/// can say what it has done. To be made before there are other threads.
+class EndWhenAsked {
+ public:
+  EndWhenAsked(int here, int link)
+      : thread_([this, here, link](const std::stop_token& stop) {
+          while (!stop.stop_requested()) {
+            if (!compositor::wait_until_ready(inbox_.descriptor(), POLLIN, Clock::now() + look_every)) continue;
+            ::shutdown(here, SHUT_RDWR);
+            ::shutdown(link, SHUT_RDWR);
+            return;
+          }
+        }) {}
+
+ private:
+  static constexpr std::chrono::milliseconds look_every{100};
+  SignalInbox inbox_{{SIGTERM, SIGINT, SIGHUP}};
+  std::jthread thread_;
+};
+
 /// What the process of one application here does. Returns its exit status.
 int carry(FileDescriptor application, const LinkPlan& plan, const std::filesystem::path& figures) {
   const bool to_stage = plan.wishes.to == LinkedTo::stage;
@@ -45,6 +70,7 @@ int carry(FileDescriptor application, const LinkPlan& plan, const std::filesyste
   Connection here(std::move(application), most);
   try {
     TcpLink link(linked(plan), to_stage ? most : limits::max_picture_message_bytes);
+    const EndWhenAsked end_when_asked(here.fd(), link.fd());
     std::string why;
     if (to_stage)
       why = spu::ViewerPorter(here, link).run();
@@ -78,7 +104,8 @@ std::unique_ptr<ChildProcess> start_porter(const Installation& installation, con
                             plan.wishes.to == LinkedTo::stage ? "stage" : "nodes", "--pixels",
                             layout_names[std::size_t(plan.wishes.pixels)], "--quality",
                             std::to_string(plan.wishes.jpeg_quality), "--socket", socket, "--figures", folder},
-              .environment = current_environment()});
+              .environment = current_environment(),
+              .own_group = true});
   const auto until = Clock::now() + patience_with_start;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {

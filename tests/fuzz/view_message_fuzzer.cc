@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto size_asked = message.size.value_or(std::array{64, 64});
   volume::RenderRequest request = volume::orbit_request(description, {1, 1, 1}, camera.orbit, size_asked[0],
                                                         size_asked[1], message.step.value_or(1));
-  shift(request, camera.shift);
+  launcher::shift(request, camera.shift);
   for (const double value : request.texture_to_clip)
     if (!std::isfinite(value)) std::abort();
   if (message.table) volume::sampled(*message.table, 0, 255, message.step.value_or(1));

@@ -26,6 +26,8 @@ using Viewer = WebServer::Viewer;
 constexpr std::size_t secret_bytes = 16;
 /// Between two attempts to have nodes again.
 constexpr std::chrono::seconds a_while{1};
+/// So long nobody wants anything before a picture at rest is examined: the next request finds no work begun.
+constexpr std::chrono::milliseconds calm{100};
 /// Of a picture at rest.
 constexpr std::size_t enough_rays = 256;
 /// What is said of a load that goes on.
@@ -76,6 +78,7 @@ class WebView {
   struct Examination {
     Viewer viewer = 0;
     std::uint64_t sequence = 0;
+    Clock::time_point begins;
     std::vector<compositor::RankLoad> ranks;
     ShownVolume::Exactness exactness;
   };
@@ -141,10 +144,14 @@ class WebView {
     examination_.reset();
     std::string reason = why;
     while (!stop_.stop_requested()) {
+      // What follows is meant for applications, which can draw by themselves.
+      reason = reason.substr(0, reason.find(';'));
       std::fprintf(stderr, "understudy: the render nodes are gone (%s); the volume is read again\n",
                    reason.c_str());
       say(Readiness::lost,
-          "The render nodes are gone; the volume is read again as soon as there are others. " + reason, 0);
+          fmt::format("The render nodes are gone ({}); the volume is read again as soon as there are others.",
+                      reason),
+          0);
       pause();
       try {
         return load();
@@ -178,11 +185,16 @@ class WebView {
     Viewer viewer = 0;
     {
       std::unique_lock lock(mutex_);
-      if (examination_ && next_seat() == seats_.end()) {
+      const auto is_wanted = [&] { return next_seat() != seats_.end(); };
+      if (examination_ && !something_new_.wait_until(lock, stop_, examination_->begins, is_wanted)) {
         lock.unlock();
-        return examine();
+        try {
+          return examine();
+        } catch (const compositor::RequestRefused&) {
+          return examination_.reset();  // the picture is there; what it lacks is its figures
+        }
       }
-      if (!something_new_.wait(lock, stop_, [&] { return next_seat() != seats_.end(); })) return;
+      if (!something_new_.wait(lock, stop_, is_wanted)) return;
       examination_.reset();
       const auto seat = next_seat();
       viewer = last_ = seat->first;
@@ -219,12 +231,17 @@ class WebView {
       // Nobody waits for figures.
       if (!state.still() || next_seat() != seats_.end()) return;
     }
-    examination_ = {viewer, state.sequence(), volume_.ranks(), {}};
-    server_.send_text(viewer, figures_message(state.sequence(), scene_, {}, examination_->ranks));
+    examination_ = {viewer, state.sequence(), Clock::now() + calm, {}, {}};
   }
 
-  /// A few rays of the last picture more, while nobody wants another.
+  /// What the ranks did for the last picture, then a few of its rays each time, while nobody wants another.
   void examine() {
+    if (examination_->ranks.empty()) {
+      examination_->ranks = volume_.ranks();
+      server_.send_text(examination_->viewer,
+                        figures_message(examination_->sequence, scene_, {}, examination_->ranks));
+      return;
+    }
     const auto more = volume_.exactness();
     if (!more) return examination_.reset();
     ShownVolume::Exactness& seen = examination_->exactness;

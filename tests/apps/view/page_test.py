@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""page_test.py PROGRAMS OUT: the page of `understudy view --web` in a real browser, without a screen.
+
+It is opened by its link, turned with the mouse, its transfer function is edited, a surface is lit, boxes are drawn, a node
+is killed; screenshots go to OUT. Ends with 77 where Chromium or its driver is missing.
+"""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.by import By
+except ImportError:
+    print("skipped: apt install python3-selenium")
+    sys.exit(77)
+
+PROGRAMS, OUT = Path(sys.argv[1]), Path(sys.argv[2])
+PATIENCE = 60
+VOLUME = "synthetic:96x96x96:u8:lobes"
+ENGINE = Path("/usr/share/doc/tachyon/examples/scenes/vol/engine.256x256x110")
+
+
+def browser():
+    options = Options()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1280,900",
+                     "--force-device-scale-factor=1", "--hide-scrollbars"):
+        options.add_argument(argument)
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class Page:
+    def __init__(self, link):
+        self.driver = browser()
+        self.driver.get(link)
+
+    def shown(self):
+        return self.driver.execute_script("return document.documentElement.dataset.shown ?? ''")
+
+    def until(self, condition, what):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end, f"{what}: not within {PATIENCE} s; {self.driver.get_log('browser')}"
+            time.sleep(0.05)
+
+    def rests(self, what, after=""):
+        """A picture at rest, another than `after`, and what is said of it."""
+        def rests_now():
+            shown = self.shown()
+            busy, figures = self.driver.execute_script(
+                "const said = document.documentElement.dataset; return [said.busy, said.figures ?? '']")
+            return busy == "no" and shown.endswith("still") and shown != after and shown.split()[0] == figures
+        self.until(rests_now, what)
+
+    def image(self):
+        """The picture's own pixels, as the browser has them."""
+        return self.driver.execute_script("return document.getElementById('picture').toDataURL('image/png')")
+
+    def save(self, name):
+        """Keeps the screenshot, and answers with the picture that is shown."""
+        self.driver.save_screenshot(str(OUT / f"{name}.png"))
+        return self.image()
+
+    def element(self, name):
+        return self.driver.find_element(By.ID, name)
+
+    def text(self, name):
+        return self.element(name).text
+
+
+def nodes_of(view):
+    text = subprocess.run(["ps", "-eo", "pid=,ppid=,comm="], stdout=subprocess.PIPE, text=True, check=True).stdout
+    rows = [line.split(None, 2) for line in text.splitlines()]
+    family = {view.pid}
+    for _ in rows:
+        family |= {int(pid) for pid, parent, _ in rows if int(parent) in family}
+    return [int(pid) for pid, _, name in rows if int(pid) in family and name.startswith("understudy-node")]
+
+
+def check(page, view):
+    page.rests("the first picture")
+    pictures = {"first": page.save("1-first")}
+    assert re.fullmatch(r"\d+ × \d+ without loss: .* from hand to eye .*", page.text("frame")), page.text("frame")
+    page.until(lambda: "error 0." in page.text("exactness"), "the error of the first picture")
+    assert len(page.driver.find_elements(By.CLASS_NAME, "rank")) == 2
+    assert "secret" not in page.driver.current_url, "the secret stays in no address"
+
+    before = page.shown()
+    stage = page.element("picture")
+    ActionChains(page.driver, duration=20).move_to_element(stage).click_and_hold().move_by_offset(120, 40).move_by_offset(
+        60, -20).release().perform()
+    page.rests("the turned picture", before)
+    pictures["turned"] = page.save("2-turned")
+
+    # A knot is grasped where it is drawn, and lifted.
+    before = page.shown()
+    editor = page.element("editor")
+    place = page.driver.execute_script("""
+      const canvas = document.getElementById('editor').getBoundingClientRect();
+      return [canvas.width, canvas.height]""")
+    ActionChains(page.driver, duration=20).move_to_element_with_offset(editor, int(place[0] * 0.2), -10).click_and_hold(
+        ).move_by_offset(0, -50).release().perform()
+    page.rests("the edited transfer function", before)
+    assert "opacity" in page.text("knot-text")
+    pictures["edited"] = page.save("3-edited")
+
+    before = page.shown()
+    page.driver.execute_script("[...document.querySelectorAll('#tables button')].find(b => b.textContent === 'rainbow').click()")
+    page.rests("a built-in table", before)
+    pictures["table"] = page.save("4-table")
+
+    before = page.shown()
+    page.element("shows-surface").click()
+    page.rests("a surface", before)
+    before = page.shown()
+    page.element("light").click()
+    page.element("shows-volume").click()
+    page.rests("a surface in the light", before)
+    page.element("shows-boxes").click()
+    pictures["surface"] = page.save("5-surface")
+    drawn = page.driver.execute_script("""
+      const boxes = document.getElementById('boxes');
+      return boxes.getContext('2d').getImageData(0, 0, boxes.width, boxes.height).data.some(value => value > 0)""")
+    assert drawn, "no boxes are drawn"
+    assert len(set(pictures.values())) == len(pictures), "two steps show the same picture"
+
+    # A page that is loaded again shows what it showed.
+    page.driver.refresh()
+    page.rests("the page once more")
+    assert page.save("6-again") == pictures["surface"], "the page has forgotten what it showed"
+
+    before = page.shown()
+    os.kill(nodes_of(view)[-1], signal.SIGKILL)
+    ActionChains(page.driver, duration=20).move_to_element(page.element("picture")).click_and_hold().move_by_offset(
+        10, 10).release().perform()
+    page.until(lambda: "render nodes are gone" in page.text("banner-text") or page.text("banner-text").startswith("loading"),
+               "a word that the nodes are gone")
+    page.save("7-lost")
+    page.rests("a picture of new nodes", before)
+    assert not page.element("banner").is_displayed()
+    page.save("8-back")
+    trouble = [entry for entry in page.driver.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not trouble, trouble
+
+
+def stranger(link):
+    """Without the secret there is a question and no picture."""
+    page = Page(link.split("#")[0])
+    try:
+        page.until(lambda: page.element("ask").is_displayed(), "the question for the secret")
+        page.element("secret").send_keys("0" * 32)
+        page.driver.execute_script("document.querySelector('#ask button').click()")
+        page.until(lambda: "not this session" in page.text("ask-reason"), "the refusal")
+        page.save("9-stranger")
+        assert page.shown() == ""
+    finally:
+        page.driver.quit()
+
+
+def main():
+    for program in ("chromium", "chromedriver"):
+        if not shutil.which(program):
+            print(f"skipped: {program} is missing; apt install chromium chromium-driver")
+            return 77
+    OUT.mkdir(parents=True, exist_ok=True)
+    volume = ["--volume-size", "256", "256", "110", "--type", "u8", "--table", "engine", str(ENGINE)] if ENGINE.exists() else [VOLUME]
+    view = subprocess.Popen([str(PROGRAMS / "understudy"), "view", "--web", "0", "-n", "2", *volume], stdout=subprocess.PIPE,
+                            text=True)
+    try:
+        link = re.search(r"http://\S+", view.stdout.readline()).group()
+        page = Page(link)
+        try:
+            check(page, view)
+        finally:
+            page.driver.quit()
+        stranger(link)
+    finally:
+        view.terminate()
+        view.wait()
+    print(f"screenshots: {OUT}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

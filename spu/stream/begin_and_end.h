@@ -1,5 +1,5 @@
-// Whether a stream is between glBegin and glEnd, where OpenGL answers no questions. Display lists may begin what
-// others end, so what each leaves behind is kept.
+// Whether a stream is between glBegin and glEnd, where OpenGL answers no questions. Display lists may begin
+// what others end, so what each leaves behind is kept.
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/clients/stage.h"
 
@@ -22,8 +27,31 @@ constexpr std::array chains = {"", "pass pass pass track volume driver", "pack u
 /// For one run over all tests; on two cores it takes less than one minute.
 constexpr std::chrono::minutes patience_with_piglit{12};
 
+/// A line for each test that comes out otherwise, as the script prints it; docs/conformance.md gives the
+/// reasons.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> known_remote_differences() {
+  std::ifstream in(fs::path(SOURCE_FOLDER) / "tests/piglit/remote_differences.txt");
+  return lines_of({std::istreambuf_iterator<char>(in), {}});
+}
+
 class Piglit : public Stage {
  protected:
+  /// Why piglit cannot be run here; empty where it can.
+  std::string lacking() const {
+    if (!fs::exists(script))
+      return "the list of piglit's tests is not here: it stands beside the project, as " +
+             script.lexically_normal().string();
+    return missing({Need::piglit, Need::x_server});
+  }
+
   /// Runs all tests, with `before` in front of piglit, and leaves the results in a folder of that name.
   void run_all(const std::string& results, const std::string& before, const std::string& chain) const {
     const auto jobs = std::to_string(std::max(2U, std::thread::hardware_concurrency()));
@@ -38,12 +66,7 @@ class Piglit : public Stage {
 };
 
 TEST_F(Piglit, SeesTheSameOpenGlUnderEveryChain) {
-  if (!fs::exists(script)) {
-    GTEST_SKIP() << "the list of piglit's tests is not here: it stands beside the project, as "
-                 << script.lexically_normal().string();
-  }
-  if (const std::string lacking = missing({Need::piglit, Need::x_server}); !lacking.empty())
-    GTEST_SKIP() << lacking;
+  if (const std::string reason = lacking(); !reason.empty()) GTEST_SKIP() << reason;
   run_all("bare", "", "");
   for (const std::string chain : chains) {
     SCOPED_TRACE(chain.empty() ? "the default chain" : chain);
@@ -64,6 +87,24 @@ TEST_F(Piglit, SeesTheSameOpenGlUnderEveryChain) {
     fmt::print("{}: {} processes with calls\n", results, counted);
     EXPECT_GT(counted, 500) << "piglit did not run under Understudy";
   }
+}
+
+TEST_F(Piglit, SeesTheOpenGlOfAStageButForWhatIsListed) {
+  if (const std::string reason = lacking(); !reason.empty()) GTEST_SKIP() << reason;
+  run_all("bare", "", "");
+  std::string launcher;
+  for (const std::string& word : under({"--remote"})) launcher += word + " ";
+  ASSERT_NO_FATAL_FAILURE(run_all("remote", launcher, ""));
+  const Outcome comparison = run({script.string(), "--diff", file("bare").string(), file("remote").string()});
+  ASSERT_LE(comparison.status, 1) << comparison.out << comparison.err;
+  const std::vector<std::string> known = known_remote_differences();
+  ASSERT_FALSE(known.empty());
+  std::size_t differences = 0;
+  for (const std::string& line : lines_of(comparison.out)) {
+    ++differences;
+    EXPECT_THAT(known, testing::Contains(line)) << "is listed in no line of remote_differences.txt";
+  }
+  fmt::print("{} of 7,275 differ\n", differences);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ int format_of(JpegPixels format) {
       return TJPF_BGRA;
     case JpegPixels::rgbx:
       return TJPF_RGBA;
+    case JpegPixels::rgb:
+      return TJPF_RGB;
     default:
       return TJPF_GRAY;
   }

@@ -8,15 +8,15 @@
 
 namespace understudy::compositor {
 
-enum class JpegPixels : std::uint8_t { bgrx, rgbx, gray };
+enum class JpegPixels : std::uint8_t { bgrx, rgbx, rgb, gray };
 
 constexpr int max_jpeg_extent = 65500;
 
-/// `pixels`: rows tightly packed, four bytes a pixel or one. `quality` 1 to 100; below 90 colours have half the
+/// `pixels`: rows tightly packed, a byte for each letter of the format, one for gray. `quality` 1 to 100; below 90 colours have half the
 /// resolution. Appends to `to`.
 void append_jpeg(std::span<const std::byte> pixels, int width, int height, JpegPixels format, int quality,
                  std::vector<std::byte>& to);
-/// The fourth byte of a pixel is 255. Throws MalformedMessage where `jpeg` is no picture of that size.
+/// A fourth byte of a pixel is 255. Throws MalformedMessage where `jpeg` is no picture of that size.
 void read_jpeg(std::span<const std::byte> jpeg, int width, int height, JpegPixels format,
                std::span<std::byte> to);
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <png.h>
-#include <turbojpeg.h>
 
 #include <algorithm>
-#include <memory>
+#include <span>
 #include <stdexcept>
 
 #include "apps/understudy/picture.h"
+#include "compositor/tcp/jpeg.h"
 
 namespace understudy::launcher {
 
@@ -43,17 +43,9 @@ std::vector<std::byte> png_of(const RgbPicture& picture) {
 }
 
 std::vector<std::byte> jpeg_of(const RgbPicture& picture, int quality) {
-  const std::unique_ptr<void, int (*)(tjhandle)> compressor(tjInitCompress(), tjDestroy);
-  if (!compressor) throw std::runtime_error("there is no JPEG compressor");
-  // As large as any JPEG of this size, so that nothing is allocated within.
-  unsigned long size = tjBufSize(picture.width, picture.height, TJSAMP_420);
-  std::vector<std::byte> bytes(size);
-  auto* to = reinterpret_cast<unsigned char*>(bytes.data());
-  if (tjCompress2(compressor.get(), picture.rgb.data(), picture.width, 0, picture.height, TJPF_RGB, &to, &size,
-                  TJSAMP_420, quality, TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0)
-    throw std::runtime_error(fmt::format("a picture of {} x {} is not to be written as JPEG: {}", picture.width,
-                                         picture.height, tjGetErrorStr2(compressor.get())));
-  bytes.resize(size);
+  std::vector<std::byte> bytes;
+  compositor::append_jpeg(std::as_bytes(std::span(picture.rgb)), picture.width, picture.height,
+                          compositor::JpegPixels::rgb, quality, bytes);
   return bytes;
 }
 

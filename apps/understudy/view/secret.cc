@@ -1,10 +1,7 @@
 #include "apps/understudy/view/secret.h"
 
 #include <fmt/format.h>
-#include <openssl/crypto.h>
-#include <openssl/evp.h>
-#include <openssl/hmac.h>
-#include <openssl/rand.h>
+#include <sodium.h>
 
 #include <array>
 #include <span>
@@ -26,25 +23,27 @@ std::string digits_of(std::span<const unsigned char> bytes) {
 }  // namespace
 
 std::string random_digits(std::size_t bytes) {
+  if (::sodium_init() < 0) throw std::runtime_error("the system gives no random numbers");
   std::vector<unsigned char> random(bytes);
-  if (RAND_bytes(random.data(), int(random.size())) != 1)
-    throw std::runtime_error("the system gives no random numbers");
+  ::randombytes_buf(random.data(), random.size());
   return digits_of(random);
 }
 
 std::string proof_of(std::string_view secret, std::string_view challenge) {
   const std::string message = std::string(purpose).append(challenge);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> proof{};
-  unsigned size = 0;
-  if (HMAC(EVP_sha256(), secret.data(), int(secret.size()),
-           reinterpret_cast<const unsigned char*>(message.data()), message.size(), proof.data(),
-           &size) == nullptr)
-    throw std::runtime_error("HMAC-SHA-256 cannot be computed");
-  return digits_of(std::span(proof).first(size));
+  const auto bytes_of = [](std::string_view text) {
+    return reinterpret_cast<const unsigned char*>(text.data());
+  };
+  crypto_auth_hmacsha256_state state;
+  std::array<unsigned char, crypto_auth_hmacsha256_BYTES> proof{};
+  ::crypto_auth_hmacsha256_init(&state, bytes_of(secret), secret.size());
+  ::crypto_auth_hmacsha256_update(&state, bytes_of(message), message.size());
+  ::crypto_auth_hmacsha256_final(&state, proof.data());
+  return digits_of(proof);
 }
 
 bool equal(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+  return a.size() == b.size() && ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 }  // namespace understudy::launcher

@@ -293,14 +293,19 @@ bool is_remote(Processes processes) {
                      [](const ProcessCounters* process) { return process->remote.is.load() != 0; });
 }
 
+std::uint64_t frames_from_a_stage(Processes processes) {
+  std::uint64_t frames = 0;
+  for (const ProcessCounters* process : processes) frames += process->remote.frames.load();
+  return frames;
+}
+
 Json remote_link(Processes processes) {
   if (!is_remote(processes)) return nullptr;
-  std::uint64_t frames = 0;
+  const std::uint64_t frames = frames_from_a_stage(processes);
   std::uint64_t round_trips = 0;
   std::uint64_t up = 0;
   std::uint64_t down = 0;
   for (const ProcessCounters* process : processes) {
-    frames += process->remote.frames.load();
     round_trips += process->remote.round_trips.load();
     up += process->remote.bytes_up.load();
     down += process->remote.bytes_down.load();
@@ -394,6 +399,10 @@ std::string report_json(Processes processes) {
 
 std::string summary_line(Processes processes) {
   const Totals totals = totals_of(processes);
+  if (const std::uint64_t frames = frames_from_a_stage(processes); frames > 0 && totals.frames == 0)
+    return fmt::format(
+        "understudy: {} came from a stage on another machine, which knows what of them was substituted",
+        counted(frames, "frame"));
   // Who draws is known once somebody did.
   std::string where;
   if (totals.nodes > 0) {

@@ -170,6 +170,16 @@ TEST(Report, NamesNobodyAsTheOneWhoDrewWhereNothingWasSubstituted) {
   EXPECT_THAT(summary_line(Processes(&one, 1)), HasSubstr("1 substituted (embedded)"));
 }
 
+TEST(Report, KnowsNothingOfFramesThatAStageElsewhereHasDrawnButTheirNumber) {
+  const auto counters = std::make_unique<ProcessCounters>();
+  counters->remote.is = 1;
+  counters->remote.frames = 12;
+  const ProcessCounters* const one = counters.get();
+  EXPECT_EQ(
+      summary_line(Processes(&one, 1)),
+      "understudy: 12 frames came from a stage on another machine, which knows what of them was substituted");
+}
+
 class CountersInAFolder : public ::testing::Test {
  protected:
   CountersInAFolder() {

@@ -12,8 +12,8 @@ enum class JpegPixels : std::uint8_t { bgrx, rgbx, rgb, gray };
 
 constexpr int max_jpeg_extent = 65500;
 
-/// `pixels`: rows tightly packed, a byte for each letter of the format, one for gray. `quality` 1 to 100; below 90 colours have half the
-/// resolution. Appends to `to`.
+/// `pixels`: rows tightly packed, a byte for each letter of the format, one for gray. `quality` 1 to 100; below
+/// 90 colours have half the resolution. Appends to `to`.
 void append_jpeg(std::span<const std::byte> pixels, int width, int height, JpegPixels format, int quality,
                  std::vector<std::byte>& to);
 /// A fourth byte of a pixel is 255. Throws MalformedMessage where `jpeg` is no picture of that size.

@@ -90,7 +90,8 @@ struct Wait {
 template <class Done>
 void wait_until(Bells* bells, Done done, const Wait& wait) {
   constexpr auto longest_nap = std::chrono::microseconds(1000);
-  // Should a bell ever be missed, nobody waits for ever.
+  // Should a bell ever be missed, the wait at most doubles.
+  constexpr auto shortest_sleep = std::chrono::microseconds(1000);
   constexpr auto longest_sleep = std::chrono::microseconds(100'000);
   const auto start = Clock::now();
   for (;;) {
@@ -102,7 +103,7 @@ void wait_until(Bells* bells, Done done, const Wait& wait) {
     if (waited < wait.only_yield)
       sched_yield();
     else if (bells)
-      bells->sleep(rung, wait.all_ring ? longest_sleep : nap);
+      bells->sleep(rung, wait.all_ring ? std::clamp(waited, shortest_sleep, longest_sleep) : nap);
     else
       std::this_thread::sleep_for(nap);
   }

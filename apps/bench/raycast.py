@@ -20,6 +20,7 @@ import sys
 from pathlib import Path
 
 import display
+import viewer_slices
 import viewers
 from frame import SIDE, cube
 
@@ -143,6 +144,23 @@ def vtk_rows(volume, rows_so_far):
     return result
 
 
+def slice_rows(volume, rows_so_far):
+    ours = {row["name"]: row for row in rows_so_far}
+    picture = viewers.OUT / "bench" / "pictures" / "slices.f32"
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    result = []
+    for table in ("dense", "sparse"):
+        print(f"  viewer-slices/{table}", file=sys.stderr, flush=True)
+        seconds = viewer_slices.seconds_and_picture(Path(volume), vtk_scene(volume, table), picture)
+        figures = measured(volume, FULL, ["--table", table, "--judge", str(picture)], frames=1)
+        errors = {key: figures[key] for key in figures if key.startswith(("rms_", "max_"))}
+        ns = 1e9 * seconds / figures["samples"]
+        rival = f"cpu/post-classified/{table}"
+        result.append({"name": f"viewer-slices/{table}", "value": ns, "unit": "ns", "ratio_to": rival,
+                       "ratio": ns / ours[rival]["value"], "threads": 1, **errors})
+    return result
+
+
 def enough_memory(side):
     """For a cube's bytes, and for bricks that hold 9^3 for every 8^3 of them, and a picture."""
     needed = 2.5 * side**3 + 16 * side**2
@@ -201,4 +219,4 @@ def rows(sizes=()):
         if name in theirs:
             row |= {"ratio_to": "yardstick", "ratio": row["value"] / statistics.median(theirs[name])}
         result.append(row)
-    return result + vtk_rows(volume, result)
+    return result + slice_rows(volume, result) + vtk_rows(volume, result)

@@ -43,7 +43,7 @@ Matrices matrices_of(const Camera& camera, int width, int height) {
   const double near = std::max(camera.distance - scene_radius, 0.01);
   const double far = camera.distance + scene_radius;
   const double depth = camera.orthographic ? camera.distance : near;
-  const double half = depth * std::tan(radians(field_of_view_degrees / 2));
+  const double half = depth * std::tan(radians(camera.field_of_view / 2));
   const double shorter = std::min(width, height);
   const double right = half * width / shorter, top = half * height / shorter;
   return {translation({0, 0, -camera.distance}) * orientation(camera),

@@ -10,13 +10,13 @@ namespace viewer {
 
 inline constexpr double min_distance = 0.05;
 inline constexpr double max_distance = 100.0;
-inline constexpr double field_of_view_degrees = 30.0;  ///< of the window's shorter side
 
 struct Camera {
   double azimuth = 30;    ///< degrees
   double elevation = 25;  ///< degrees, -90 to 90
   double distance = 2;    ///< from the eye to the origin, in box diagonals; 2 shows the whole box from any side
   bool orthographic = false;
+  double field_of_view = 30;  ///< degrees, over the window's shorter side
 };
 
 struct Matrices {

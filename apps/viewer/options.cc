@@ -110,6 +110,9 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--distance", options.camera.distance, "From the eye to the box's centre, in box diagonals")
       ->check(number_between(min_distance, max_distance))
       ->capture_default_str();
+  app.add_option("--field-of-view", options.camera.field_of_view, "Degrees over the picture's shorter side")
+      ->check(number_between(1.0, 170.0))
+      ->capture_default_str();
   app.add_flag("--ortho", options.camera.orthographic, "Orthographic instead of perspective");
   app.add_option("--window-size", options.window_size, "Picture in pixels")
       ->check(CLI::Range(1, max_window_edge))

@@ -17,7 +17,9 @@ HWY_INLINE Position behind(const Packet& rays, const Constants& constants) {
 /// A slab's place in the table of pairs.
 struct PairPlace {
   alignas(64) std::array<std::uint32_t, lanes> entry;  // of the lower corner, as an index of floats
-  Floats across, up;                                   // fractions of the way to the corners beside and above
+  // Fractions of the way to the corners beside and above.
+  Floats across;
+  alignas(64) std::array<float, lanes> up;
 };
 
 /// Where a value stands on either axis of the table of pairs: an entry, and the fraction of the way to the
@@ -46,7 +48,7 @@ HWY_INLINE Ints corner_of_pair(const AxisPlace& front, const AxisPlace& back, co
 HWY_INLINE void set_pair(const AxisPlace& front, const AxisPlace& back, Ints corner, PairPlace& out) {
   const hn::RebindToUnsigned<IntTag> u;
   out.across = front.between;
-  out.up = back.between;
+  hn::Store(back.between, FloatTag(), out.up.data());
   hn::Store(hn::BitCast(u, hn::ShiftLeft<2>(corner)), u, out.entry.data());
 }
 
@@ -73,16 +75,27 @@ HWY_INLINE void classify_slab(const Located& front, const Located& back, const P
 template <std::size_t q>
 HWY_INLINE Floats interpolated_pair(const PairPlace& at, const Constants& constants) {
   const FloatTag f;
-  std::array<const float*, lanes> entries;
-#pragma GCC unroll 4
-  for (std::size_t row = 0; row < rows; ++row) entries[q + 4 * row] = constants.entries + at.entry[q + 4 * row];
   const std::size_t above = 4 * constants.pair_row;
   const Floats across = hn::Broadcast<q>(at.across);
-  const auto along = [&](std::size_t offset) HWY_ATTR {
-    return mix(load_column<q>(f, entries.data(), offset), load_column<q>(f, entries.data(), offset + 4),
-               across);
-  };
-  return mix(along(0), along(above), hn::Broadcast<q>(at.up));
+  if constexpr (rows == 2) {
+    // Entries lie beside each other: one load takes both corners of a ray.
+    const auto upwards = [&](std::size_t ray) HWY_ATTR {
+      const float* const corner = constants.entries + at.entry[ray];
+      return mix(hn::LoadU(f, corner), hn::LoadU(f, corner + above), hn::Set(f, at.up[ray]));
+    };
+    const Floats first = upwards(q), second = upwards(q + 4);
+    return mix(hn::ConcatLowerLower(f, second, first), hn::ConcatUpperUpper(f, second, first), across);
+  } else {
+    std::array<const float*, lanes> entries;
+#pragma GCC unroll 4
+    for (std::size_t row = 0; row < rows; ++row)
+      entries[q + 4 * row] = constants.entries + at.entry[q + 4 * row];
+    const auto along = [&](std::size_t offset) HWY_ATTR {
+      return mix(load_column<q>(f, entries.data(), offset), load_column<q>(f, entries.data(), offset + 4),
+                 across);
+    };
+    return mix(along(0), along(above), hn::Broadcast<q>(hn::Load(f, at.up.data())));
+  }
 }
 
 template <std::size_t q>

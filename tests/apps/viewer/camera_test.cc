@@ -48,6 +48,17 @@ TEST(Camera, DefaultDistanceShowsTheWholeBoundingSphereInAnyWindowShape) {
     }
 }
 
+TEST(Camera, FieldOfViewSpansTheShorterSide) {
+  for (const double degrees : {10.0, 40.0, 120.0})
+    for (const auto& [width, height] : {std::pair{300, 700}, std::pair{700, 300}}) {
+      const Matrices m = matrices_of({0, 0, 2, false, degrees}, width, height);
+      const double half = 2 * std::tan(radians(degrees / 2));
+      const auto clip =
+          transform(m.projection * m.modelview, width < height ? Vec3{half, 0, 0} : Vec3{0, 0, half});
+      EXPECT_NEAR(clip[width < height ? 0 : 1] / clip[3], 1, 1e-12);
+    }
+}
+
 TEST(Camera, DraggingAndZoomingStayInRange) {
   Camera camera;
   rotate(camera, 1e5, 1e5);

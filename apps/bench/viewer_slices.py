@@ -1,0 +1,68 @@
+"""The bundled viewer's slices on Mesa's llvmpipe: what a program that is not helped pays for the picture of `raycast.py`."""
+
+import json
+import os
+import resource
+import subprocess
+from array import array
+
+import viewers
+
+FRAMES = 4  # timed; as many come before them
+
+
+def turned_upright(volume, turned, side):
+    """The viewer's z axis points up where the benchmark's y does: rows along x stay, y becomes z, and z minus y."""
+    voxels = volume.read_bytes()
+    with turned.open("wb") as file:
+        for up in range(side):
+            for away in range(side):
+                begin = ((side - 1 - away) * side + up) * side
+                file.write(voxels[begin:begin + side])
+
+
+def processor_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def drawn(command, frames, background, screenshot):
+    """Processor time of so many frames, with all that comes before the first."""
+    before = processor_seconds()
+    subprocess.run([*command, "--frames", str(frames), "--background", *[background] * 3, "--screenshot", str(screenshot)],
+                   stdout=subprocess.DEVNULL, check=True,
+                   env=os.environ | {"LIBGL_ALWAYS_SOFTWARE": "1", "LP_NUM_THREADS": "1"})
+    return processor_seconds() - before
+
+
+def colours(screenshot):
+    return subprocess.run(["convert", str(screenshot), "-depth", "8", "rgb:-"], stdout=subprocess.PIPE, check=True).stdout
+
+
+def write_premultiplied(on_black, on_white, pixels, picture):
+    """RGBA floats, rows bottom up. What white adds to black is what the volume lets through."""
+    floats = array("f")
+    for row in range(pixels - 1, -1, -1):
+        for pixel in range(row * pixels, (row + 1) * pixels):
+            rgb = on_black[3 * pixel:3 * pixel + 3]
+            through = (sum(on_white[3 * pixel:3 * pixel + 3]) - sum(rgb)) / 3
+            floats.extend([channel / 255 for channel in rgb] + [1 - through / 255])
+    picture.write_bytes(floats.tobytes())
+
+
+def seconds_and_picture(volume, scene, picture):
+    """Of one frame; `scene` as raycast.py describes it to VTK. The picture is written where raycast.cc can judge it."""
+    side, pixels = scene["size"][0], scene["pixels"]
+    upright, table = picture.with_name(f"upright.{side}x{side}x{side}"), picture.with_suffix(".json")
+    turned_upright(volume, upright, side)
+    table.write_text(json.dumps({"knots": scene["knots"]}), encoding="utf-8")
+    diagonals = 2 / 3**0.5  # two edges
+    command = [str(viewers.PROGRAMS / "understudy-viewer"), str(upright), "--offscreen", "--mode", "table", "--table",
+               str(table), "--no-frame", "--azimuth", "30", "--elevation", "25", "--distance", f"{diagonals:.17g}",
+               "--field-of-view", str(scene["angle"]), "--window-size", str(pixels), str(pixels)]
+    black, white = picture.with_suffix(".black.png"), picture.with_suffix(".white.png")
+    fewer = drawn(command, FRAMES, "1", white)
+    more = drawn(command, 2 * FRAMES, "0", black)
+    write_premultiplied(colours(black), colours(white), pixels, picture)
+    upright.unlink()
+    return (more - fewer) / FRAMES

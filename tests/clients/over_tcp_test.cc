@@ -16,6 +16,7 @@
 #include "compositor/tcp/tcp_link.h"
 #include "compositor/tcp/tcp_socket.h"
 #include "tests/apps/viewer/virtual_display.h"
+#include "tests/clients/line.h"
 #include "tests/clients/stage.h"
 
 namespace clients {
@@ -51,8 +52,13 @@ class OverTcp : public Stage {
   }
   std::string socket() const { return file("nodes.sock").string(); }
   std::string secret() const { return file("secret").string(); }
-  Words over_tcp(const std::string& key = "secret") const {
-    return {"--connect", address_, "--secret-file", file(key).string()};
+  Words over_tcp(const std::string& key = "secret") const { return at(address_, key); }
+  Words at(const std::string& address, const std::string& key = "secret") const {
+    return {"--connect", address, "--secret-file", file(key).string()};
+  }
+  Words turning(const std::string& name, int frames) const {
+    return engine_viewer("table",
+                         {"--frames", std::to_string(frames), "--orbit", "3", "--screenshot", file(name)});
   }
   Words frame(const std::string& name) const {
     return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});
@@ -174,6 +180,67 @@ TEST_F(OverTcp, AStageDrawsForViewersWithoutOpenGL) {
   EXPECT_EQ(report.at("remote"), true) << outcome.err;
   EXPECT_GT(report.at("link").at("up").at("bytes"), 100'000);
   EXPECT_EQ(png("local.png").rgb, png("tcp.png").rgb);
+  end_server();
+}
+
+TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
+  serve({"--stage"});
+  for (const Words& remote : {Words{"--remote"}, Words{}}) {
+    const int frames = 40;
+    run_well(under(remote + over_tcp()) + turning("flowing.png", frames));
+    Line line(address_);
+    fs::create_directories(file("held"));
+    Child child(on_stage(under(remote + at(line.address()) + Words{"--report", file("report.json")}) +
+                         turning("held.png", frames)),
+                file("held"));
+    // In the middle of a picture, most likely.
+    EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
+    ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
+    line.stand_still();
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_TRUE(child.running()) << child.err();
+    line.go_on();
+    const Outcome outcome = child.finish();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(png("flowing.png").rgb, png("held.png").rgb) << outcome.err;
+    if (remote.empty()) {
+      EXPECT_EQ(substituted(json("report.json")), frames) << outcome.err;
+    }
+  }
+  end_server();
+}
+
+TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
+  serve({"--stage"});
+  run_well(turning("bare.png", 40));
+  const std::size_t processes_before = gate_and_its_children().size(), descriptors_before = descriptors();
+  const auto quiet = [&] {
+    return gate_and_its_children().size() == processes_before && descriptors() <= descriptors_before;
+  };
+  for (const Words& remote : {Words{}, Words{"--remote"}}) {
+    Line line(address_);
+    fs::create_directories(file("cut"));
+    Child child(on_stage(under(remote + at(line.address()) + Words{"--report", file("report.json")}) +
+                         turning("cut.png", 40)),
+                file("cut"));
+    EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
+    ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
+    line.cut();
+    const Outcome outcome = child.finish();
+    if (remote.empty()) {
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      const int drawn_there = substituted(json("report.json"));
+      EXPECT_GT(drawn_there, 0);
+      EXPECT_LT(drawn_there, 40);
+      EXPECT_EQ(png("bare.png").rgb, png("cut.png").rgb) << outcome.err;
+    } else {
+      EXPECT_THAT(outcome.err, HasSubstr("the stage, which draws"));
+    }
+    EXPECT_TRUE(comes_true(quiet)) << server_->err();
+  }
+  // Those who come next notice nothing.
+  run_well(under(Words{"--remote"} + over_tcp()) + frame("after.png"));
+  EXPECT_EQ(png("after.png").width, 256);
   end_server();
 }
 

@@ -1,0 +1,52 @@
+// A line between a viewer and a server that a test can hold still or cut: whoever connects here is connected
+// on.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "compositor/service/file_descriptor.h"
+#include "compositor/tcp/address.h"
+
+namespace clients {
+
+class Line {
+ public:
+  /// Throws std::runtime_error.
+  explicit Line(const std::string& to);
+  ~Line();
+
+  /// "host:port" for viewers.
+  std::string address() const { return address_; }
+  /// What has gone from the server to viewers.
+  std::uint64_t bytes_down() const { return bytes_down_; }
+
+  /// Nothing goes through, both ways, until go_on().
+  void stand_still();
+  void go_on();
+  /// Ends all connections, and nobody is connected any more.
+  void cut();
+
+ private:
+  void accept_all();
+  void carry(int from, int to, bool down);
+  void wait_while_still();
+
+  understudy::compositor::TcpAddress to_;
+  understudy::compositor::FileDescriptor listening_;
+  std::string address_;
+  std::atomic<std::uint64_t> bytes_down_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool still_ = false;
+  std::vector<understudy::compositor::FileDescriptor> connections_;
+  std::vector<std::jthread> carriers_;
+  std::jthread accepting_;
+};
+
+}  // namespace clients

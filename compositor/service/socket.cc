@@ -19,9 +19,10 @@ namespace {
 sockaddr_un address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path)
-    throw std::runtime_error(fmt::format("'{}' cannot name a socket: 1 to {} characters are possible", path,
-                                         sizeof address.sun_path - 1));
+  constexpr std::size_t longest = sizeof address.sun_path - 2;  // and one that listen_at() appends
+  if (path.empty() || path.size() > longest)
+    throw std::runtime_error(
+        fmt::format("'{}' cannot name a socket: 1 to {} characters are possible", path, longest));
   std::memcpy(address.sun_path, path.data(), path.size());
   return address;
 }
@@ -58,14 +59,18 @@ FileDescriptor listen_at(const std::string& path) {
       throw std::runtime_error(fmt::format("'{}' exists and is no socket: name another path", path));
     if (try_to_connect(new_socket().get(), address) != ECONNREFUSED)
       throw std::runtime_error(fmt::format("'{}' is in use by another launcher: name another path", path));
-    ::unlink(path.c_str());
   }
   FileDescriptor result = new_socket();
+  // A socket that has a name refuses connections until somebody listens at it, as one does whose listener is
+  // gone. So it gets its name then.
+  sockaddr_un unfinished = address;
+  unfinished.sun_path[path.size()] = '~';
+  ::unlink(unfinished.sun_path);
   // On Linux the socket's own mode becomes that of its file, so that there is no moment in which others may
   // connect.
   ::fchmod(result.get(), 0600);
-  if (::bind(result.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(result.get(), SOMAXCONN) != 0)
+  if (::bind(result.get(), reinterpret_cast<const sockaddr*>(&unfinished), sizeof unfinished) != 0 ||
+      ::listen(result.get(), SOMAXCONN) != 0 || ::rename(unfinished.sun_path, path.c_str()) != 0)
     throw std::runtime_error(fmt::format("cannot listen at '{}': {}: name a path in a folder that is yours",
                                          path, std::strerror(errno)));
   return result;

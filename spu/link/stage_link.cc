@@ -78,17 +78,21 @@ void StageLink::end() {
 }
 
 void StageLink::lose(const std::string& why) {
-  {
-    const std::scoped_lock lock(replies_);
-    if (lost_.exchange(true)) return;
-  }
-  replied_.notify_all();
-  ::shutdown(connection_->fd(), SHUT_RDWR);
-  if (ended_) return;
-  fmt::print(stderr,
-             "understudy: the stage, which draws for this program, {}; its windows show nothing new any more, "
-             "end it and start again\n",
-             why);
+  std::call_once(losing_, [&] {
+    // Said before anybody goes on without the stage, as that may be to the end of the program.
+    if (!ended_)
+      fmt::print(
+          stderr,
+          "understudy: the stage, which draws for this program, {}; its windows show nothing new any more, "
+          "end it and start again\n",
+          why);
+    {
+      const std::scoped_lock lock(replies_);
+      lost_ = true;
+    }
+    replied_.notify_all();
+    ::shutdown(connection_->fd(), SHUT_RDWR);
+  });
 }
 
 void StageLink::transmit(const Records& records, StageReply reply) {

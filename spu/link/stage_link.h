@@ -81,6 +81,7 @@ class StageLink {
   std::optional<compositor::Connection> connection_;
   StageVersions versions_;
   std::atomic<bool> lost_ = false;
+  std::once_flag losing_;
   std::atomic<bool> ended_ = false;
 
   std::mutex sending_;  ///< held from a question to its answer

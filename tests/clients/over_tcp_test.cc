@@ -165,7 +165,8 @@ TEST_F(OverTcp, AThousandConnectionsLeaveNothingAtTheServer) {
   EXPECT_EQ(png("before.png").rgb, png("after.png").rgb);
   EXPECT_TRUE(comes_true([&] { return quiet() && descriptors() <= before; }))
       << descriptors() << " of " << before;
-  EXPECT_LE(shared_memory(), memory_before);
+  // Other programs of the machine come and go there.
+  EXPECT_TRUE(comes_true([&] { return shared_memory() <= memory_before; }));
   end_server();
 }
 

@@ -234,6 +234,10 @@ void run(const Settings& settings, Link& link) {
       ways.push_back(ours.way("auto", {}, compositor::Layout::rgba32f, mine.order));
       ways.push_back(ours.way("auto, unpacked", {}, compositor::Layout::rgba32f, mine.order, false));
       // As nodes do it where all ranks are on one machine.
+      for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
+        ways.push_back(on_one_machine.way(fmt::format("{}, in place", name_of(compositor::Algorithm(a))),
+                                          compositor::Algorithm(a), compositor::Layout::rgba32f, mine.order,
+                                          false));
       ways.push_back(on_one_machine.way("auto, in place", {}, compositor::Layout::rgba32f, mine.order, false));
       ways.push_back(ours.way("auto, half", {}, compositor::Layout::rgba16f, mine.order));
       ways.push_back(ours.way("auto, byte", {}, compositor::Layout::rgba8, mine.order));

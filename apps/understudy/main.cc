@@ -18,7 +18,7 @@
 #include "apps/understudy/study/study.h"
 #include "apps/understudy/trim.h"
 #include "apps/understudy/units.h"
-#include "apps/understudy/view/view.h"
+#include "apps/understudy/view_program.h"
 
 namespace launcher = understudy::launcher;
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv) try {
   launcher::add_gate(app, chosen);
   launcher::add_porter(app, chosen);
   launcher::add_render(app, chosen);
-  launcher::add_view(app, chosen);
+  launcher::add_view_program(app, argv, chosen);
   launcher::add_study(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);

@@ -13,6 +13,7 @@
 #include "apps/understudy/view/view_state.h"
 #include "apps/understudy/view/web_view.h"
 #include "apps/understudy/view/window.h"
+#include "apps/understudy/view_program.h"
 #include "compositor/service.h"
 
 namespace understudy::launcher {
@@ -49,8 +50,7 @@ int view(const ViewArguments& arguments) {
 
 void add_view(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<ViewArguments>();
-  CLI::App* command =
-      app.add_subcommand("view", "a volume in a file to look at, in a browser or a window, without OpenGL");
+  CLI::App* command = app.add_subcommand("view", view_description);
   add_scene_options(*command, arguments->scene);
   add_loading_nodes(*command, arguments->nodes);
   CLI::Option* web = command

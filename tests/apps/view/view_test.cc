@@ -248,5 +248,18 @@ TEST_F(View, WithoutADisplayTheWayOutIsSaid) {
   EXPECT_THAT(result.output, HasSubstr("give --web 0"));
 }
 
+TEST_F(View, IsACommandLikeTheOthers) {
+  const std::string command = std::string(UNDERSTUDY_PROGRAM) + " view ";
+  const Result help = shell(command + "--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.output, AllOf(HasSubstr("understudy view"), HasSubstr("--web"), HasSubstr("--table")));
+  const Result wrong = shell(command + volume_name + " --no-such-option");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.output, HasSubstr("--no-such-option"));
+  const Result missing = shell(command + "/no/such/file.nrrd --web 0");
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(missing.output, HasSubstr("understudy: "));
+}
+
 }  // namespace
 }  // namespace understudy::launcher

@@ -1,0 +1,26 @@
+// understudy-view: what `understudy view` becomes, with the same words.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+#include "apps/understudy/run.h"
+#include "apps/understudy/view/view.h"
+
+namespace launcher = understudy::launcher;
+
+int main(int argc, char** argv) try {
+  CLI::App app{"Shows what render nodes draw.", "understudy"};
+  app.require_subcommand(1);
+  std::function<int()> chosen;
+  launcher::add_view(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : launcher::usage_error;
+  }
+  return chosen();
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "understudy: %s\n", error.what());
+  return 1;
+}

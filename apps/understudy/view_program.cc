@@ -1,0 +1,29 @@
+#include "apps/understudy/view_program.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "apps/understudy/installation.h"
+
+namespace understudy::launcher {
+
+void add_view_program(CLI::App& app, char** argv, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("view", view_description);
+  command->prefix_command();
+  command->set_help_flag();
+  command->callback([argv, &chosen] {
+    chosen = [argv]() -> int {
+      const std::filesystem::path program = this_installation().programs / "understudy-view";
+      ::execv(program.c_str(), argv);
+      throw std::runtime_error(fmt::format("{}: {}; it is built and installed with this program",
+                                           program.string(), std::strerror(errno)));
+    };
+  });
+}
+
+}  // namespace understudy::launcher

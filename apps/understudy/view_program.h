@@ -1,0 +1,17 @@
+// `understudy view` is a program of its own, understudy-view: a window needs libraries that every other command
+// would have to wait for when it starts.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace understudy::launcher {
+
+constexpr const char* view_description =
+    "a volume in a file to look at, in a browser or a window, without OpenGL";
+
+/// The subcommand, which takes whatever follows. Chosen, it gives this process to understudy-view with the same
+/// `argv`, and throws std::runtime_error where that is not to be had.
+void add_view_program(CLI::App& app, char** argv, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

@@ -2,8 +2,9 @@
 """./run viewers [NAME…] [--install]: real viewers, bare and under Understudy, as a table.
 
 Every viewer that the script at UNDERSTUDY_VIEWERS (../shared/clients/viewer beside the checkout, if the variable is not
-set) knows is run four ways, which follow each other in every round: bare, under `understudy run` (embedded), under
-`understudy run -n 2`, and with nothing but LD_PRELOAD=libunderstudy.so. The script is asked as
+set) knows is run five ways, which follow each other in every round: bare, under `understudy run` (embedded), under
+`understudy run -n 2`, with nothing but LD_PRELOAD=libunderstudy.so, and under `understudy run --remote -n 2` without any
+OpenGL of its own (stage), whose picture is held against that of `run -n 2`. The script is asked as
 
     [WITH="command…"] viewer NAME PICTURE.png FRAMES
 
@@ -29,7 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "out" / "viewers"
 UNDERSTUDY = ROOT / "build" / "bin" / "understudy"
 LIBRARY = ROOT / "build" / "lib" / "libunderstudy.so"
-WAYS = ("bare", "embedded", "2 ranks", "preload")
+WAYS = ("bare", "embedded", "2 ranks", "preload", "stage")
 
 # What a viewer needs, by the beginning of its name: what is there when it is installed, and the Debian packages that
 # bring it. Some of them exclude others.
@@ -141,6 +142,7 @@ class Run:
             "2 ranks": f"{UNDERSTUDY} run -n 2 --report {report} --",
             # Nobody writes a report here; a picture is saved for every run of slices that is substituted.
             "preload": f"env LD_PRELOAD={LIBRARY} UNDERSTUDY_SAVE_FRAMES={saved}",
+            "stage": f"{UNDERSTUDY} run --remote -n 2 --report {report} -- env LIBGL_DRIVERS_PATH=/nowhere",
         }[way]
         if watched:
             environment["UNDERSTUDY_VERIFY_PSNR"] = "200"
@@ -194,6 +196,10 @@ class Run:
         """What reading the depth of the geometry drawn before the volume takes of a substituted frame."""
         return self.report["time_ms"]["depth_median"] if self.report else None
 
+    def line(self):
+        """What a frame takes of the line to the stage."""
+        return self.report.get("remote_link") if self.report else None
+
     def calls_a_frame(self):
         if self.report is None or not self.report["frames"]:
             return None
@@ -244,10 +250,14 @@ def row_of(script, name, arguments):
             continue
         psnr, largest = compared(bare.picture, run.picture)
         row["ways"][way] = {"substituted": run.substituted(), "psnr": psnr, "max": largest}
+    ranks, stage = (next((run for run in reversed(runs[way]) if not run.trouble), None) for way in ("2 ranks", "stage"))
+    if ranks and stage:
+        row["ways"]["stage"]["psnr_to_2_ranks"] = compared(ranks.picture, stage.picture)[0]
+        row["line"] = stage.line()
     times = {way: median(run.frame_ms for run in runs[way]) for way in WAYS}
     row["frame_ms"] = times
     row["times_by"] = "the viewer" if bare.own_time else "Understudy"
-    for way in ("embedded", "2 ranks"):
+    for way in ("embedded", "2 ranks", "stage"):
         if times["bare"] and times[way]:
             row["frame_ratio"][way] = times["bare"] / times[way]
     embedded = next((run for run in runs["embedded"] if not run.trouble), None)
@@ -277,18 +287,39 @@ def share_cell(share, bare):
 
 
 def markdown(rows):
+    drawn_here = WAYS[1:4]
     lines = ["| viewer | embedded | 2 ranks | preload | ms bare | embedded | 2 ranks | recognising | reading depth "
              "| calls a frame | left because |",
              "|---|---|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         times, ratios = row.get("frame_ms", {}), row["frame_ratio"]
-        cells = [row["viewer"], *(cell_of_way(row["ways"].get(way)) for way in WAYS[1:]),
+        cells = [row["viewer"], *(cell_of_way(row["ways"].get(way)) for way in drawn_here),
                  f"{times['bare']:.0f}" if times.get("bare") else "–",
                  *(f"{times[way]:.0f} ({ratios[way]:.1f}×)" if way in ratios else "–" for way in ("embedded", "2 ranks")),
                  *(share_cell(row.get(share), times.get("bare")) for share in ("recognition_ms", "depth_ms")),
                  f"{row['calls_a_frame']:.0f}" if row["calls_a_frame"] else "–", row["reason"] or "–"]
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, "", *stage_lines(rows)]) + "\n"
+
+
+def stage_lines(rows):
+    """The same viewers without OpenGL: all of it, and two nodes, are on a stage."""
+    lines = ["| viewer without OpenGL | volume | PSNR to 2 ranks | ms | bytes up a frame, with all that is uploaded | down | round trips |",
+             "|---|---|---|---|---|---|---|"]
+    for row in rows:
+        way, line = row["ways"].get("stage"), row.get("line")
+        if way is None:
+            continue
+        if line is None:
+            lines.append(f"| {row['viewer']} | {way.get('trouble', '–')} | – | – | – | – | – |")
+            continue
+        psnr, time_of_frame, each = way["psnr_to_2_ranks"], row["frame_ms"].get("stage"), line["per_frame"]
+        counts = [f"{each[key]:.0f}" if each[key] is not None else "–" for key in ("bytes_up", "bytes_down")]
+        trips = f"{each['round_trips']:.1f}" if each["round_trips"] is not None else "–"
+        lines.append(f"| {row['viewer']} | {'by nodes' if way['substituted'] else 'by the viewer'} | "
+                     f"{'–' if psnr is None else 'equal' if psnr == float('inf') else f'{psnr:.1f} dB'} | "
+                     f"{f'{time_of_frame:.0f}' if time_of_frame else '–'} | {counts[0]} | {counts[1]} | {trips} |")
+    return lines
 
 
 def jsonable(value):
@@ -308,7 +339,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="viewers; without a name all that the script knows")
     parser.add_argument("--install", action="store_true", help="install viewers that are missing, one after the other")
-    parser.add_argument("--rounds", type=int, default=2, help="how often the four ways follow each other (2)")
+    parser.add_argument("--rounds", type=int, default=2, help="how often the five ways follow each other (2)")
     parser.add_argument("--frames", type=int, default=12, help="frames that a viewer shows (12)")
     parser.add_argument("--seconds", type=int, default=240, help="after these one run of a viewer is given up (240)")
     arguments = parser.parse_args()

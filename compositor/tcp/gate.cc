@@ -58,11 +58,16 @@ void Gate::forget() {
 
 void Gate::step() {
   accept_all();
-  std::vector<Stranger> still_strange;
-  still_strange.reserve(strangers_.size());
-  for (Stranger& stranger : strangers_)
-    if (hear(stranger)) still_strange.push_back(std::move(stranger));
-  strangers_ = std::move(still_strange);
+  for (std::size_t i = 0; i < strangers_.size();) {
+    if (hear(strangers_[i])) {
+      ++i;
+      continue;
+    }
+    // Whoever is welcomed becomes a process, which forgets all strangers that there are then.
+    Stranger heard = std::move(strangers_[i]);
+    strangers_.erase(strangers_.begin() + std::ptrdiff_t(i));
+    if (heard.let_in) welcome_(std::move(heard.socket), heard.handshake.wishes());
+  }
 }
 
 void Gate::accept_all() {
@@ -82,9 +87,8 @@ void Gate::accept_all() {
 }
 
 void Gate::make_room() {
-  const auto silent = std::ranges::find_if(
-      strangers_, [](const Stranger& stranger) { return !stranger.handshake.said_hello(); });
-  strangers_.erase(silent == strangers_.end() ? strangers_.begin() : silent);
+  // The oldest, which has had the longest time: whoever has just come may not have had his say yet.
+  strangers_.erase(strangers_.begin());
 }
 
 void Gate::drop(const Stranger& stranger, const std::string& why) {
@@ -131,8 +135,8 @@ bool Gate::hear(Stranger& stranger) {
     drop(stranger, "as many clients as are served are here already");
   else if (verdict == LinkVerdict::not_offered)
     drop(stranger, "it wants a stage; give understudy serve --stage");
-  else if (!wishes.only_asks)
-    welcome_(std::move(stranger.socket), wishes);
+  else
+    stranger.let_in = !wishes.only_asks;
   return false;
 }
 

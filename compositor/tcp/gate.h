@@ -54,6 +54,7 @@ class Gate {
     Deadline until;
     ServerHandshake handshake;
     std::vector<std::byte> heard;  ///< of the message that is coming
+    bool let_in = false;           ///< it has heard so
   };
 
   void accept_all();

@@ -67,7 +67,6 @@ class ServerHandshake {
   std::vector<std::byte> verdict(LinkVerdict verdict) const;
   std::span<const std::byte> last_words() const { return last_words_; }
   const LinkWishes& wishes() const { return wishes_; }
-  bool said_hello() const { return step_ != Step::hello; }
 
  private:
   enum class Step { hello, proof, proved };

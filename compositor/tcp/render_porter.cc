@@ -140,6 +140,7 @@ void ApplicationPorter::carry_home(Message message) {
 }
 
 void NodesPorter::carry_home(Message message) {
+  if (message.type == MessageType::hello_nodes) throw MalformedMessage("wants to be the nodes");
   if (message.type == MessageType::render) {
     repeats_ = message.payload == last_request_;
     last_request_ = message.payload;

@@ -97,11 +97,14 @@ TcpAddress peer_address(int socket) {
 
 FileDescriptor connect_to(const TcpAddress& address, Deadline deadline) {
   const AddressList list = resolve(address, 0);
-  int error = 0;
-  for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next) {
+  int error = 0, left = 0;
+  for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next) ++left;
+  for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next, --left) {
     FileDescriptor result(::socket(to->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!result) throw std::runtime_error(fmt::format("cannot make a socket: {}", std::strerror(errno)));
-    error = try_to_connect(result.get(), *to, deadline);
+    // An address whose packets vanish must leave time for those behind it.
+    const Deadline now = Clock::now();
+    error = try_to_connect(result.get(), *to, now + (deadline - now) / left);
     if (error != 0) continue;
     set_link_options(result.get());
     return result;

@@ -162,13 +162,16 @@ void StageLink::take_picture(const Message& message) {
     if (frames_.empty()) throw MalformedMessage("sent a picture that nobody waits for");
     drawable = frames_.front();
   }
-  Shown& shown = pictures_[drawable.number];
-  shown.drawable = drawable;
-  if (shown.extent != change.extent) {
-    shown.extent = change.extent;
-    shown.pixels.assign(std::size_t(change.extent.width) * std::size_t(change.extent.height) * 4, 0);
+  // Of a window that is gone, or of a frame that could not be made, there is nothing to show.
+  if (change.extent.width > 0 && change.extent.height > 0) {
+    Shown& shown = pictures_[drawable.number];
+    shown.drawable = drawable;
+    if (shown.extent != change.extent) {
+      shown.extent = change.extent;
+      shown.pixels.assign(std::size_t(change.extent.width) * std::size_t(change.extent.height) * 4, 0);
+    }
+    put(shown, change);
   }
-  put(shown, change);
   ++counters().frames;
   {
     const std::scoped_lock lock(replies_);
@@ -180,9 +183,8 @@ void StageLink::take_picture(const Message& message) {
 void StageLink::refine_picture(const Message& message) {
   const PictureChange change = decode_picture(message.payload);
   const auto shown = pictures_.find(change.drawable);
-  if (shown == pictures_.end() || shown->second.extent != change.extent)
-    throw MalformedMessage("refined a picture that was never sent");
-  put(shown->second, change);
+  // Nobody has asked for it: it may be of a picture that is gone.
+  if (shown != pictures_.end() && shown->second.extent == change.extent) put(shown->second, change);
 }
 
 void StageLink::put(Shown& shown, const PictureChange& change) {

@@ -16,8 +16,8 @@
 #include "compositor/tcp/tcp_link.h"
 #include "compositor/tcp/tcp_socket.h"
 #include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/line.h"
 #include "tests/clients/stage.h"
+#include "tests/compositor/tcp/line.h"
 
 namespace clients {
 namespace {
@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using understudy::compositor::Clock;
+using understudy::compositor::testing::Line;
 
 class OverTcp : public Stage {
  protected:
@@ -189,9 +190,9 @@ TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
   for (const Words& remote : {Words{"--remote"}, Words{}}) {
     const int frames = 40;
     run_well(under(remote + over_tcp()) + turning("flowing.png", frames));
-    Line line(address_);
+    Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("held"));
-    Child child(on_stage(under(remote + at(line.address()) + Words{"--report", file("report.json")}) +
+    Child child(on_stage(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
                          turning("held.png", frames)),
                 file("held"));
     // In the middle of a picture, most likely.
@@ -219,9 +220,9 @@ TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
     return gate_and_its_children().size() == processes_before && descriptors() <= descriptors_before;
   };
   for (const Words& remote : {Words{}, Words{"--remote"}}) {
-    Line line(address_);
+    Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("cut"));
-    Child child(on_stage(under(remote + at(line.address()) + Words{"--report", file("report.json")}) +
+    Child child(on_stage(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
                          turning("cut.png", 40)),
                 file("cut"));
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));

@@ -1,5 +1,6 @@
 #include "apps/understudy/view/web_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,6 +53,11 @@ std::string_view without_port(std::string_view host) {
 
 std::string refusal(std::string_view reason) {
   return Json{{"kind", "refused"}, {"reason", reason}}.dump();
+}
+
+/// Asio's sockets would go on in the nodes that are started after them.
+void keep_to_this_program(int socket) {
+  ::fcntl(socket, F_SETFD, FD_CLOEXEC);
 }
 
 }  // namespace
@@ -307,6 +313,7 @@ WebServer::Listener::Listener(const std::string& host, int port, std::string sec
   const tcp::endpoint endpoint = found.begin()->endpoint();
   acceptor_.open(endpoint.protocol(), error);
   check(error, "cannot be listened on");
+  keep_to_this_program(acceptor_.native_handle());
   acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
   acceptor_.bind(endpoint, error);
   check(error, "cannot be listened on");
@@ -349,6 +356,7 @@ void WebServer::Listener::accept() {
 }
 
 void WebServer::Listener::accepted(tcp::socket socket) {
+  keep_to_this_program(socket.native_handle());
   if (connections_.size() >= limits_.connections) {
     const auto oldest =
         std::ranges::find_if(connections_, [](const auto& entry) { return !entry.second->is_viewer(); });

@@ -35,6 +35,7 @@ class GateTest : public ::testing::Test {
     gate_.emplace(
         TcpAddress{"127.0.0.1", 0}, secret_, [this](const LinkWishes&) { return verdict_.load(); },
         [this](FileDescriptor socket, const LinkWishes& wishes) {
+          if (forgets_) gate_->forget();
           welcomed_.push_back(std::move(socket));
           last_wishes_ = wishes;
         },
@@ -75,6 +76,7 @@ class GateTest : public ::testing::Test {
   std::atomic<LinkVerdict> verdict_ = LinkVerdict::welcome;
   std::mutex mutex_;
   std::vector<FileDescriptor> welcomed_;
+  bool forgets_ = false;  ///< as the process of a client does
   LinkWishes last_wishes_;
   std::vector<std::string> said_;
   std::optional<Gate> gate_;
@@ -153,6 +155,16 @@ TEST_F(GateTest, GarbageTruncationAndSilenceEndInBoundedTime) {
   EXPECT_TRUE(is_closed(silent));
   EXPECT_TRUE(eventually([&] { return ask([&] { return gate_->strangers() == 0; }); }));
   EXPECT_EQ(welcomed(), 0U);
+}
+
+TEST_F(GateTest, AProcessForAClientKeepsNoStranger) {
+  forgets_ = true;
+  open({std::chrono::minutes(10), 64});
+  const FileDescriptor before = stranger();
+  ASSERT_TRUE(eventually([&] { return ask([&] { return gate_->strangers(); }) == 1; }));
+  const FileDescriptor client = connect_link(address_, secret_, {}, soon());
+  ASSERT_TRUE(eventually([&] { return welcomed() == 1; }));
+  EXPECT_TRUE(is_closed(before));
 }
 
 TEST_F(GateTest, AServerThatIsNoneIsSaidToBeNone) {

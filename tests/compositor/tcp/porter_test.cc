@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <atomic>
 #include <cmath>
 #include <thread>
 
@@ -13,51 +12,10 @@
 #include "compositor/tcp/render_porter.h"
 #include "compositor/tcp/tcp_socket.h"
 #include "tests/compositor/node_group.h"
+#include "tests/compositor/tcp/line.h"
 
 namespace understudy::compositor::testing {
 namespace {
-
-/// Between two TCP sockets, both ways, until it is told to stop, or for ever.
-class Relay {
- public:
-  explicit Relay(const TcpAddress& to) : listener_(listen_at(TcpAddress{"127.0.0.1", 0})), to_(to) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
-  TcpAddress address() const { return own_address(listener_.get()); }
-  void pause(bool paused) { paused_ = paused; }
-  void cut() { cut_ = true; }
-
- private:
-  void run(const std::stop_token& stop) {
-    std::vector<std::pair<FileDescriptor, FileDescriptor>> pairs;
-    std::vector<std::byte> bytes(1 << 16);
-    const auto forward = [&](int from, int to) {
-      const ssize_t got = ::recv(from, bytes.data(), bytes.size(), MSG_DONTWAIT);
-      for (ssize_t sent = 0; sent < got;) {
-        const ssize_t now = ::send(to, bytes.data() + sent, std::size_t(got - sent), MSG_NOSIGNAL);
-        if (now > 0) sent += now;
-        if (now <= 0 && !wait_until_ready(to, POLLOUT, soon())) return false;
-      }
-      return got > 0 || (got < 0 && errno == EAGAIN);
-    };
-    while (!stop.stop_requested()) {
-      if (cut_) pairs.clear();
-      if (FileDescriptor peer{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)})
-        pairs.emplace_back(std::move(peer), connect_to(to_, soon()));
-      if (!paused_)
-        std::erase_if(pairs, [&](const auto& pair) {
-          return !forward(pair.first.get(), pair.second.get()) || !forward(pair.second.get(), pair.first.get());
-        });
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
-  }
-
-  FileDescriptor listener_;
-  TcpAddress to_;
-  std::atomic<bool> paused_ = false;
-  std::atomic<bool> cut_ = false;
-  std::jthread thread_;
-};
 
 class PorterTest : public NodeGroupTest {
  protected:
@@ -178,32 +136,44 @@ TEST_F(PorterTest, NarrowerPicturesHaveTheErrorThatWasAskedFor) {
 
 TEST_F(PorterTest, ALineThatIsCutForAWhileGoesOnWhereItWas) {
   start(2);
-  Relay relay(gate_.address());
+  Line line(gate_.address());
   const Texture texture = some_texture();
   const auto request = some_request(texture);
-  RenderService& there = connect_over(relay.address());
+  RenderService& there = connect_over(line.address());
   upload(there, texture);
   const volume::Image before = whole_picture(there.render(request), request);
-  relay.pause(true);
+  line.stand_still();
   const std::jthread again([&] {
     std::this_thread::sleep_for(std::chrono::seconds(3));
-    relay.pause(false);
+    line.go_on();
   });
   EXPECT_EQ(whole_picture(there.render(request), request).rgba, before.rgba);
 }
 
 TEST_F(PorterTest, ALineThatIsGoneIsALostService) {
   start(2);
-  Relay relay(gate_.address());
+  Line line(gate_.address());
   const Texture texture = some_texture();
   const auto request = some_request(texture);
-  RenderService& there = connect_over(relay.address());
+  RenderService& there = connect_over(line.address());
   upload(there, texture);
-  relay.cut();
+  line.cut();
   EXPECT_THROW(there.render(request), ServiceLost);
   // The nodes serve others, and a new link.
   upload(connect_over(gate_.address()), texture);
   EXPECT_NO_THROW(service_->render(request));
+}
+
+TEST_F(PorterTest, AClientThatWouldBeTheNodesIsSentAway) {
+  // Before there are any.
+  TcpLink link(connect_link(gate_.address(), secret_, {}, soon()), limits::max_message_bytes);
+  const std::vector<std::byte> hello = encode(Hello{});
+  const Bytes payload(hello);
+  link.send(MessageType::hello_nodes, 0, {&payload, 1});
+  EXPECT_THROW(for (;;) link.receive(), ConnectionLost);
+  start(1);
+  const Texture texture = some_texture();
+  EXPECT_NO_THROW(upload(connect_over(gate_.address()), texture));
 }
 
 TEST_F(PorterTest, AnApplicationThatLeavesEndsItsWayThrough) {

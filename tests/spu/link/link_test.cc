@@ -176,6 +176,29 @@ TEST_F(LinkTest, AWindowMayChangeItsSize) {
   EXPECT_EQ(window_.at(99, 29), (std::array<int, 3>{0, 255, 0}));
 }
 
+TEST_F(LinkTest, AWindowWithoutPixelsKeepsWhatItShowed) {
+  make_context();
+  gl().ClearColor(0, 1, 0, 1);
+  gl().Clear(GL_COLOR_BUFFER_BIT);
+  swap();
+  gl().Finish();
+  const Extent2D shown = window_.picture_extent;
+  window_.extent = {0, 0};
+  gl().Viewport(0, 0, 64, 48);
+  swap();
+  gl().Finish();
+  EXPECT_FALSE(link_->lost());
+  EXPECT_EQ(window_.picture_extent, shown);
+  EXPECT_EQ(window_.at(5, 5), (std::array<int, 3>{0, 255, 0}));
+  window_.extent = {100, 30};
+  gl().Viewport(0, 0, 100, 30);
+  gl().ClearColor(1, 0, 0, 1);
+  gl().Clear(GL_COLOR_BUFFER_BIT);
+  swap();
+  gl().Finish();
+  EXPECT_EQ(window_.at(99, 29), (std::array<int, 3>{0, 0, 255}));
+}
+
 TEST_F(LinkTest, PixelsLieWhereThePixelStoreSays) {
   make_context();
   GLuint texture = 0;

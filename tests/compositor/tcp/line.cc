@@ -1,4 +1,4 @@
-#include "tests/clients/line.h"
+#include "tests/compositor/tcp/line.h"
 
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -7,12 +7,9 @@
 
 #include "compositor/tcp/tcp_socket.h"
 
-namespace clients {
+namespace understudy::compositor::testing {
 
 namespace {
-
-using understudy::compositor::Clock;
-using understudy::compositor::FileDescriptor;
 
 void wait_at(const FileDescriptor& socket) {
   ::fcntl(socket.get(), F_SETFL, 0);
@@ -20,10 +17,8 @@ void wait_at(const FileDescriptor& socket) {
 
 }  // namespace
 
-Line::Line(const std::string& to)
-    : to_(understudy::compositor::tcp_address_of(to).value()),
-      listening_(understudy::compositor::listen_at(understudy::compositor::TcpAddress{"127.0.0.1", 0})),
-      address_(understudy::compositor::own_address(listening_.get()).text()) {
+Line::Line(const TcpAddress& to)
+    : to_(to), listening_(listen_at(TcpAddress{"127.0.0.1", 0})), address_(own_address(listening_.get())) {
   wait_at(listening_);
   accepting_ = std::jthread([this] { accept_all(); });
 }
@@ -39,7 +34,7 @@ void Line::accept_all() {
   for (;;) {
     FileDescriptor viewer(::accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC));
     if (!viewer) return;
-    FileDescriptor server = understudy::compositor::connect_to(to_, Clock::now() + std::chrono::seconds(20));
+    FileDescriptor server = connect_to(to_, Clock::now() + std::chrono::seconds(20));
     wait_at(server);
     const int near = viewer.get(), far = server.get();
     const std::lock_guard lock(mutex_);
@@ -89,4 +84,4 @@ void Line::cut() {
   for (const FileDescriptor& connection : connections_) ::shutdown(connection.get(), SHUT_RDWR);
 }
 
-}  // namespace clients
+}  // namespace understudy::compositor::testing

@@ -6,24 +6,23 @@
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "compositor/service/file_descriptor.h"
 #include "compositor/tcp/address.h"
 
-namespace clients {
+namespace understudy::compositor::testing {
 
 class Line {
  public:
   /// Throws std::runtime_error.
-  explicit Line(const std::string& to);
+  explicit Line(const TcpAddress& to);
   ~Line();
 
-  /// "host:port" for viewers.
-  std::string address() const { return address_; }
-  /// What has gone from the server to viewers.
+  /// For clients.
+  const TcpAddress& address() const { return address_; }
+  /// What has gone from the server to clients.
   std::uint64_t bytes_down() const { return bytes_down_; }
 
   /// Nothing goes through, both ways, until go_on().
@@ -37,16 +36,16 @@ class Line {
   void carry(int from, int to, bool down);
   void wait_while_still();
 
-  understudy::compositor::TcpAddress to_;
-  understudy::compositor::FileDescriptor listening_;
-  std::string address_;
+  TcpAddress to_;
+  FileDescriptor listening_;
+  TcpAddress address_;
   std::atomic<std::uint64_t> bytes_down_ = 0;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool still_ = false;
-  std::vector<understudy::compositor::FileDescriptor> connections_;
+  std::vector<FileDescriptor> connections_;
   std::vector<std::jthread> carriers_;
   std::jthread accepting_;
 };
 
-}  // namespace clients
+}  // namespace understudy::compositor::testing

@@ -49,11 +49,11 @@ std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescr
   std::vector<FileDescriptor> opened;
   for (Rank rank = 0; rank < ranks; ++rank) {
     const auto [process, number] = all[std::size_t(rank)];
-    if (rank == mine)
-      opened.push_back(std::move(made));
-    else if (number >= 0)
-      opened.emplace_back(::open(fmt::format("/proc/{}/fd/{}", process, number).c_str(), O_RDWR | O_CLOEXEC));
+    opened.emplace_back(rank != mine && number >= 0
+                            ? ::open(fmt::format("/proc/{}/fd/{}", process, number).c_str(), O_RDWR | O_CLOEXEC)
+                            : -1);
   }
+  opened[std::size_t(mine)] = std::move(made);
   int complete = std::ranges::count_if(opened, &FileDescriptor::operator bool) == ranks ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &complete, 1, MPI_INT, MPI_MIN, machine);
   if (complete == 0) opened.clear();
@@ -321,8 +321,8 @@ void MpiLink::post(Rank to, std::span<const std::byte> note) {
   posted.bytes.assign(note.begin(), note.end());
   MPI_Isend(posted.bytes.data(), int(posted.bytes.size()), MPI_BYTE, to, note_tag, MPI_COMM_WORLD,
             &posted.request);
-  ring(to);
-}  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): forget_posted() sees to its end
+  ring(to);  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): forget_posted() sees to its end
+}
 
 std::optional<Note> MpiLink::take_note() {
   int has_come = 0;

@@ -19,7 +19,6 @@
 namespace understudy::spu {
 
 using compositor::Clock;
-using compositor::Connection;
 using compositor::ConnectionLost;
 using compositor::MalformedMessage;
 using compositor::Message;

@@ -1,5 +1,4 @@
-// A line between a viewer and a server that a test can hold still or cut: whoever connects here is connected
-// on.
+// A line between clients and a server that a test can hold still or cut: it connects on whoever connects here.
 #pragma once
 
 #include <atomic>

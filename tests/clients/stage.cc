@@ -12,10 +12,13 @@
 #include <set>
 #include <sstream>
 
+#include "tests/compositor/belongings.h"
+
 namespace clients {
 namespace {
 
 namespace fs = std::filesystem;
+using understudy::compositor::testing::abandoned_shared_memory;
 
 constexpr const char* engine_path = "usr/share/doc/tachyon/examples/scenes/vol/engine.256x256x110";
 
@@ -85,20 +88,6 @@ fs::path proc(pid_t pid, const char* file) {
   return fs::path("/proc") / std::to_string(pid) / file;
 }
 
-/// Files under /dev/shm that no process maps any more.
-std::set<std::string> orphans_in_shared_memory() {
-  std::set<std::string> orphans;
-  std::error_code gone;
-  for (const auto& entry : fs::directory_iterator("/dev/shm", gone)) orphans.insert(entry.path());
-  if (orphans.empty()) return orphans;
-  for (const pid_t pid : all_processes()) {
-    std::istringstream maps(contents(proc(pid, "maps")));
-    for (std::string line; std::getline(maps, line);)
-      if (const auto at = line.find("/dev/shm/"); at != std::string::npos) orphans.erase(line.substr(at));
-  }
-  return orphans;
-}
-
 }  // namespace
 
 Words operator+(Words first, const Words& second) {
@@ -149,7 +138,7 @@ int substituted(const nlohmann::json& report) {
   return runs;
 }
 
-Stage::Stage() : runtime_(folder_.file("runtime")) {
+Stage::Stage() : runtime_(folder_.file("runtime")), abandoned_before_(abandoned_shared_memory()) {
   fs::create_directory(runtime_);
 }
 
@@ -195,13 +184,14 @@ std::string Stage::leftovers() const {
   }
   for (const auto& entry : fs::recursive_directory_iterator(runtime_)) left += entry.path().string() + "\n";
   // Other tests may run at the same time and be just about to map what they made.
-  std::set<std::string> orphans = orphans_in_shared_memory();
+  std::set<std::string> abandoned = abandoned_shared_memory();
+  std::erase_if(abandoned, [&](const std::string& name) { return abandoned_before_.contains(name); });
   comes_true([&] {
-    const std::set<std::string> now = orphans_in_shared_memory();
-    std::erase_if(orphans, [&](const std::string& name) { return !now.contains(name); });
-    return orphans.empty();
+    const std::set<std::string> now = abandoned_shared_memory();
+    std::erase_if(abandoned, [&](const std::string& name) { return !now.contains(name); });
+    return abandoned.empty();
   });
-  for (const std::string& name : orphans) left += name + "\n";
+  for (const std::string& name : abandoned) left += name + "\n";
   return left;
 }
 

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,8 @@ class Stage : public testing::Test {
 
   viewer_test::TemporaryFolder folder_;
   std::filesystem::path runtime_;
+  /// Some other program that was killed may have left them: they are none of this test's.
+  std::set<std::string> abandoned_before_;
 };
 
 }  // namespace clients

@@ -128,6 +128,8 @@ class Body {
   }
 
   void program_ends() {
+    // The parent's links are none of a forked child's to shut.
+    if (getpid() != process_) return;
     session_->end();
     if (stage_) stage_->end();
   }

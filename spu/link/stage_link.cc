@@ -72,6 +72,9 @@ StageLink::~StageLink() {
 }
 
 void StageLink::end() {
+  const compositor::Deadline until = Clock::now() + last_frames_patience;
+  while (frames_on_their_way_ > 0 && !lost_ && Clock::now() < until)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ended_ = true;
   ::shutdown(connection_->fd(), SHUT_RDWR);
 }
@@ -175,6 +178,7 @@ void StageLink::take_picture(const Message& message) {
   {
     const std::scoped_lock lock(replies_);
     frames_.pop_front();
+    frames_on_their_way_ = frames_.size();
   }
   replied_.notify_all();
 }
@@ -216,6 +220,7 @@ void StageLink::show_frame(const Records& records, const FrontDrawable& drawable
   {
     const std::scoped_lock lock(replies_);
     frames_.push_back(drawable);
+    frames_on_their_way_ = frames_.size();
   }
   transmit(records, StageReply::picture);
   std::unique_lock lock(replies_);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -28,6 +29,8 @@ namespace understudy::spu {
 
 /// That are on their way at once: the application draws the next one while the stage is at the last.
 constexpr std::size_t frames_in_flight = 2;
+/// For the last ones of a program that ends.
+constexpr std::chrono::milliseconds last_frames_patience{1'000};
 
 class StageLink {
  public:
@@ -56,8 +59,9 @@ class StageLink {
   /// The same text at an address that stays for ever, as applications expect of glGetString.
   const char* keep_text(const std::string& text);
 
-  /// The program is ending: nothing is waited for, or said, from now on. May be called from a signal handler
-  /// that calls exit(), whatever the thread is in the midst of.
+  /// The program is ending: frames on their way are still shown if they come within
+  /// last_frames_patience, then nothing is waited for, or said, any more. May be called from a signal
+  /// handler that calls exit(), whatever the thread is in the midst of.
   void end();
 
  private:
@@ -91,7 +95,8 @@ class StageLink {
   std::mutex replies_;
   std::condition_variable replied_;
   std::optional<CallAnswer> answer_;
-  std::deque<FrontDrawable> frames_;  ///< on their way, the oldest first
+  std::deque<FrontDrawable> frames_;                  ///< on their way, the oldest first
+  std::atomic<std::size_t> frames_on_their_way_ = 0;  ///< for who may not wait for the lock
 
   std::map<std::uint64_t, Shown> pictures_;  ///< by drawable; the receiving thread's
   std::thread receiver_;

@@ -104,6 +104,15 @@ TEST_F(Remote, OffScreen) {
   EXPECT_GE(told("off screen", png("local.png"), png("remote.png")).psnr, 50);
 }
 
+TEST_F(Remote, AForkedChildThatExitsLeavesTheStageToItsParent) {
+  const Words forks = {FORKS, "child_only_exits"};
+  const Outcome local = run_well(under() + forks);
+  const Outcome remote = run_well(under({"--remote"}) + without_opengl() + forks);
+  EXPECT_NE(local.out.find("parent, after a swap"), std::string::npos) << local.out;
+  EXPECT_EQ(remote.out, local.out) << remote.err;
+  EXPECT_EQ(leftovers(), "");
+}
+
 TEST_F(Remote, WhatStaysTheSameDoesNotTravel) {
   const auto bytes_up = [&](const char* frames) {
     run_well(under({"--remote", "--report", file("report.json")}) + viewer("table", {"--frames", frames}),

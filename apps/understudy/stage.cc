@@ -107,7 +107,7 @@ class Performance {
 
   void reply(MessageType type, const std::vector<std::byte>& head, Bytes pixels) {
     const std::array<Bytes, 2> parts = {head, pixels};
-    connection_.send(type, 0, parts, Clock::now() + limits::stage_patience);
+    connection_.send(type, 0, parts, limits::stage_patience);
   }
 
   void show(const spu::ShownFrame& frame) {

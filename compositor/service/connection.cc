@@ -55,17 +55,28 @@ std::size_t Connection::read(std::byte* to, std::size_t size) {
   }
 }
 
+const MessageHeader* Connection::receive_header() {
+  while (received_ < sizeof header_) {
+    const std::size_t got =
+        read(reinterpret_cast<std::byte*>(&header_) + received_, sizeof header_ - received_);
+    if (got == 0) return nullptr;
+    received_ += got;
+    if (received_ == sizeof header_) check(header_, max_payload_);
+  }
+  return &header_;
+}
+
+std::size_t Connection::receive_payload(std::span<std::byte> room) {
+  const std::size_t left = sizeof header_ + std::size_t(header_.payload_bytes) - received_;
+  const std::size_t got = read(room.data(), std::min(room.size(), left));
+  received_ = got == left ? 0 : received_ + got;
+  return got;
+}
+
 std::optional<Message> Connection::receive_some() {
   std::size_t taken = 0;
   while (taken < fair_share) {
-    if (received_ < sizeof header_) {
-      const std::size_t got =
-          read(reinterpret_cast<std::byte*>(&header_) + received_, sizeof header_ - received_);
-      if (got == 0) return std::nullopt;
-      received_ += got;
-      if (received_ < sizeof header_) continue;
-      check(header_, max_payload_);
-    }
+    if (receive_header() == nullptr) return std::nullopt;
     const std::size_t have = received_ - sizeof header_;
     const std::size_t total = std::size_t(header_.payload_bytes);
     if (have < total) {
@@ -101,6 +112,18 @@ bool Connection::stalled(std::chrono::milliseconds patience) const {
 
 void Connection::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, Deadline deadline,
                       int attach) {
+  write(type, sequence, parts, attach, [&] { return deadline; });
+}
+
+void Connection::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts,
+                      std::chrono::milliseconds patience, int attach) {
+  write(type, sequence, parts, attach, [&] { return Clock::now() + patience; });
+}
+
+/// `deadline_now` is asked anew whenever some has left.
+template <class DeadlineNow>
+void Connection::write(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, int attach,
+                       DeadlineNow deadline_now) {
   MessageHeader header;
   header.type = type;
   header.sequence = sequence;
@@ -125,6 +148,7 @@ void Connection::send(MessageType type, std::uint64_t sequence, std::span<const 
     std::memcpy(CMSG_DATA(part), &attach, sizeof attach);
   }
 
+  Deadline deadline = deadline_now();
   while (message.msg_iovlen > 0) {
     const ssize_t sent = ::sendmsg(socket_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0) {
@@ -136,6 +160,7 @@ void Connection::send(MessageType type, std::uint64_t sequence, std::span<const 
         throw ConnectionLost("does not read what it is sent");
       continue;
     }
+    deadline = deadline_now();
     // The descriptor went with the first byte.
     message.msg_control = nullptr;
     message.msg_controllen = 0;

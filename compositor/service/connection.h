@@ -44,6 +44,12 @@ class Connection {
   std::optional<Message> receive_some();
   /// Throws ConnectionLost, also at the deadline.
   Message receive(Deadline deadline);
+  /// For who hands on a message before all of it is here: its header, once that has come; null before. Throws
+  /// as receive_some(), which may take that message as well.
+  const MessageHeader* receive_header();
+  /// Some of the payload of that message, which begins at the last receive_header(); how much it was, and zero
+  /// when nothing is there now. To be called until it has come whole. Throws ConnectionLost.
+  std::size_t receive_payload(std::span<std::byte> room);
   /// The beginning of a message is here.
   bool unfinished() const { return received_ > 0; }
   /// And nothing more of it has come for `patience`.
@@ -56,12 +62,19 @@ class Connection {
   void send(MessageType type, std::uint64_t sequence, Bytes payload, Deadline deadline, int attach = -1) {
     send(type, sequence, {&payload, 1}, deadline, attach);
   }
+  /// The same, and throws ConnectionLost when nothing more of it left for `patience`: a long message may be on
+  /// its way for longer, as lines may be slow.
+  void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts,
+            std::chrono::milliseconds patience, int attach = -1);
 
   /// What an event loop sends: now or never.
   static Deadline now_or_never() { return {}; }
 
  private:
   std::size_t read(std::byte* to, std::size_t size);
+  template <class DeadlineNow>
+  void write(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts, int attach,
+             DeadlineNow deadline_now);
 
   FileDescriptor socket_;
   std::uint64_t max_payload_;

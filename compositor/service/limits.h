@@ -56,10 +56,10 @@ constexpr milliseconds silence_patience{10'000};   ///< without such a word: ran
 constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose application has gone: the ranks hang
 constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
 constexpr milliseconds stall_patience{10'000};     ///< between two pieces of one message
-constexpr milliseconds send_patience{10'000};      ///< until a message has left
+constexpr milliseconds send_patience{10'000};      ///< until some more of a message has left
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
 constexpr milliseconds render_patience{20'000};    ///< a picture
 constexpr milliseconds stage_patience{120'000};    ///< a call that a stage makes, with all that went before it
-constexpr milliseconds link_patience{20'000};      ///< a link over TCP on which nothing moves that should
+constexpr milliseconds link_patience{20'000};      ///< with a link over TCP whose other end is silent
 
 }  // namespace understudy::compositor::limits

@@ -221,7 +221,7 @@ class LinkedService : public LoadingService {
   void send(MessageType type, std::span<const Bytes> parts, int attach = -1) {
     require_link();
     settle_posted();
-    conversation([&] { connection_->send(type, ++sequence_, parts, Clock::now() + patience_.send, attach); });
+    conversation([&] { connection_->send(type, ++sequence_, parts, patience_.send, attach); });
   }
 
   void require_link() const {

@@ -13,7 +13,7 @@ namespace understudy::compositor {
 
 struct Patience {
   std::chrono::milliseconds connect = limits::reply_patience;  ///< until a node group takes the application in
-  std::chrono::milliseconds send = limits::send_patience;
+  std::chrono::milliseconds send = limits::send_patience;      ///< until some more of a message has left
   std::chrono::milliseconds reply = limits::reply_patience;
   std::chrono::milliseconds render = limits::render_patience;
   /// One step of a load: a compressed file is read through up to where a rank's share begins.

@@ -17,7 +17,7 @@
 namespace understudy::compositor {
 
 constexpr std::uint32_t protocol_magic = 0x59445355;  ///< "USDY"
-constexpr std::uint16_t protocol_version = 10;        ///< grows with every change of a message
+constexpr std::uint16_t protocol_version = 11;        ///< grows with every change of a message
 
 enum class MessageType : std::uint16_t {
   // to the launcher, and from it to a node group
@@ -55,7 +55,9 @@ enum class MessageType : std::uint16_t {
   answered,  ///< a reply
   picture,   ///< the other
   refined,   ///< pixels of a picture that came before, as they are: the view rests
-  last = refined
+  // between the two ends of a link over TCP
+  line_alive,  ///< said by who has nothing else to say
+  last = line_alive
 };
 
 struct MessageHeader {

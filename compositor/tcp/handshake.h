@@ -24,7 +24,7 @@
 
 namespace understudy::compositor {
 
-constexpr std::uint32_t link_version = 1;  ///< grows with every change of what travels over TCP
+constexpr std::uint32_t link_version = 2;  ///< grows with every change of what travels over TCP
 
 enum class LinkedTo : std::uint8_t {
   nodes,  ///< the render service

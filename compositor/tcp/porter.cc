@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -17,6 +18,12 @@ namespace {
 /// What is still on its way when one direction has ended.
 constexpr std::chrono::seconds last_words_patience{2};
 
+/// Applications wait until their messages have left, and lines may be slow: these leave as fast as the line is,
+/// and nobody here keeps them whole.
+bool may_be_long(MessageType type) {
+  return type == MessageType::calls || type == MessageType::add_texels;
+}
+
 }  // namespace
 
 Deadline Porter::rest_due() const {
@@ -25,7 +32,7 @@ Deadline Porter::rest_due() const {
 
 void Porter::send_here(const Message& message, Bytes payload, int attach) {
   // Who is slow to take messages slows down the link; who has gone is noticed by his socket.
-  here_.send(message.type, message.sequence, payload, Clock::now() + limits::stage_patience, attach);
+  here_.send(message.type, message.sequence, {&payload, 1}, limits::stage_patience, attach);
 }
 
 void Porter::carry_out(Message message) {
@@ -37,14 +44,39 @@ void Porter::carry_home(Message message) {
   send_here(message);
 }
 
-Message Porter::receive_here() {
+void Porter::wait_for_here() {
+  const bool within = here_.unfinished();
+  if (here_.stalled(limits::stall_patience)) throw ConnectionLost("stopped in the midst of a message");
+  const Deadline due = within ? Clock::now() + limits::stall_patience : rest_due();
+  if (wait_until_ready(here_.fd(), POLLIN, std::min(due, link_.alive_due()))) return;
+  if (Clock::now() >= link_.alive_due()) link_.send_alive();
+  if (!within && Clock::now() >= due) rest();
+}
+
+void Porter::hand_on(const MessageHeader& header) {
+  std::uint64_t left = header.payload_bytes;
+  link_.begin(header.type, header.sequence, left);
+  while (left > 0) {
+    block_.resize(std::min<std::uint64_t>(left, limits::max_link_block_bytes));
+    for (std::size_t have = 0; have < block_.size();) {
+      const std::size_t got = here_.receive_payload(std::span(block_).subspan(have));
+      have += got;
+      if (got == 0 && !wait_until_ready(here_.fd(), POLLIN, Clock::now() + limits::stall_patience))
+        throw ConnectionLost("stopped in the midst of a message");
+    }
+    link_.send_payload(block_);
+    left -= block_.size();
+  }
+}
+
+void Porter::carry_next_out() {
   for (;;) {
-    if (std::optional<Message> message = here_.receive_some()) return std::move(*message);
-    const bool within = here_.unfinished();
-    const Deadline until = within ? Clock::now() + limits::stall_patience : rest_due();
-    if (wait_until_ready(here_.fd(), POLLIN, until)) continue;
-    if (within) throw ConnectionLost("stopped in the midst of a message");
-    rest();
+    if (const MessageHeader* header = here_.receive_header()) {
+      if (may_be_long(header->type) && header->payload_bytes > limits::max_link_block_bytes)
+        return hand_on(MessageHeader(*header));
+      if (std::optional<Message> message = here_.receive_some()) return carry_out(std::move(*message));
+    }
+    wait_for_here();
   }
 }
 
@@ -58,6 +90,8 @@ std::string Porter::run() {
     std::string reason;
     try {
       for (;;) next();
+    } catch (const LineSilent& error) {
+      reason = error.what();
     } catch (const ConnectionLost&) {
       // Its reader is told by what follows.
     } catch (const std::exception& error) {
@@ -71,7 +105,7 @@ std::string Porter::run() {
     changed.notify_all();
   };
   {
-    const std::jthread out([&] { direction(here_.fd(), link_.fd(), [&] { carry_out(receive_here()); }); });
+    const std::jthread out([&] { direction(here_.fd(), link_.fd(), [&] { carry_next_out(); }); });
     const std::jthread home([&] { direction(link_.fd(), here_.fd(), [&] { carry_home(link_.receive()); }); });
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return ended > 0; });

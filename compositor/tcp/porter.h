@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "compositor/service/connection.h"
 #include "compositor/tcp/tcp_link.h"
@@ -26,7 +27,8 @@ class Porter {
   std::string run();
 
  protected:
-  /// What came from here, and goes to the link. On a thread of its own, as the next.
+  /// What came from here, and goes to the link, but for what may be long (texels, a stage's calls) and is
+  /// handed on as it comes. On a thread of its own, as the next.
   virtual void carry_out(Message message);
   /// The other way.
   virtual void carry_home(Message message);
@@ -42,10 +44,13 @@ class Porter {
   double line_bytes_per_second() const { return link_.bytes_per_second(); }
 
  private:
-  Message receive_here();
+  void carry_next_out();
+  void wait_for_here();
+  void hand_on(const MessageHeader& header);
 
   Connection& here_;
   TcpLink& link_;
+  std::vector<std::byte> block_;
 };
 
 }  // namespace understudy::compositor

@@ -80,6 +80,26 @@ double TcpLink::bytes_per_second() const {
   return line_figures(socket_.get()).bytes_per_second;
 }
 
+bool TcpLink::peer_is_silent() const {
+  if (Clock::now() < heard_at_.load() + patience_) return false;
+  // What has come and was not read yet has been said, too.
+  return !wait_until_ready(socket_.get(), POLLIN, Clock::now());
+}
+
+void TcpLink::give_up_silent_line() const {
+  throw LineSilent(
+      fmt::format("its other end has said nothing for {} s: the line is cut, or the machine there stands still",
+                  std::chrono::duration<double>(patience_).count()));
+}
+
+void TcpLink::wait_for_room() {
+  const Deadline begun = Clock::now();
+  while (!wait_until_ready(socket_.get(), POLLOUT, Clock::now() + patience_ / 4)) {
+    if (peer_is_silent()) give_up_silent_line();
+    if (Clock::now() >= begun + limits::stage_patience) throw ConnectionLost("does not read what it is sent");
+  }
+}
+
 void TcpLink::write(std::span<const Bytes> pieces, bool more) {
   std::vector<iovec> left;
   // sendmsg() takes pointers to non-const and does not write.
@@ -95,10 +115,10 @@ void TcpLink::write(std::span<const Bytes> pieces, bool more) {
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK)
         throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
-      if (!wait_until_ready(socket_.get(), POLLOUT, Clock::now() + limits::link_patience))
-        throw ConnectionLost("does not read what it is sent");
+      wait_for_room();
       continue;
     }
+    sent_at_ = Clock::now();
     sent_.bytes += std::size_t(sent);
     for (std::size_t gone = std::size_t(sent); message.msg_iovlen > 0;) {
       iovec& piece = *message.msg_iov;
@@ -136,24 +156,40 @@ void TcpLink::send_block(MessageType type, Bytes block, bool last) {
   write(pieces, !last);
 }
 
-void TcpLink::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts) {
+void TcpLink::begin(MessageType type, std::uint64_t sequence, std::uint64_t payload_bytes) {
   MessageHeader header;
   header.type = type;
   header.sequence = sequence;
-  for (const Bytes& part : parts) header.payload_bytes += part.size();
+  header.payload_bytes = payload_bytes;
   const Bytes head = std::as_bytes(std::span(&header, 1));
-  write({&head, 1}, header.payload_bytes > 0);
-  std::uint64_t left = header.payload_bytes;
-  for (Bytes part : parts) {
-    while (!part.empty()) {
-      const Bytes block = part.first(std::min(part.size(), limits::max_link_block_bytes));
-      part = part.subspan(block.size());
-      left -= block.size();
-      send_block(type, block, left == 0);
-    }
-  }
+  write({&head, 1}, payload_bytes > 0);
+  begun_ = type;
+  begun_left_ = payload_bytes;
   ++sent_.messages;
-  sent_.payload_bytes += header.payload_bytes;
+  sent_.payload_bytes += payload_bytes;
+}
+
+void TcpLink::send_payload(Bytes some) {
+  while (!some.empty()) {
+    const Bytes block = some.first(std::min(some.size(), limits::max_link_block_bytes));
+    some = some.subspan(block.size());
+    begun_left_ -= block.size();
+    send_block(begun_, block, begun_left_ == 0);
+  }
+}
+
+void TcpLink::send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts) {
+  std::uint64_t payload_bytes = 0;
+  for (const Bytes& part : parts) payload_bytes += part.size();
+  begin(type, sequence, payload_bytes);
+  for (const Bytes& part : parts) send_payload(part);
+}
+
+void TcpLink::send_alive() {
+  MessageHeader header;
+  header.type = MessageType::line_alive;
+  const Bytes head = std::as_bytes(std::span(&header, 1));
+  write({&head, 1}, false);
 }
 
 Message TcpLink::receive() {
@@ -161,8 +197,10 @@ Message TcpLink::receive() {
     const std::span<std::byte> room = reader_.room();
     const ssize_t got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
     if (got > 0) {
+      heard_at_ = Clock::now();
       received_.bytes += std::size_t(got);
-      if (std::optional<Message> message = reader_.took(std::size_t(got))) {
+      if (std::optional<Message> message = reader_.took(std::size_t(got));
+          message && message->type != MessageType::line_alive) {
         ++received_.messages;
         received_.payload_bytes += message->payload.size();
         return std::move(*message);
@@ -170,10 +208,7 @@ Message TcpLink::receive() {
     } else if (got == 0) {
       throw ConnectionLost("closed the connection");
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      const bool within = reader_.unfinished();
-      const Deadline until = Clock::now() + (within ? limits::link_patience : std::chrono::hours(24));
-      if (!wait_until_ready(socket_.get(), POLLIN, until) && within)
-        throw ConnectionLost("stopped in the midst of a message");
+      if (!wait_until_ready(socket_.get(), POLLIN, heard_at_.load() + patience_)) give_up_silent_line();
     } else if (errno != EINTR) {
       throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
     }

@@ -1,9 +1,13 @@
 // Messages over a TCP connection whose two ends have proved themselves (handshake.h). One thread may send while
 // another receives.
+//
+// A peer may be busy for long and take nothing (a stage at a call, a node at a volume), and looks like a line
+// that is cut. So each end says that it is there when it says nothing else, and who is silent is gone.
 #pragma once
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <span>
 
@@ -23,19 +27,34 @@ struct LinkTraffic {
   std::array<std::atomic<std::uint64_t>, codec_count> blocks{};  ///< by how they were compressed
 };
 
+/// The line is cut, or the machine at its other end stands still.
+class LineSilent : public ConnectionLost {
+ public:
+  using ConnectionLost::ConnectionLost;
+};
+
 class TcpLink {
  public:
-  TcpLink(FileDescriptor socket, std::uint64_t max_payload)
-      : socket_(std::move(socket)), reader_(max_payload) {}
+  /// A peer that is silent for `patience` is gone.
+  TcpLink(FileDescriptor socket, std::uint64_t max_payload,
+          std::chrono::milliseconds patience = limits::link_patience)
+      : socket_(std::move(socket)), patience_(patience), reader_(max_payload) {}
 
   int fd() const { return socket_.get(); }
   double bytes_per_second() const;
 
-  /// Sends the payload made of `parts`. Throws ConnectionLost: the peer is gone, or has taken nothing for
-  /// limits::link_patience.
+  /// Sends the payload made of `parts`. Throws LineSilent, and ConnectionLost: the peer is gone, or has taken
+  /// nothing for limits::stage_patience.
   void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts);
-  /// Waits for a message as long as it takes for one to begin; within it the peer may not be silent for longer
-  /// than limits::link_patience. Throws ConnectionLost and MalformedMessage.
+  /// The same for a message whose payload follows by send_payload() as it comes. Nothing else may be sent until
+  /// it is there.
+  void begin(MessageType type, std::uint64_t sequence, std::uint64_t payload_bytes);
+  void send_payload(Bytes some);
+  /// Says that this end is there. Due at alive_due() when nothing else is sent until then.
+  void send_alive();
+  Deadline alive_due() const { return sent_at_ + patience_ / 4; }
+  /// Waits for a message as long as the peer says that it is there. Throws LineSilent, ConnectionLost and
+  /// MalformedMessage.
   Message receive();
 
   const LinkTraffic& sent() const { return sent_; }
@@ -44,9 +63,17 @@ class TcpLink {
  private:
   void send_block(MessageType type, Bytes block, bool last);
   void write(std::span<const Bytes> pieces, bool more);
+  void wait_for_room();
+  bool peer_is_silent() const;
+  [[noreturn]] void give_up_silent_line() const;
 
   FileDescriptor socket_;
+  std::chrono::milliseconds patience_;
   LinkReader reader_;
+  MessageType begun_{};
+  std::uint64_t begun_left_ = 0;  ///< bytes of it that are still to be sent
+  Deadline sent_at_ = Clock::now();
+  std::atomic<Deadline> heard_at_ = Clock::now();
   LinkTraffic sent_;
   LinkTraffic received_;
   std::array<CodecChoice, std::size_t(MessageType::last) + 1> choices_;  ///< by what is sent

@@ -66,13 +66,11 @@ TcpAddress address_of(int socket, decltype(&::getpeername) name) {
 
 void set_link_options(int socket) {
   set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  // Without traffic the peer is asked after 5 s, and every 5 s; the user time-out ends it all, with traffic
-  // too.
-  set(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-  set(socket, IPPROTO_TCP, TCP_KEEPIDLE, 5);
-  set(socket, IPPROTO_TCP, TCP_KEEPINTVL, 5);
-  set(socket, IPPROTO_TCP, TCP_KEEPCNT, 4);
-  set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, int(limits::link_patience.count()));
+  // Who sends sees how fast the line takes it, not how fast memory is filled.
+  set(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, int(limits::max_link_block_bytes));
+  // Who is gone is known by his silence (tcp_link.h). The kernel's own time-out also ends connections to who
+  // only takes nothing for a while, and must come later.
+  set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, int(2 * limits::stage_patience.count()));
 }
 
 FileDescriptor listen_at(const TcpAddress& address) {

@@ -106,7 +106,7 @@ void StageLink::transmit(const Records& records, StageReply reply) {
       std::as_bytes(std::span(&head, 1)), std::as_bytes(std::span(&count, 1)), std::as_bytes(chunks_.heads()),
       std::as_bytes(chunks_.data())};
   try {
-    connection_->send(MessageType::calls, 0, parts, Clock::now() + limits::stage_patience);
+    connection_->send(MessageType::calls, 0, parts, limits::stage_patience);
   } catch (const std::runtime_error& error) {
     lose(error.what());
   }

@@ -50,6 +50,8 @@ void Line::carry(int from, int to, bool down) {
   for (;;) {
     const ssize_t read = ::recv(from, bytes.data(), bytes.size(), 0);
     wait_while_still();
+    if (const double rate = bytes_per_second_; rate > 0 && read > 0)
+      std::this_thread::sleep_for(std::chrono::duration<double>(double(read) / rate));
     for (ssize_t sent = 0; sent < read;) {
       const ssize_t now = ::send(to, &bytes[std::size_t(sent)], std::size_t(read - sent), MSG_NOSIGNAL);
       if (now <= 0) break;

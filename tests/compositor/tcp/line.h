@@ -24,6 +24,8 @@ class Line {
   /// What has gone from the server to clients.
   std::uint64_t bytes_down() const { return bytes_down_; }
 
+  /// From now on; at first as fast as it goes.
+  void set_bytes_per_second(double rate) { bytes_per_second_ = rate; }
   /// Nothing goes through, both ways, until go_on().
   void stand_still();
   void go_on();
@@ -39,6 +41,7 @@ class Line {
   FileDescriptor listening_;
   TcpAddress address_;
   std::atomic<std::uint64_t> bytes_down_ = 0;
+  std::atomic<double> bytes_per_second_ = 0;  ///< 0: as fast as it goes
   std::mutex mutex_;
   std::condition_variable changed_;
   bool still_ = false;

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <thread>
 
 #include "compositor/tcp/gate.h"
@@ -38,7 +40,8 @@ class PorterTest : public NodeGroupTest {
   }
 
   /// What an application is given that is linked over TCP.
-  RenderService& connect_over(const TcpAddress& address, const LinkWishes& wishes = {}) {
+  RenderService& connect_over(const TcpAddress& address, const LinkWishes& wishes = {},
+                              const Patience& patience = {.connect = milliseconds(20'000)}) {
     const std::string path = folder_ / "porter";
     const FileDescriptor listener = listen_at(path);
     application_.emplace_back([this, address, wishes, fd = ::dup(listener.get())] {
@@ -46,21 +49,23 @@ class PorterTest : public NodeGroupTest {
       if (!wait_until_ready(listening.get(), POLLIN, soon())) return;
       Connection here(
           FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)));
-      TcpLink link(connect_link(address, secret_, wishes, soon()), limits::max_picture_message_bytes);
+      TcpLink link(connect_link(address, secret_, wishes, soon()), limits::max_picture_message_bytes,
+                   link_patience_);
       why_ = ApplicationPorter(here, link).run();
     });
-    service_ = linked_service(path, 20'000);
+    service_ = linked_service(path, patience);
     ::unlink(path.c_str());
     return *service_;
   }
 
+  milliseconds link_patience_ = limits::link_patience;
   const Secret secret_ = Secret(std::as_bytes(std::span("sixteen bytes or more")));
   std::vector<std::jthread> carriers_;
   Gate gate_ = Gate(
       TcpAddress{"127.0.0.1", 0}, secret_, [](const LinkWishes&) { return LinkVerdict::welcome; },
       [this](FileDescriptor socket, const LinkWishes& wishes) {
         carriers_.emplace_back([this, fd = std::make_shared<FileDescriptor>(std::move(socket)), wishes] {
-          TcpLink link(std::move(*fd), limits::max_message_bytes);
+          TcpLink link(std::move(*fd), limits::max_message_bytes, link_patience_);
           Connection here(connect_to(path_, soon()));
           NodesPorter(here, link, wishes).run();
         });
@@ -148,6 +153,55 @@ TEST_F(PorterTest, ALineThatIsCutForAWhileGoesOnWhereItWas) {
     line.go_on();
   });
   EXPECT_EQ(whole_picture(there.render(request), request).rgba, before.rgba);
+}
+
+TEST_F(PorterTest, WhoRestsForLongerThanALineMayBeSilentIsStillThere) {
+  start(1);
+  link_patience_ = milliseconds(1000);
+  const Texture texture = some_texture();
+  const auto request = some_request(texture);
+  RenderService& there = connect_over(gate_.address());
+  upload(there, texture);
+  const volume::Image before = whole_picture(there.render(request), request);
+  std::this_thread::sleep_for(3 * link_patience_);
+  EXPECT_EQ(whole_picture(there.render(request), request).rgba, before.rgba);
+}
+
+TEST_F(PorterTest, ALineThatIsSilentIsGivenUpAndSaidSo) {
+  start(1);
+  link_patience_ = milliseconds(1000);
+  Line line(gate_.address());
+  const Texture texture = some_texture();
+  RenderService& there = connect_over(line.address());
+  upload(there, texture);
+  line.stand_still();
+  EXPECT_THROW(there.render(some_request(texture)), ServiceLost);
+  line.go_on();
+  application_.clear();
+  EXPECT_NE(why_.find("has said nothing for 1 s"), std::string::npos) << why_;
+}
+
+TEST_F(PorterTest, MessagesMayBeOnASlowLineForLongerThanAnyPatience) {
+  start(1);
+  Line line(gate_.address());
+  constexpr milliseconds patience(600);
+  RenderService& there = connect_over(line.address(), {}, {.connect = milliseconds(20'000), .send = patience});
+  constexpr int edge = 256;
+  Texture texture{.description = volume::testing::describe({edge, edge, edge}, volume::TexelType::u8)};
+  texture.description.id = 7;
+  // Nothing is gained by compressing it.
+  texture.texels.resize(std::size_t(edge) * edge * edge);
+  std::generate(texture.texels.begin(), texture.texels.end(),
+                [random = std::mt19937(1)]() mutable { return std::byte(random()); });
+  constexpr double bytes_per_second = 6e6;
+  line.set_bytes_per_second(bytes_per_second);
+  EXPECT_GT(double(limits::max_slab_bytes) / bytes_per_second,
+            2 * std::chrono::duration<double>(patience).count());
+  there.begin_volume(texture.description);
+  there.add_texels(texture.description.id, {&texture.description.stored, 1}, texture.texels);
+  there.end_volume(texture.description.id);
+  line.set_bytes_per_second(0);
+  EXPECT_NO_THROW(there.render(some_request(texture)));
 }
 
 TEST_F(PorterTest, ALineThatIsGoneIsALostService) {

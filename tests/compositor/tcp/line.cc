@@ -58,7 +58,7 @@ void Line::carry(int from, int to, bool down) {
       sent += now;
     }
     if (read <= 0) break;
-    if (down) bytes_down_ += std::uint64_t(read);
+    (down ? bytes_down_ : bytes_up_) += std::uint64_t(read);
   }
   ::shutdown(to, SHUT_RDWR);
   ::shutdown(from, SHUT_RDWR);

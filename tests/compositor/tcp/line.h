@@ -23,6 +23,8 @@ class Line {
   const TcpAddress& address() const { return address_; }
   /// What has gone from the server to clients.
   std::uint64_t bytes_down() const { return bytes_down_; }
+  /// The other way.
+  std::uint64_t bytes_up() const { return bytes_up_; }
 
   /// From now on; at first as fast as it goes.
   void set_bytes_per_second(double rate) { bytes_per_second_ = rate; }
@@ -41,6 +43,7 @@ class Line {
   FileDescriptor listening_;
   TcpAddress address_;
   std::atomic<std::uint64_t> bytes_down_ = 0;
+  std::atomic<std::uint64_t> bytes_up_ = 0;
   std::atomic<double> bytes_per_second_ = 0;  ///< 0: as fast as it goes
   std::mutex mutex_;
   std::condition_variable changed_;

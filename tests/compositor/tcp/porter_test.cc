@@ -6,9 +6,11 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <thread>
+#include <vector>
 
 #include "compositor/tcp/gate.h"
 #include "compositor/tcp/render_porter.h"
@@ -40,8 +42,7 @@ class PorterTest : public NodeGroupTest {
   }
 
   /// What an application is given that is linked over TCP.
-  RenderService& connect_over(const TcpAddress& address, const LinkWishes& wishes = {},
-                              const Patience& patience = {.connect = milliseconds(20'000)}) {
+  RenderService& connect_over(const TcpAddress& address, const LinkWishes& wishes = {}) {
     const std::string path = folder_ / "porter";
     const FileDescriptor listener = listen_at(path);
     application_.emplace_back([this, address, wishes, fd = ::dup(listener.get())] {
@@ -53,7 +54,7 @@ class PorterTest : public NodeGroupTest {
                    link_patience_);
       why_ = ApplicationPorter(here, link).run();
     });
-    service_ = linked_service(path, patience);
+    service_ = linked_service(path, 20'000);
     ::unlink(path.c_str());
     return *service_;
   }
@@ -181,29 +182,6 @@ TEST_F(PorterTest, ALineThatIsSilentIsGivenUpAndSaidSo) {
   EXPECT_NE(why_.find("has said nothing for 1 s"), std::string::npos) << why_;
 }
 
-TEST_F(PorterTest, MessagesMayBeOnASlowLineForLongerThanAnyPatience) {
-  start(1);
-  Line line(gate_.address());
-  constexpr milliseconds patience(600);
-  RenderService& there = connect_over(line.address(), {}, {.connect = milliseconds(20'000), .send = patience});
-  constexpr int edge = 256;
-  Texture texture{.description = volume::testing::describe({edge, edge, edge}, volume::TexelType::u8)};
-  texture.description.id = 7;
-  // Nothing is gained by compressing it.
-  texture.texels.resize(std::size_t(edge) * edge * edge);
-  std::generate(texture.texels.begin(), texture.texels.end(),
-                [random = std::mt19937(1)]() mutable { return std::byte(random()); });
-  constexpr double bytes_per_second = 6e6;
-  line.set_bytes_per_second(bytes_per_second);
-  EXPECT_GT(double(limits::max_slab_bytes) / bytes_per_second,
-            2 * std::chrono::duration<double>(patience).count());
-  there.begin_volume(texture.description);
-  there.add_texels(texture.description.id, {&texture.description.stored, 1}, texture.texels);
-  there.end_volume(texture.description.id);
-  line.set_bytes_per_second(0);
-  EXPECT_NO_THROW(there.render(some_request(texture)));
-}
-
 TEST_F(PorterTest, ALineThatIsGoneIsALostService) {
   start(2);
   Line line(gate_.address());
@@ -243,6 +221,37 @@ TEST_F(PorterTest, AnApplicationThatLeavesEndsItsWayThrough) {
   gate_thread_ = {};
   carriers_.clear();
   EXPECT_TRUE(eventually([&] { return open_descriptors() <= before; })) << open_descriptors() << " " << before;
+}
+
+/// So that an application that waits for its answer waits for the stage, and not for a line.
+TEST(Porter, LongMessagesLeaveAnApplicationAsALineTakesThem) {
+  const FileDescriptor listening = listen_at(TcpAddress{"127.0.0.1", 0});
+  Line line(own_address(listening.get()));
+  // More than sockets keep, and nothing is gained by compressing it.
+  std::vector<std::byte> texels(std::size_t(64) << 20);
+  std::generate(texels.begin(), texels.end(),
+                [random = std::mt19937(1)]() mutable { return std::byte(random()); });
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()), 0);
+  Connection application{FileDescriptor(ends[0])};
+  const std::jthread near([&] {
+    Connection here{FileDescriptor(ends[1])};
+    TcpLink link(connect_to(line.address(), soon()), limits::max_message_bytes);
+    Porter(here, link).run();
+  });
+  ASSERT_TRUE(wait_until_ready(listening.get(), POLLIN, soon()));
+  TcpLink far(FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)),
+              limits::max_message_bytes);
+  Message message;
+  std::jthread receiver([&] { message = far.receive(); });
+  line.set_bytes_per_second(24e6);
+  const Bytes payload(texels);
+  application.send(MessageType::calls, 7, {&payload, 1}, milliseconds(1000));
+  EXPECT_GT(line.bytes_up(), texels.size() / 2);
+  receiver.join();
+  EXPECT_EQ(message.sequence, 7U);
+  EXPECT_EQ(message.payload, texels);
+  ::shutdown(application.fd(), SHUT_RDWR);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <xcb/xcb.h>
 
 #include "interceptor/real_driver.h"
+#include "interceptor/remote/x_shared_memory.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -32,6 +33,7 @@ struct Xcb {
 struct Server {
   Display* display;
   xcb_connection_t* connection;  ///< null: it could not be made
+  XSharedMemory memory;          ///< for pictures
   Server* next;
 };
 
@@ -87,10 +89,10 @@ bool open_xcb() {
          find(library, "xcb_get_maximum_request_length", xcb.get_maximum_request_length);
 }
 
-/// Needs the lock.
-xcb_connection_t* connection_of(Display* display) {
-  for (const Server* server = servers; server != nullptr; server = server->next) {
-    if (server->display == display) return server->connection;
+/// Needs the lock. Null where there is no connection.
+Server* server_of(Display* display) {
+  for (Server* server = servers; server != nullptr; server = server->next) {
+    if (server->display == display) return server->connection == nullptr ? nullptr : server;
   }
   if (xcb_state == 0) xcb_state = open_xcb() ? 1 : -1;
   if (xcb_state < 0) return nullptr;
@@ -102,9 +104,9 @@ xcb_connection_t* connection_of(Display* display) {
             DisplayString(display));
     connection = nullptr;
   }
-  *server = {display, connection, servers};
+  *server = {display, connection, {}, servers};
   servers = server;
-  return connection;
+  return connection == nullptr ? nullptr : server;
 }
 
 struct Geometry {
@@ -129,6 +131,21 @@ void forget_events(xcb_connection_t* connection) {
   while (xcb_generic_event_t* event = xcb_functions.poll_for_event(connection)) free(event);
 }
 
+/// Through the socket, in as many pieces as requests may be long.
+void send_picture(xcb_connection_t* connection, xcb_drawable_t drawable, xcb_gcontext_t gc, std::uint8_t depth,
+                  const RemotePicture& picture) {
+  const int row_bytes = picture.width * 4;
+  const auto room = static_cast<long>(xcb_functions.get_maximum_request_length(connection)) * 4 - 64;
+  const int rows_at_once = room < row_bytes ? 1 : static_cast<int>(room / row_bytes);
+  for (int y = 0; y < picture.height; y += rows_at_once) {
+    const int rows = picture.height - y < rows_at_once ? picture.height - y : rows_at_once;
+    xcb_functions.put_image(
+        connection, XCB_IMAGE_FORMAT_Z_PIXMAP, drawable, gc, static_cast<std::uint16_t>(picture.width),
+        static_cast<std::uint16_t>(rows), 0, static_cast<std::int16_t>(y), 0, depth,
+        static_cast<std::uint32_t>(rows * row_bytes), picture.pixels + static_cast<long>(y) * row_bytes);
+  }
+}
+
 }  // namespace
 
 const Xlib* xlib() {
@@ -148,9 +165,9 @@ Display* default_display() {
 
 bool extent_of(Display* display, XID drawable, int* width, int* height) {
   const Locked locked;
-  xcb_connection_t* connection = connection_of(display);
+  const Server* server = server_of(display);
   Geometry geometry{};
-  if (connection == nullptr || !geometry_of(connection, drawable, &geometry)) return false;
+  if (server == nullptr || !geometry_of(server->connection, drawable, &geometry)) return false;
   *width = geometry.width;
   *height = geometry.height;
   return true;
@@ -158,23 +175,17 @@ bool extent_of(Display* display, XID drawable, int* width, int* height) {
 
 void put_picture(Display* display, XID drawable, const RemotePicture& picture) {
   const Locked locked;
-  xcb_connection_t* connection = connection_of(display);
+  Server* server = server_of(display);
+  if (server == nullptr || picture.width <= 0) return;
+  xcb_connection_t* connection = server->connection;
   Geometry geometry{};
-  if (connection == nullptr || picture.width <= 0 || !geometry_of(connection, drawable, &geometry)) return;
+  if (!geometry_of(connection, drawable, &geometry)) return;
   const auto target = static_cast<xcb_drawable_t>(drawable);
+  const auto depth = static_cast<std::uint8_t>(geometry.depth);
   const xcb_gcontext_t gc = xcb_functions.generate_id(connection);
   xcb_functions.create_gc(connection, gc, target, 0, nullptr);
-  const int row_bytes = picture.width * 4;
-  const auto room = static_cast<long>(xcb_functions.get_maximum_request_length(connection)) * 4 - 64;
-  const int rows_at_once = room < row_bytes ? 1 : static_cast<int>(room / row_bytes);
-  for (int y = 0; y < picture.height; y += rows_at_once) {
-    const int rows = picture.height - y < rows_at_once ? picture.height - y : rows_at_once;
-    xcb_functions.put_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, target, gc,
-                            static_cast<std::uint16_t>(picture.width), static_cast<std::uint16_t>(rows), 0,
-                            static_cast<std::int16_t>(y), 0, static_cast<std::uint8_t>(geometry.depth),
-                            static_cast<std::uint32_t>(rows * row_bytes),
-                            picture.pixels + static_cast<long>(y) * row_bytes);
-  }
+  if (!put_shared_picture(&server->memory, connection, target, gc, depth, picture))
+    send_picture(connection, target, gc, depth, picture);
   xcb_functions.free_gc(connection, gc);
   free(xcb_functions.get_input_focus_reply(connection, xcb_functions.get_input_focus(connection), nullptr));
   forget_events(connection);

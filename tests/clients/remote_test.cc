@@ -78,6 +78,36 @@ class Remote : public Stage {
     return std::set<std::uint8_t>(picture.rgb.begin(), picture.rgb.end()).size() > 16;
   }
 
+  void expect_pictures_in_the_window(bool by_shared_memory) {
+    viewer_test::Picture local;
+    {
+      Child child(on_stage(under() + viewer("table", {}), on_display()), file(""));
+      ASSERT_TRUE(comes_true([&] {
+        const viewer_test::Picture before = local;
+        local = screen().value_or(before);
+        return !local.rgb.empty() && local.rgb == before.rgb && shows_something(local);
+      })) << child.err();
+      child.signal(SIGTERM);
+      EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+    }
+    Child child(on_stage(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()), file(""));
+    const bool shown = comes_true([&] {
+      const auto now = screen();
+      return !child.running() || (now && now->rgb == local.rgb);
+    });
+    EXPECT_TRUE(shown && child.running()) << child.err();
+    const std::vector<pid_t> viewers = processes("understudy-viewer");
+    ASSERT_EQ(viewers.size(), 1U);
+    const std::string mapped = contents(fmt::format("/proc/{}/maps", viewers.front()));
+    EXPECT_NE(mapped.find("libunderstudy.so"), std::string::npos);
+    for (const char* of_a_driver : {"libGLdispatch", "libGLX_", "libEGL_", "_dri.so", "libLLVM"})
+      EXPECT_EQ(mapped.find(of_a_driver), std::string::npos) << of_a_driver;
+    EXPECT_EQ(mapped.find("/memfd:understudy-picture") != std::string::npos, by_shared_memory);
+    child.signal(SIGTERM);
+    EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+    EXPECT_EQ(leftovers(), "");
+  }
+
   std::optional<viewer_test::VirtualDisplay> display_;
 };
 
@@ -125,32 +155,13 @@ TEST_F(Remote, WhatStaysTheSameDoesNotTravel) {
 }
 
 TEST_F(Remote, PicturesAreInTheWindow) {
-  viewer_test::Picture local;
-  {
-    Child child(on_stage(under() + viewer("table", {}), on_display()), file(""));
-    ASSERT_TRUE(comes_true([&] {
-      const viewer_test::Picture before = local;
-      local = screen().value_or(before);
-      return !local.rgb.empty() && local.rgb == before.rgb && shows_something(local);
-    })) << child.err();
-    child.signal(SIGTERM);
-    EXPECT_EQ(child.finish().status, 128 + SIGTERM);
-  }
-  Child child(on_stage(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()), file(""));
-  const bool shown = comes_true([&] {
-    const auto now = screen();
-    return !child.running() || (now && now->rgb == local.rgb);
-  });
-  EXPECT_TRUE(shown && child.running()) << child.err();
-  const std::vector<pid_t> viewers = processes("understudy-viewer");
-  ASSERT_EQ(viewers.size(), 1U);
-  const std::string mapped = contents(fmt::format("/proc/{}/maps", viewers.front()));
-  EXPECT_NE(mapped.find("libunderstudy.so"), std::string::npos);
-  for (const char* of_a_driver : {"libGLdispatch", "libGLX_", "libEGL_", "_dri.so", "libLLVM"})
-    EXPECT_EQ(mapped.find(of_a_driver), std::string::npos) << of_a_driver;
-  child.signal(SIGTERM);
-  EXPECT_EQ(child.finish().status, 128 + SIGTERM);
-  EXPECT_EQ(leftovers(), "");
+  expect_pictures_in_the_window(true);
+}
+
+TEST_F(Remote, PicturesAreInTheWindowOfAServerWithoutSharedMemory) {
+  display_.reset();
+  display_.emplace(std::move(*viewer_test::VirtualDisplay::start("MIT-SHM")));
+  expect_pictures_in_the_window(false);
 }
 
 TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {

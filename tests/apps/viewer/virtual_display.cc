@@ -13,7 +13,7 @@ extern char** environ;
 
 namespace viewer_test {
 
-std::optional<VirtualDisplay> VirtualDisplay::start() {
+std::optional<VirtualDisplay> VirtualDisplay::start(std::string without) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   posix_spawn_file_actions_t actions;
@@ -22,8 +22,10 @@ std::optional<VirtualDisplay> VirtualDisplay::start() {
   posix_spawn_file_actions_adddup2(&actions, ends[1], display_descriptor);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   char program[] = "Xvfb", option[] = "-displayfd", descriptor[] = "3", screen[] = "-screen", number[] = "0",
-       format[] = "800x600x24", no_reset[] = "-noreset";
-  char* arguments[] = {program, option, descriptor, screen, number, format, no_reset, nullptr};
+       format[] = "800x600x24", no_reset[] = "-noreset", extension[] = "-extension";
+  char* arguments[] = {program, option,   descriptor, screen,         number,
+                       format,  no_reset, extension,  without.data(), nullptr};
+  if (without.empty()) arguments[7] = nullptr;
   pid_t server = 0;
   const int failed = posix_spawnp(&server, program, &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);

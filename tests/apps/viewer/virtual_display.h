@@ -10,8 +10,9 @@ namespace viewer_test {
 
 class VirtualDisplay {
  public:
-  /// Starts Xvfb on a display number that it chooses itself; nothing when Xvfb is not installed.
-  static std::optional<VirtualDisplay> start();
+  /// Starts Xvfb on a display number that it chooses itself, without the X extension that is named, if one is;
+  /// nothing when Xvfb is not installed.
+  static std::optional<VirtualDisplay> start(std::string without = "");
   VirtualDisplay(VirtualDisplay&& other) noexcept;
   VirtualDisplay& operator=(VirtualDisplay&&) = delete;
   ~VirtualDisplay();

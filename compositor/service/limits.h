@@ -48,15 +48,16 @@ constexpr std::size_t max_secret_bytes = 4096;
 constexpr std::size_t max_strangers = 256;  ///< that have not proved themselves; the oldest makes room
 constexpr std::size_t max_link_block_bytes = std::size_t(1) << 18;  ///< of a message, before it is compressed
 
-// Patience. A peer that is silent between two messages may be so for ever (a viewer that nobody turns); within
-// a message, or when an answer is due, it may not.
+// Patience. A peer at a Unix socket that is silent between two messages may be so for ever (a viewer that
+// nobody turns); within a message, or when an answer is due, it may not. An end of a link says that it is
+// there.
 constexpr milliseconds hello_patience{5'000};      ///< from accept to a complete hello
 constexpr milliseconds alive_interval{1'000};      ///< between two words of rank 0 that it lives
 constexpr milliseconds silence_patience{10'000};   ///< without such a word: rank 0 is stopped, or its machine
 constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose application has gone: the ranks hang
 constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
 constexpr milliseconds stall_patience{10'000};     ///< between two pieces of one message
-constexpr milliseconds send_patience{10'000};      ///< until some more of a message has left
+constexpr milliseconds send_patience{30'000};      ///< until some more of a message has left, over a link, too
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
 constexpr milliseconds render_patience{20'000};    ///< a picture
 constexpr milliseconds stage_patience{120'000};    ///< a call that a stage makes, with all that went before it

@@ -41,6 +41,7 @@ std::optional<Message> LinkReader::took(std::size_t count) {
 }
 
 void LinkReader::begin_block() {
+  if (head_.bytes == 0 && head_.travels == 0) return;
   const std::uint64_t left = header_.payload_bytes - message_.payload.size();
   if (head_.bytes == 0 || head_.bytes > limits::max_link_block_bytes || head_.bytes > left)
     throw MalformedMessage("a block is longer than its message, or than blocks are");

@@ -2,7 +2,7 @@
 //
 // A message there is the header of protocol.h and then its payload in blocks: how many bytes a block stands for
 // (at most limits::max_link_block_bytes) and, in the next four bytes, how many travel (low 24 bits) and how
-// they are compressed (high 8 bits).
+// they are compressed (high 8 bits). A block of nothing says that its sender is there, and waits for the rest.
 #pragma once
 
 #include <cstddef>

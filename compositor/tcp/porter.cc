@@ -45,12 +45,12 @@ void Porter::carry_home(Message message) {
 }
 
 void Porter::wait_for_here() {
+  if (Clock::now() >= link_.alive_due()) link_.send_alive();
   const bool within = here_.unfinished();
   if (here_.stalled(limits::stall_patience)) throw ConnectionLost("stopped in the midst of a message");
   const Deadline due = within ? Clock::now() + limits::stall_patience : rest_due();
-  if (wait_until_ready(here_.fd(), POLLIN, std::min(due, link_.alive_due()))) return;
-  if (Clock::now() >= link_.alive_due()) link_.send_alive();
-  if (!within && Clock::now() >= due) rest();
+  const bool ready = wait_until_ready(here_.fd(), POLLIN, std::min(due, link_.alive_due()));
+  if (!ready && !within && Clock::now() >= due) rest();
 }
 
 void Porter::hand_on(const MessageHeader& header) {
@@ -61,8 +61,8 @@ void Porter::hand_on(const MessageHeader& header) {
     for (std::size_t have = 0; have < block_.size();) {
       const std::size_t got = here_.receive_payload(std::span(block_).subspan(have));
       have += got;
-      if (got == 0 && !wait_until_ready(here_.fd(), POLLIN, Clock::now() + limits::stall_patience))
-        throw ConnectionLost("stopped in the midst of a message");
+      // Who is stopped here, by a debugger or a shell, is not gone.
+      if (got == 0 && !wait_until_ready(here_.fd(), POLLIN, link_.alive_due())) link_.send_alive();
     }
     link_.send_payload(block_);
     left -= block_.size();
@@ -90,7 +90,7 @@ std::string Porter::run() {
     std::string reason;
     try {
       for (;;) next();
-    } catch (const LineSilent& error) {
+    } catch (const LinkGivenUp& error) {
       reason = error.what();
     } catch (const ConnectionLost&) {
       // Its reader is told by what follows.

@@ -87,16 +87,21 @@ bool TcpLink::peer_is_silent() const {
 }
 
 void TcpLink::give_up_silent_line() const {
-  throw LineSilent(
+  throw LinkGivenUp(
       fmt::format("its other end has said nothing for {} s: the line is cut, or the machine there stands still",
                   std::chrono::duration<double>(patience_).count()));
 }
 
 void TcpLink::wait_for_room() {
   const Deadline begun = Clock::now();
+  bool was_silent = false;
   while (!wait_until_ready(socket_.get(), POLLOUT, Clock::now() + patience_ / 4)) {
-    if (peer_is_silent()) give_up_silent_line();
-    if (Clock::now() >= begun + limits::stage_patience) throw ConnectionLost("does not read what it is sent");
+    // Once may be the moment between another thread's reading and its saying so.
+    const bool silent = peer_is_silent();
+    if (silent && was_silent) give_up_silent_line();
+    was_silent = silent;
+    if (Clock::now() >= begun + limits::stage_patience)
+      throw LinkGivenUp("its other end does not read what it is sent: whoever it is for stands still");
   }
 }
 
@@ -188,8 +193,10 @@ void TcpLink::send(MessageType type, std::uint64_t sequence, std::span<const Byt
 void TcpLink::send_alive() {
   MessageHeader header;
   header.type = MessageType::line_alive;
-  const Bytes head = std::as_bytes(std::span(&header, 1));
-  write({&head, 1}, false);
+  const BlockHead nothing;
+  const Bytes words =
+      begun_left_ > 0 ? std::as_bytes(std::span(&nothing, 1)) : std::as_bytes(std::span(&header, 1));
+  write({&words, 1}, false);
 }
 
 Message TcpLink::receive() {

@@ -27,8 +27,8 @@ struct LinkTraffic {
   std::array<std::atomic<std::uint64_t>, codec_count> blocks{};  ///< by how they were compressed
 };
 
-/// The line is cut, or the machine at its other end stands still.
-class LineSilent : public ConnectionLost {
+/// The line is cut, or who is at its other end stands still.
+class LinkGivenUp : public ConnectionLost {
  public:
   using ConnectionLost::ConnectionLost;
 };
@@ -43,17 +43,18 @@ class TcpLink {
   int fd() const { return socket_.get(); }
   double bytes_per_second() const;
 
-  /// Sends the payload made of `parts`. Throws LineSilent, and ConnectionLost: the peer is gone, or has taken
-  /// nothing for limits::stage_patience.
+  /// Sends the payload made of `parts`. Throws ConnectionLost: the peer is gone; LinkGivenUp: it is
+  /// silent, or has taken nothing for limits::stage_patience.
   void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts);
   /// The same for a message whose payload follows by send_payload() as it comes. Nothing else may be sent until
   /// it is there.
   void begin(MessageType type, std::uint64_t sequence, std::uint64_t payload_bytes);
   void send_payload(Bytes some);
-  /// Says that this end is there. Due at alive_due() when nothing else is sent until then.
+  /// Says that this end is there, in the midst of a message that was begun, too. Due at alive_due() when
+  /// nothing else is sent until then.
   void send_alive();
   Deadline alive_due() const { return sent_at_ + patience_ / 4; }
-  /// Waits for a message as long as the peer says that it is there. Throws LineSilent, ConnectionLost and
+  /// Waits for a message as long as the peer says that it is there. Throws LinkGivenUp, ConnectionLost and
   /// MalformedMessage.
   Message receive();
 

@@ -128,10 +128,9 @@ class Body {
   }
 
   void program_ends() {
-    // The parent's links are none of a forked child's to shut.
-    if (getpid() != process_) return;
     session_->end();
-    if (stage_) stage_->end();
+    // The parent's link is none of a forked child's to shut.
+    if (stage_ && getpid() == process_) stage_->end();
   }
 
   /// Without a launcher nobody else writes the report. A child after fork has none of its own, and its parent's

@@ -176,7 +176,7 @@ bool extent_of(Display* display, XID drawable, int* width, int* height) {
 void put_picture(Display* display, XID drawable, const RemotePicture& picture) {
   const Locked locked;
   Server* server = server_of(display);
-  if (server == nullptr || picture.width <= 0) return;
+  if (server == nullptr || picture.width <= 0 || picture.height <= 0) return;
   xcb_connection_t* connection = server->connection;
   Geometry geometry{};
   if (!geometry_of(connection, drawable, &geometry)) return;

@@ -103,10 +103,11 @@ bool make_room(XSharedMemory* memory, xcb_connection_t* connection, std::size_t 
   if (memory->refused) return false;
   if (memory->size >= size) return true;
   if (state == 0) state = open_functions() ? 1 : -1;
-  const bool first = memory->bytes == nullptr;
-  if (state > 0) release(memory, connection);
-  memory->refused = state < 0 || (first && !takes_descriptors(connection)) || !attach(memory, connection, size);
-  return !memory->refused;
+  memory->refused = state < 0 || (memory->bytes == nullptr && !takes_descriptors(connection));
+  if (memory->refused) return false;
+  release(memory, connection);
+  // Windows grow by a few pixels at a time.
+  return attach(memory, connection, size + size / 2);
 }
 
 }  // namespace

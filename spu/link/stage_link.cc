@@ -72,8 +72,11 @@ StageLink::~StageLink() {
 }
 
 void StageLink::end() {
+  ending_ = true;
+  // Other threads may go on.
+  const std::uint64_t last = frames_sent_;
   const compositor::Deadline until = Clock::now() + last_frames_patience;
-  while (frames_on_their_way_ > 0 && !lost_ && Clock::now() < until)
+  while (frames_shown_ < last && !lost_ && Clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ended_ = true;
   ::shutdown(connection_->fd(), SHUT_RDWR);
@@ -82,7 +85,7 @@ void StageLink::end() {
 void StageLink::lose(const std::string& why) {
   std::call_once(losing_, [&] {
     // Said before anybody goes on without the stage, as that may be to the end of the program.
-    if (!ended_)
+    if (!ending_)
       fmt::print(
           stderr,
           "understudy: the stage, which draws for this program, {}; its windows show nothing new any more, "
@@ -178,8 +181,8 @@ void StageLink::take_picture(const Message& message) {
   {
     const std::scoped_lock lock(replies_);
     frames_.pop_front();
-    frames_on_their_way_ = frames_.size();
   }
+  ++frames_shown_;
   replied_.notify_all();
 }
 
@@ -220,9 +223,9 @@ void StageLink::show_frame(const Records& records, const FrontDrawable& drawable
   {
     const std::scoped_lock lock(replies_);
     frames_.push_back(drawable);
-    frames_on_their_way_ = frames_.size();
   }
   transmit(records, StageReply::picture);
+  ++frames_sent_;
   std::unique_lock lock(replies_);
   wait_until(lock, [&] { return frames_.size() < frames_in_flight; });
 }

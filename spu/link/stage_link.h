@@ -86,7 +86,8 @@ class StageLink {
   StageVersions versions_;
   std::atomic<bool> lost_ = false;
   std::once_flag losing_;
-  std::atomic<bool> ended_ = false;
+  std::atomic<bool> ending_ = false;  ///< nothing is said any more
+  std::atomic<bool> ended_ = false;   ///< nor shown
 
   std::mutex sending_;  ///< held from a question to its answer
   ChunkSender chunks_;
@@ -95,8 +96,10 @@ class StageLink {
   std::mutex replies_;
   std::condition_variable replied_;
   std::optional<CallAnswer> answer_;
-  std::deque<FrontDrawable> frames_;                  ///< on their way, the oldest first
-  std::atomic<std::size_t> frames_on_their_way_ = 0;  ///< for who may not wait for the lock
+  std::deque<FrontDrawable> frames_;  ///< on their way, the oldest first
+  // For who may not wait for a lock.
+  std::atomic<std::uint64_t> frames_sent_ = 0;
+  std::atomic<std::uint64_t> frames_shown_ = 0;
 
   std::map<std::uint64_t, Shown> pictures_;  ///< by drawable; the receiving thread's
   std::thread receiver_;

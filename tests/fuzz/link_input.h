@@ -20,11 +20,13 @@ namespace understudy::spu::testing {
 
 /// What cannot be believed says so by an exception; anything else is a fault.
 template <class Step>
-void may_refuse(Step step) {
+bool may_refuse(Step step) {
   try {
     step();
   } catch (const std::runtime_error&) {
+    return false;
   }
+  return true;
 }
 
 inline void shake_hands(std::span<const std::byte> input) {
@@ -47,9 +49,10 @@ inline void shake_hands(std::span<const std::byte> input) {
   });
 }
 
-inline void take_message(const compositor::Message& message, ChunkReceiver& chunks) {
+/// Whether it was believed.
+inline bool take_message(const compositor::Message& message, ChunkReceiver& chunks) {
   using compositor::MessageType;
-  may_refuse([&] {
+  return may_refuse([&] {
     switch (message.type) {
       case MessageType::rendered: {
         std::vector<float> memory(std::size_t(4) * 256 * 256);
@@ -75,9 +78,10 @@ inline void take_message(const compositor::Message& message, ChunkReceiver& chun
   });
 }
 
-/// Bytes as they come out of the socket, in pieces of any size.
-inline void play_link_input(std::span<const std::byte> input) {
+/// Bytes as they come out of the socket, in pieces of any size. How many messages were believed.
+inline int play_link_input(std::span<const std::byte> input) {
   shake_hands(input);
+  int believed = 0;
   ChunkReceiver chunks;
   may_refuse([&] {
     compositor::LinkReader reader(std::size_t(1) << 22);
@@ -87,14 +91,16 @@ inline void play_link_input(std::span<const std::byte> input) {
       const std::size_t count = std::min({room.size(), most, input.size()});
       std::ranges::copy(input.first(count), room.begin());
       input = input.subspan(count);
-      if (const auto message = reader.took(count)) take_message(*message, chunks);
+      if (const auto message = reader.took(count)) believed += take_message(*message, chunks);
     }
   });
+  return believed;
 }
 
 /// Messages of an application and of a stage, one after the other: type and length as 32-bit words, then the
-/// payload.
-inline void play_stage_input(std::span<const std::byte> input) {
+/// payload. How many messages were believed.
+inline int play_stage_input(std::span<const std::byte> input) {
+  int believed = 0;
   ChunkReceiver chunks;
   std::uint32_t head[2];
   while (input.size() >= sizeof head) {
@@ -102,12 +108,14 @@ inline void play_stage_input(std::span<const std::byte> input) {
     input = input.subspan(sizeof head);
     const auto payload = input.first(std::min<std::size_t>(head[1], input.size()));
     input = input.subspan(payload.size());
-    take_message({compositor::MessageType(head[0] % (std::uint32_t(compositor::MessageType::last) + 1)),
-                  0,
-                  {payload.begin(), payload.end()},
-                  {}},
-                 chunks);
+    believed +=
+        take_message({compositor::MessageType(head[0] % (std::uint32_t(compositor::MessageType::last) + 1)),
+                      0,
+                      {payload.begin(), payload.end()},
+                      {}},
+                     chunks);
   }
+  return believed;
 }
 
 }  // namespace understudy::spu::testing

@@ -1,18 +1,15 @@
-// Writes corpora to begin with: what two ends of a link say to each other, and an application and a stage.
-//
-//     link_seeds FOLDER_OF_LINKS FOLDER_OF_STAGES
+#include "tests/fuzz/link_seeds.h"
+
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "compositor/tcp/block_codec.h"
 #include "compositor/tcp/jpeg.h"
 #include "tests/fuzz/link_input.h"
 
+namespace understudy::spu::testing {
 namespace {
 
-using namespace understudy;
 using compositor::MessageType;
 using Buffer = std::vector<std::byte>;
 
@@ -20,11 +17,6 @@ template <class Plain>
 void append(Buffer& to, std::span<const Plain> values) {
   const auto bytes = std::as_bytes(values);
   to.insert(to.end(), bytes.begin(), bytes.end());
-}
-
-void write(const std::filesystem::path& file, const Buffer& bytes) {
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
 Buffer travelling(MessageType type, const Buffer& payload, compositor::Codec codec) {
@@ -57,11 +49,11 @@ Buffer between_application_and_stage(MessageType type, const Buffer& payload) {
 Buffer some_calls() {
   const std::array<std::uint64_t, 6> records = {std::uint64_t(3) << 32 | 7, 1, 2,
                                                 std::uint64_t(3) << 32 | 9, 3, 4};
-  spu::ChunkSender sender;
+  ChunkSender sender;
   sender.add(records, {});
-  const spu::CallsHead head{1, spu::StageReply::answer, records.size(), 0};
+  const CallsHead head{1, StageReply::answer, records.size(), 0};
   Buffer bytes;
-  append(bytes, std::span<const spu::CallsHead>(&head, 1));
+  append(bytes, std::span<const CallsHead>(&head, 1));
   const std::uint64_t count = sender.heads().size();
   append(bytes, std::span<const std::uint64_t>(&count, 1));
   append(bytes, sender.heads());
@@ -69,14 +61,14 @@ Buffer some_calls() {
   return bytes;
 }
 
-Buffer some_picture(spu::PixelCoding coding) {
-  const spu::PictureChange change{.drawable = 3, .extent = {40, 30}, .x = 4, .y = 5, .width = 16, .height = 16};
+Buffer some_picture(PixelCoding coding) {
+  const PictureChange change{.drawable = 3, .extent = {40, 30}, .x = 4, .y = 5, .width = 16, .height = 16};
   Buffer bytes;
-  append(bytes, std::span<const spu::PixelCoding>(&coding, 1));
+  append(bytes, std::span<const PixelCoding>(&coding, 1));
   const Buffer head = encode_head(change);
   append(bytes, std::span<const std::byte>(head));
   const Buffer pixels(std::size_t(16) * 16 * 4, std::byte(90));
-  if (coding == spu::PixelCoding::jpeg)
+  if (coding == PixelCoding::jpeg)
     compositor::append_jpeg(pixels, 16, 16, compositor::JpegPixels::bgrx, 50, bytes);
   else
     append(bytes, std::span<const std::byte>(pixels));
@@ -96,13 +88,10 @@ Buffer some_rendered(compositor::PictureCoding coding) {
 
 }  // namespace
 
-int main(int count, char** arguments) {
+Seeds link_seeds() {
   using compositor::Codec;
   using compositor::PictureCoding;
-  using spu::PixelCoding;
-  if (count != 3) return 2;
-  const std::filesystem::path links = arguments[1];
-  const std::filesystem::path stages = arguments[2];
+  Seeds seeds;
   const std::array<std::byte, 16> contents{};
   const compositor::Secret secret(contents);
   compositor::ClientHandshake client(secret, {});
@@ -114,27 +103,32 @@ int main(int count, char** arguments) {
   server.answer(proof);
   const Buffer verdict = server.verdict(compositor::LinkVerdict::welcome);
   append(of_server, std::span<const std::byte>(verdict));
-  write(links / "client", of_client);
-  write(links / "server", of_server);
+  seeds["client"] = of_client;
+  seeds["server"] = of_server;
   for (const Codec codec : {Codec::none, Codec::lz4, Codec::zstd}) {
     const std::string name = std::to_string(int(codec));
     for (const PictureCoding coding : {PictureCoding::floats, PictureCoding::packed, PictureCoding::jpeg})
-      write(links / ("rendered_" + std::to_string(int(coding)) + "_" + name),
-            travelling(MessageType::rendered, some_rendered(coding), codec));
-    write(links / ("calls_" + name), travelling(MessageType::calls, some_calls(), codec));
-    write(links / ("picture_" + name),
-          travelling(MessageType::picture, some_picture(PixelCoding::jpeg), codec));
+      seeds["rendered_" + std::to_string(int(coding)) + "_" + name] =
+          travelling(MessageType::rendered, some_rendered(coding), codec);
+    seeds["calls_" + name] = travelling(MessageType::calls, some_calls(), codec);
+    seeds["picture_" + name] = travelling(MessageType::picture, some_picture(PixelCoding::jpeg), codec);
   }
+  return seeds;
+}
+
+Seeds stage_seeds() {
   Buffer both = between_application_and_stage(MessageType::calls, some_calls());
   const Buffer again = both;
   append(both, std::span<const std::byte>(again));
-  write(stages / "calls", both);
-  write(stages / "plain",
-        between_application_and_stage(MessageType::picture, some_picture(PixelCoding::plain)));
-  write(stages / "jpeg", between_application_and_stage(MessageType::refined, some_picture(PixelCoding::jpeg)));
-  write(stages / "welcome",
-        between_application_and_stage(MessageType::welcome, spu::encode(spu::StageVersions{450, 310})));
-  spu::CallAnswer answer{.result = 42};
+  CallAnswer answer{.result = 42};
   answer.outputs.push_back({1, std::nullopt, Buffer(5, std::byte(7))});
-  write(stages / "answered", between_application_and_stage(MessageType::answered, spu::encode(answer)));
+  return {
+      {"calls", both},
+      {"plain", between_application_and_stage(MessageType::picture, some_picture(PixelCoding::plain))},
+      {"jpeg", between_application_and_stage(MessageType::refined, some_picture(PixelCoding::jpeg))},
+      {"welcome", between_application_and_stage(MessageType::welcome, encode(StageVersions{450, 310}))},
+      {"answered", between_application_and_stage(MessageType::answered, encode(answer))},
+  };
 }
+
+}  // namespace understudy::spu::testing

@@ -37,6 +37,9 @@ void Line::accept_all() {
     FileDescriptor server = connect_to(to_, Clock::now() + std::chrono::seconds(20));
     wait_at(server);
     const int near = viewer.get(), far = server.get();
+    // A line keeps little.
+    constexpr int kept_bytes = 1 << 20;
+    ::setsockopt(near, SOL_SOCKET, SO_RCVBUF, &kept_bytes, sizeof kept_bytes);
     const std::lock_guard lock(mutex_);
     connections_.push_back(std::move(viewer));
     connections_.push_back(std::move(server));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 
@@ -89,6 +90,19 @@ TEST(LinkReader, MessagesArriveWholeWhateverPiecesTheyComeIn) {
       }
     }
   EXPECT_LT(travelling(MessageType::calls, smooth(99'999), Codec::lz4, 4096).size(), 10'000U);
+}
+
+TEST(LinkReader, BlocksOfNothingAreNoPartOfAMessage) {
+  const Buffer payload = noise(5000, 3);
+  Buffer bytes = travelling(MessageType::calls, payload, Codec::none, 5000);
+  const std::array<std::byte, sizeof(BlockHead)> nothing{};
+  for (int i = 0; i < 3; ++i)
+    bytes.insert(bytes.begin() + sizeof(MessageHeader), nothing.begin(), nothing.end());
+  for (const std::size_t most : {1, 13, 100'000}) {
+    const auto messages = read(bytes, most, 1 << 20);
+    ASSERT_EQ(messages.size(), 1U);
+    EXPECT_EQ(messages[0].payload, payload);
+  }
 }
 
 TEST(LinkReader, NothingIsBelievedThatCannotBe) {

@@ -75,11 +75,11 @@ TEST_F(TcpLinkTest, APeerThatIsBusyForLongIsWaitedFor) {
 
 TEST_F(TcpLinkTest, APeerThatTakesNothingAndSaysNothingIsGone) {
   const Bytes payload(payload_);
-  EXPECT_THROW(near_->send(MessageType::calls, 0, {&payload, 1}), LineSilent);
+  EXPECT_THROW(near_->send(MessageType::calls, 0, {&payload, 1}), LinkGivenUp);
 }
 
 TEST_F(TcpLinkTest, WhoWaitsForASilentPeerIsTold) {
-  EXPECT_THROW(near_->receive(), LineSilent);
+  EXPECT_THROW(near_->receive(), LinkGivenUp);
 }
 
 TEST_F(TcpLinkTest, WhoOnlySaysThatHeIsThereSendsNoMessage) {

@@ -163,9 +163,9 @@ std::vector<float> some_picture(int width, int height) {
 }
 
 TEST(PictureCoding, EachKeepsWhatItSays) {
-  for (const auto& [width, height] :
-       {std::pair(1, 1), std::pair(97, 61), std::pair(333, 5), std::pair(3, 1001)}) {
-    const std::vector<float> picture = some_picture(width, height);
+  for (const auto& size : {std::pair(1, 1), std::pair(97, 61), std::pair(333, 5), std::pair(3, 1001)}) {
+    const int width = size.first;
+    const std::vector<float> picture = some_picture(width, size.second);
     const auto error = [&](PictureCoding coding, Layout layout, int quality) {
       Buffer bytes;
       encode_picture(picture, width, coding, layout, quality, bytes);
@@ -187,7 +187,7 @@ TEST(PictureCoding, EachKeepsWhatItSays) {
     EXPECT_EQ(error(PictureCoding::packed, Layout::rgba32f, 0).first, 0);
     EXPECT_LT(error(PictureCoding::packed, Layout::rgba16f, 0).first, 1.0 / 2048);
     EXPECT_LT(error(PictureCoding::packed, Layout::rgba8, 0).first, 1.0 / 510 + 1e-6);
-    EXPECT_LT(error(PictureCoding::jpeg, Layout::rgba32f, 90).second, 0.02) << width << " x " << height;
+    EXPECT_LT(error(PictureCoding::jpeg, Layout::rgba32f, 90).second, 0.02) << width << " x " << size.second;
   }
 }
 

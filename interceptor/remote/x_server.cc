@@ -9,6 +9,7 @@
 #include <xcb/xcb.h>
 
 #include "interceptor/real_driver.h"
+#include "interceptor/remote/library_function.h"
 #include "interceptor/remote/x_shared_memory.h"
 
 namespace understudy::interceptor {
@@ -52,12 +53,6 @@ class Locked {
   Locked& operator=(const Locked&) = delete;
 };
 
-template <class Function>
-bool find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(dlsym(library, name));
-  return function != nullptr;
-}
-
 void* open_library(const char* name) {
   void* library = real_dlopen(name, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
@@ -68,25 +63,28 @@ void* open_library(const char* name) {
 
 bool open_xlib() {
   void* library = open_library("libX11.so.6");
-  return library != nullptr && find(library, "XGetVisualInfo", xlib_functions.get_visual_info) &&
-         find(library, "XFree", xlib_functions.free) &&
-         find(library, "XOpenDisplay", xlib_functions.open_display) &&
-         find(library, "XSync", xlib_functions.sync) && find(library, "XFlush", xlib_functions.flush);
+  return library != nullptr && find_in_library(library, "XGetVisualInfo", xlib_functions.get_visual_info) &&
+         find_in_library(library, "XFree", xlib_functions.free) &&
+         find_in_library(library, "XOpenDisplay", xlib_functions.open_display) &&
+         find_in_library(library, "XSync", xlib_functions.sync) &&
+         find_in_library(library, "XFlush", xlib_functions.flush);
 }
 
 bool open_xcb() {
   void* library = open_library("libxcb.so.1");
   Xcb& xcb = xcb_functions;
-  return library != nullptr && find(library, "xcb_connect", xcb.connect) &&
-         find(library, "xcb_connection_has_error", xcb.has_error) &&
-         find(library, "xcb_generate_id", xcb.generate_id) && find(library, "xcb_create_gc", xcb.create_gc) &&
-         find(library, "xcb_free_gc", xcb.free_gc) && find(library, "xcb_put_image", xcb.put_image) &&
-         find(library, "xcb_get_geometry", xcb.get_geometry) &&
-         find(library, "xcb_get_geometry_reply", xcb.get_geometry_reply) &&
-         find(library, "xcb_get_input_focus", xcb.get_input_focus) &&
-         find(library, "xcb_get_input_focus_reply", xcb.get_input_focus_reply) &&
-         find(library, "xcb_poll_for_event", xcb.poll_for_event) &&
-         find(library, "xcb_get_maximum_request_length", xcb.get_maximum_request_length);
+  return library != nullptr && find_in_library(library, "xcb_connect", xcb.connect) &&
+         find_in_library(library, "xcb_connection_has_error", xcb.has_error) &&
+         find_in_library(library, "xcb_generate_id", xcb.generate_id) &&
+         find_in_library(library, "xcb_create_gc", xcb.create_gc) &&
+         find_in_library(library, "xcb_free_gc", xcb.free_gc) &&
+         find_in_library(library, "xcb_put_image", xcb.put_image) &&
+         find_in_library(library, "xcb_get_geometry", xcb.get_geometry) &&
+         find_in_library(library, "xcb_get_geometry_reply", xcb.get_geometry_reply) &&
+         find_in_library(library, "xcb_get_input_focus", xcb.get_input_focus) &&
+         find_in_library(library, "xcb_get_input_focus_reply", xcb.get_input_focus_reply) &&
+         find_in_library(library, "xcb_poll_for_event", xcb.poll_for_event) &&
+         find_in_library(library, "xcb_get_maximum_request_length", xcb.get_maximum_request_length);
 }
 
 /// Needs the lock. Null where there is no connection.

@@ -9,6 +9,7 @@
 #include <xcb/shm.h>
 
 #include "interceptor/real_driver.h"
+#include "interceptor/remote/library_function.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -29,24 +30,22 @@ struct Functions {
 constinit Functions functions{};
 constinit int state = 0;  ///< 1: there, -1: not
 
-template <class Function>
-bool find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(dlsym(library, name));
-  return function != nullptr;
-}
-
 /// Nothing is said where the library is not there: pictures then go through the socket.
 bool open_functions() {
   void* xcb = real_dlopen("libxcb.so.1", RTLD_NOW | RTLD_LOCAL);
   void* shm = real_dlopen("libxcb-shm.so.0", RTLD_NOW | RTLD_LOCAL);
   Functions& f = functions;
-  return xcb != nullptr && shm != nullptr && find(xcb, "xcb_get_file_descriptor", f.get_file_descriptor) &&
-         find(xcb, "xcb_get_extension_data", f.get_extension_data) &&
-         find(xcb, "xcb_generate_id", f.generate_id) && find(xcb, "xcb_request_check", f.request_check) &&
-         find(shm, "xcb_shm_id", f.extension) && find(shm, "xcb_shm_query_version", f.query_version) &&
-         find(shm, "xcb_shm_query_version_reply", f.query_version_reply) &&
-         find(shm, "xcb_shm_attach_fd_checked", f.attach) && find(shm, "xcb_shm_detach", f.detach) &&
-         find(shm, "xcb_shm_put_image", f.put_image);
+  return xcb != nullptr && shm != nullptr &&
+         find_in_library(xcb, "xcb_get_file_descriptor", f.get_file_descriptor) &&
+         find_in_library(xcb, "xcb_get_extension_data", f.get_extension_data) &&
+         find_in_library(xcb, "xcb_generate_id", f.generate_id) &&
+         find_in_library(xcb, "xcb_request_check", f.request_check) &&
+         find_in_library(shm, "xcb_shm_id", f.extension) &&
+         find_in_library(shm, "xcb_shm_query_version", f.query_version) &&
+         find_in_library(shm, "xcb_shm_query_version_reply", f.query_version_reply) &&
+         find_in_library(shm, "xcb_shm_attach_fd_checked", f.attach) &&
+         find_in_library(shm, "xcb_shm_detach", f.detach) &&
+         find_in_library(shm, "xcb_shm_put_image", f.put_image);
 }
 
 /// A request with a descriptor would end a connection that cannot carry one, as would one that the server does

@@ -16,6 +16,8 @@
 #include "spu/pass/pass.h"
 #include "spu/perf/perf.h"
 #include "spu/print/print.h"
+#include "spu/strips/strip.h"
+#include "spu/strips/strips.h"
 #include "spu/trace/trace.h"
 #include "spu/track/description.h"
 #include "spu/unpack/unpack.h"
@@ -26,8 +28,9 @@ namespace {
 
 constexpr std::array units_by_name = {&driver_description, &link_description,  &null_description,
                                       &pack_description,   &pass_description,  &perf_description,
-                                      &print_description,  &trace_description, &track_description,
-                                      &unpack_description, &volume_description};
+                                      &print_description,  &strip_description, &strips_description,
+                                      &trace_description,  &track_description, &unpack_description,
+                                      &volume_description};
 
 struct PlannedUnit {
   const UnitDescription* description;

@@ -64,6 +64,12 @@ bool set_never_left_out(Options& options, const std::string& text) {
   return omissions.has_value();
 }
 
+bool set_polygons(Options& options, const std::string& text) {
+  if (text != "root" && text != "strips") return false;
+  options.polygons = text;
+  return true;
+}
+
 template <auto member>
 bool set_text(Options& options, const std::string& text) {
   options.*member = text;
@@ -114,6 +120,11 @@ constexpr std::array rows{
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
          "composite parts of a picture while others are drawn: on, off, or auto, where that was faster"},
         set_name<&Options::overlap, compositor::set_overlap>},
+    Row{{"--polygons", "UNDERSTUDY_POLYGONS", "WHO", "root",
+         "with --remote, who draws what is no volume: root (one process), or strips (as many processes as "
+         "nodes, "
+         "each its own rows of the window)"},
+        set_polygons},
     Row{{"--pipeline", "UNDERSTUDY_PIPELINE", "FRAMES", "0",
          "1: while the camera moves, show the picture of the frame before, so that nodes work while the viewer "
          "does; once it rests, viewers that have a window are asked to draw again"},

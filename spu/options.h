@@ -29,6 +29,7 @@ struct Options {
   std::string pixels = "float";   ///< name of compositor::set_layout
   std::string home = "direct";    ///< name of compositor::set_home
   std::string overlap = "auto";   ///< name of compositor::set_overlap
+  std::string polygons = "root";  ///< or "strips": who draws the windows of a stage
   int pipeline = 0;               ///< frames that pictures of a moving camera may be behind
   std::string chain = "track volume driver";
   std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher

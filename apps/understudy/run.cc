@@ -248,6 +248,10 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
         "unset one of them");
     return usage_error;
   }
+  if (options.polygons != "root" && !arguments.remote) {
+    say("--polygons strips is for viewers whose windows are drawn elsewhere; add --remote");
+    return usage_error;
+  }
   std::optional<LinkPlan> link;
   try {
     link = link_of(arguments, options);

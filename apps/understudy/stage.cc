@@ -5,14 +5,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "apps/understudy/client_processes.h"
 #include "apps/understudy/frame_changes.h"
@@ -20,6 +24,8 @@
 #include "apps/understudy/signal_inbox.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/limits.h"
+#include "spu/assemble.h"
+#include "spu/chain_text.h"
 #include "spu/link/stage_protocol.h"
 #include "spu/options.h"
 #include "spu/player/player.h"
@@ -27,6 +33,8 @@
 #include "spu/report/counters.h"
 #include "spu/stream/call_answer.h"
 #include "spu/stream/event.h"
+#include "spu/strips/painters.h"
+#include "spu/strips/strip.h"
 
 namespace understudy::launcher {
 namespace {
@@ -44,12 +52,43 @@ constexpr std::chrono::seconds patience_with_start{10};
 /// Different faults of a stream that are said.
 constexpr std::size_t most_faults_told = 20;
 
-/// One application's calls, played as they come.
+/// What the stage of an application is given: where it finds others that draw strips of its windows.
+spu::Options options_of_application(const std::string& socket) {
+  spu::Options options = spu::options_from_environment();
+  if (options.polygons != "strips") return options;
+  const int strips = std::min(options.nodes, spu::most_strips);
+  if (strips < 2) {
+    fmt::print(stderr,
+               "understudy: --polygons strips: there is one node, which draws all; say -n 2, or more\n");
+    return options;
+  }
+  spu::ChainSettings chain =
+      spu::parse_chain(spu::resolved_chain(options.chain, std::filesystem::current_path()));
+  chain.insert(
+      chain.end() - 1,
+      {.name = "strips", .options = {{"of", std::to_string(strips), {}}, {"stages", socket, {}}}, .where = {}});
+  options.chain = spu::chain_text(chain);
+  return options;
+}
+
+/// A painter's: what units there are stand before it in the chain of the application's stage.
+spu::Options options_of_painter(const spu::PainterPlace& place) {
+  spu::Options options = spu::options_from_environment();
+  options.chain = fmt::format("strip(part={},of={}) driver", place.part, place.parts);
+  return options;
+}
+
+/// The calls of one application, played as they come; or of an application's stage, by one of its painters.
 class Performance {
  public:
-  explicit Performance(Connection& connection)
-      : connection_(connection), player_(windows_, spu::options_from_environment(), spu::StreamOrigin::linked) {
-    player_.on_frame = [this](const spu::ShownFrame& frame) { show(frame); };
+  Performance(Connection& connection, const spu::Options& options, bool paints)
+      : connection_(connection),
+        paints_(paints),
+        player_(windows_, options, paints ? spu::StreamOrigin::elsewhere : spu::StreamOrigin::linked) {
+    player_.on_frame = [this](const spu::ShownFrame& frame) {
+      if (paints_) return show_strip();
+      show(frame);
+    };
   }
 
   /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
@@ -82,6 +121,8 @@ class Performance {
 
   void play(const spu::Calls& calls) {
     shown_.reset();
+    strip_.clear();
+    if (paints_ && calls.head.reply == spu::StageReply::answer) forget_errors();
     const std::array<std::uint64_t, 2> thread = {spu::event::thread | std::uint64_t(2) << 32,
                                                  calls.head.thread};
     player_.play({spu::event::thread, thread, {}});
@@ -98,7 +139,8 @@ class Performance {
     }
     if (calls.head.reply == spu::StageReply::answer) {
       const spu::CallAnswer nothing;
-      reply(MessageType::answered, spu::encode(played ? player_.call_answer() : nothing), {});
+      const spu::CallAnswer answer = !played ? nothing : paints_ ? painted() : player_.call_answer();
+      reply(MessageType::answered, spu::encode(answer), {});
     } else if (calls.head.reply == spu::StageReply::picture) {
       const spu::PictureChange change = shown_.value_or(spu::PictureChange{});
       reply(MessageType::picture, spu::encode_head(change), change.pixels);
@@ -113,7 +155,34 @@ class Performance {
   void show(const spu::ShownFrame& frame) {
     const spu::Extent2D extent = player_.current().drawable;
     if (frame.extent.width == 0 || frame.extent.height == 0) return;
-    shown_ = changes_.next(player_.drawable(), extent, spu::shown_picture(player_.driver(), extent));
+    shown_ = changes_.next(player_.drawable(), extent, player_.shown_picture());
+  }
+
+  // Of a painter, which is asked for nothing but pixels.
+
+  void show_strip() {
+    const spu::Strip& strip = *spu::Chain::current()->find<spu::Strip>();
+    const spu::Rows rows = strip.rows();
+    strip_ = spu::shown_rows(player_.driver(), strip.extent().width, rows.first, rows.count);
+  }
+
+  void forget_errors() {
+    if (!player_.prepare()) return;
+    // A context that is lost has one for ever.
+    for (int i = 0; i < 16 && player_.driver().GetError() != GL_NO_ERROR; ++i) continue;
+  }
+
+  /// Nothing where OpenGL refuses to read.
+  spu::CallAnswer painted() {
+    spu::CallAnswer answer;
+    const spu::Decoder::ReadPicture& read = player_.read_picture();
+    if (!strip_.empty()) {
+      const auto bytes = std::as_bytes(std::span(strip_));
+      answer.outputs.push_back({.bytes = {bytes.begin(), bytes.end()}});
+    } else if (!read.pixels.empty() && player_.driver().GetError() == GL_NO_ERROR) {
+      answer.outputs.push_back({.picture = read.shape, .bytes = read.pixels});
+    }
+    return answer;
   }
 
   void tell(const std::string& fault) {
@@ -122,16 +191,18 @@ class Performance {
   }
 
   Connection& connection_;
+  const bool paints_;
   OffscreenContexts windows_;
   spu::Player player_;
   spu::ChunkReceiver chunks_;
   FrameChanges changes_;
   std::optional<spu::PictureChange> shown_;
+  std::vector<std::uint8_t> strip_;
   std::set<std::string> told_;
 };
 
-/// What a process of its own does for one application. Returns its exit status.
-int perform(FileDescriptor socket) {
+/// What a process of its own does for one application, or for another stage's. Returns its exit status.
+int perform(FileDescriptor socket, const std::string& address) {
   FileDescriptor same(::dup(socket.get()));
   try {
     // Nothing long is read from whoever has not said what it is.
@@ -140,7 +211,14 @@ int perform(FileDescriptor socket) {
     if (hello.type != MessageType::hello_client) throw MalformedMessage("its first message is no hello");
     Connection connection(std::move(same), limits::max_stage_message_bytes);
     try {
-      Performance(connection).run();
+      const bool paints = !hello.payload.empty();
+      // The frames that a painter has a part in are counted by the stage of the application.
+      if (paints) ::unsetenv("UNDERSTUDY_RUN_DIR");
+      Performance(connection,
+                  paints ? options_of_painter(spu::decode_painter_place(hello.payload))
+                         : options_of_application(address),
+                  paints)
+          .run();
     } catch (const compositor::ConnectionLost&) {
       throw;
     } catch (const std::exception& error) {
@@ -180,7 +258,8 @@ void add_stage(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--socket", *socket)->required();
   subcommand->callback([socket, &chosen] {
     chosen = [socket] {
-      listen_for_clients(*socket, "stage", perform);
+      listen_for_clients(*socket, "stage",
+                         [&](FileDescriptor client) { return perform(std::move(client), *socket); });
       return 0;
     };
   });

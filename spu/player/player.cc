@@ -7,8 +7,11 @@
 #include <stdexcept>
 
 #include "spu/assemble.h"
+#include "spu/player/shown_picture.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
+#include "spu/strips/strip.h"
+#include "spu/strips/strips.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/volume_unit.h"
@@ -76,6 +79,19 @@ const CallAnswer& Player::call_answer() const {
   return found == contexts_.end() ? none : found->second->decoder.call_answer();
 }
 
+const Decoder::ReadPicture& Player::read_picture() const {
+  static const Decoder::ReadPicture none;
+  const auto found = contexts_.find(active_);
+  return found == contexts_.end() ? none : found->second->decoder.read_picture();
+}
+
+std::vector<std::uint8_t> Player::shown_picture() const {
+  const auto found = contexts_.find(active_);
+  if (found == contexts_.end()) return {};
+  if (Strips* strips = found->second->chain.find<Strips>()) return strips->shown_picture();
+  return spu::shown_picture(driver(), active_extent_);
+}
+
 std::vector<Player::PlayedContext> Player::contexts() const {
   std::vector<PlayedContext> all;
   for (const auto& [number, context] : contexts_) all.push_back(context->played);
@@ -140,6 +156,7 @@ std::string Player::introduce(const Record& record) {
   groups_[context.number] = group;
   auto made = std::make_unique<Context>(group, windows_.driver(), context, origin_);
   if (const auto trouble = assemble(made->chain, options_.chain, session_)) throw std::runtime_error(*trouble);
+  if (Strips* strips = made->chain.find<Strips>()) strips->introduce(words.first(event::context_words));
   if (group->number == 0) group->number = context.number;
   made->played = {context.number, group->number, {}};
   made->counts_frames = made->chain.find<VolumeUnit>() == nullptr;
@@ -188,7 +205,10 @@ Player::Context* Player::activate() {
   if (active_ != 0) contexts_[active_]->chain.settle();
   if (active_ != thread.context) Chain::release_current();
   windows_.make_current(thread.context, thread.drawable, thread.extent);
-  if (active_ != thread.context) found->second->chain.make_current();
+  Chain& chain = found->second->chain;
+  if (Strips* strips = chain.find<Strips>()) strips->place(thread.drawable, thread.extent);
+  if (Strip* strip = chain.find<Strip>()) strip->place(thread.extent);
+  if (active_ != thread.context) chain.make_current();
   active_ = thread.context;
   active_drawable_ = thread.drawable;
   active_extent_ = thread.extent;

@@ -57,6 +57,10 @@ class Player {
   const CallAnswer& call_answer() const;
   /// The one that is current; number 0 when none is.
   PlayedContext current() const;
+  /// What its drawable shows (shown_picture.h), whoever has drawn it; for on_frame.
+  std::vector<std::uint8_t> shown_picture() const;
+  /// Pixels that the last call read; empty when it read none.
+  const Decoder::ReadPicture& read_picture() const;
   /// Number of the drawable that is current.
   std::uint64_t drawable() const { return active_drawable_; }
   std::vector<PlayedContext> contexts() const;

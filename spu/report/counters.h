@@ -125,6 +125,13 @@ struct RemoteCounters {
   std::atomic<std::uint64_t> bytes_down;
 };
 
+/// Of a stage whose windows are drawn in strips.
+struct StripCounters {
+  std::uint32_t count;                ///< strips of a window; 0: windows are drawn whole
+  std::atomic<std::uint64_t> frames;  ///< put together from strips
+  char given_up[128];                 ///< why windows are drawn whole from some frame on; empty: they are not
+};
+
 struct ProcessCounters {
   std::uint32_t magic;
   std::int32_t pid;
@@ -141,6 +148,7 @@ struct ProcessCounters {
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   RemoteCounters remote;
+  StripCounters strips;
   std::atomic<std::uint32_t> volumes;
   std::atomic<std::uint32_t> volumes_merged;   ///< of these, those that are counted in another's place
   VolumeCounters volume[max_counted_volumes];  ///< the last one: see count_volume()

@@ -26,6 +26,11 @@ constexpr const char* bytes_up = "bytes_up";
 constexpr const char* bytes_down = "bytes_down";
 constexpr const char* per_frame = "per_frame";
 
+// strips: null unless --polygons strips, on this machine.
+constexpr const char* strips = "strips";
+constexpr const char* of = "of";              ///< strips of a window
+constexpr const char* given_up = "given_up";  ///< why windows were drawn by one process from some frame on
+
 // link: null unless --connect HOST:PORT. Of all connections of the run: what went over TCP.
 constexpr const char* link = "link";
 constexpr const char* address = "address";

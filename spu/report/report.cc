@@ -323,6 +323,18 @@ Json remote_link(Processes processes) {
             {report_key::bytes_down, a_frame(down)}}}};
 }
 
+/// Of the first stage that has drawn in strips.
+Json strips(Processes processes) {
+  const auto found = std::find_if(processes.begin(), processes.end(), [](const ProcessCounters* process) {
+    return process->strips.count > 0 || process->strips.given_up[0] != 0;
+  });
+  if (found == processes.end()) return nullptr;
+  const StripCounters& counted = (*found)->strips;
+  return {{report_key::of, counted.count},
+          {report_key::frames, counted.frames.load()},
+          {report_key::given_up, std::string(counted.given_up)}};
+}
+
 std::string counted(std::uint64_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
@@ -372,6 +384,7 @@ std::string report_json(Processes processes) {
               {report_key::nodes, totals.nodes},
               {report_key::remote, is_remote(processes)},
               {report_key::remote_link, remote_link(processes)},
+              {report_key::strips, strips(processes)},
               {report_key::pictures_behind, totals.pictures_behind},
               {report_key::windows_asked, totals.windows_asked},
               {report_key::processes, Json::array()},

@@ -5,9 +5,7 @@
 
 #include "dispatch/call_words.h"
 #include "spu/shared_by_file.h"
-#include "spu/stream/answers.h"
 #include "spu/stream/event.h"
-#include "spu/stream/extent.h"
 
 namespace understudy::spu {
 namespace {
@@ -24,24 +22,6 @@ GLint ask(const DispatchTable& gl, GLenum name) {
   return value;
 }
 
-/// The records that tell what the call has answered.
-void append_answers(CallId call, const std::uint64_t* words, std::uint64_t result, Records& to) {
-  const auto parameters = call_shape(call).parameters();
-  to.begin(event::answers);
-  to.append(stable_id(call));
-  to.append(result);
-  std::size_t outputs = 0;
-  for (const ParameterShape& parameter : parameters) outputs += answers_names(parameter) ? 1 : 0;
-  to.reserve(outputs);
-  std::size_t at = 3;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (!answers_names(parameters[p])) continue;
-    const auto* names = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(words[p]));
-    const std::size_t bytes = names == nullptr ? 0 : pointee_bytes(call, p, words).value_or(0);
-    to.set(at++, to.attach({names, bytes}).word());
-  }
-}
-
 constexpr UnitOption options[] = {{.name = "file",
                                    .type = OptionType::file,
                                    .fallback = "trace.ust",
@@ -50,7 +30,7 @@ constexpr UnitOption options[] = {{.name = "file",
 }  // namespace
 
 Trace::Trace(Chain& chain, Recording& recording)
-    : chain_(chain), recording_(recording), encoder_(chain.driver(), [] {}) {}
+    : chain_(chain), recording_(recording), recorder_(chain.driver()) {}
 
 void Trace::fill(Phase, DispatchTable& table) {
   AsWords<Traced>::fill(table);
@@ -58,17 +38,14 @@ void Trace::fill(Phase, DispatchTable& table) {
 
 std::uint64_t Trace::call(CallId call, const std::uint64_t* words) {
   if (call == CallId::Viewport) note_viewport(words);
-  recording_.append([&](Records& records) {
-    mapped_.before(chain_.driver(), call, words, records);
-    encoder_.encode(call, words, records);
-  });
+  recording_.append([&](Records& records) { recorder_.before(call, words, records); });
   // Not under the recording's lock: the call may wait for another thread's.
   const std::uint64_t result = invoke(chain_.below(*this), call, words);
-  if (call_shape(call).result != ValueType::none || answers_names(call)) {
-    recording_.append([&](Records& records) { append_answers(call, words, result, records); });
+  if (CallRecorder::answers(call)) {
+    recording_.append([&](Records& records) { CallRecorder::append_answers(call, words, result, records); });
   }
-  mapped_.after(chain_.driver(), call, words, result);
-  if (!encoder_.inside_begin()) recording_.flush(false);
+  recorder_.made(call, words, result);
+  if (!recorder_.inside_begin()) recording_.flush(false);
   return result;
 }
 
@@ -112,7 +89,7 @@ void Trace::left() {
 }
 
 void Trace::note_viewport(const std::uint64_t* words) {
-  if (encoder_.inside_begin() || ask(chain_.driver(), GL_DRAW_FRAMEBUFFER_BINDING) != 0) return;
+  if (recorder_.inside_begin() || ask(chain_.driver(), GL_DRAW_FRAMEBUFFER_BINDING) != 0) return;
   const auto extent = [&](std::size_t at) {
     return std::uint64_t(
         std::max<std::int64_t>(std::int32_t(words[at]) + std::int64_t(std::int32_t(words[at + 2])), 0));

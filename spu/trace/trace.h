@@ -4,8 +4,7 @@
 
 #include <cstdint>
 
-#include "spu/stream/encode.h"
-#include "spu/trace/mapped_buffers.h"
+#include "spu/trace/call_recorder.h"
 #include "spu/trace/recording.h"
 #include "spu/unit_description.h"
 
@@ -40,8 +39,7 @@ class Trace final : public Unit {
 
   Chain& chain_;
   Recording& recording_;
-  Encoder encoder_;
-  MappedBuffers mapped_;
+  CallRecorder recorder_;
   bool introduced_ = false;
   // Nobody but the window system knows how large the drawable is, and asking it may end in an X error. OpenGL's
   // first viewport is as large, and applications set one of its size whenever it changes: the largest viewport

@@ -1,0 +1,88 @@
+#include "spu/strips/strip.h"
+
+#include <string>
+#include <utility>
+
+#include "dispatch/call_words.h"
+#include "spu/shared_by_file.h"
+#include "spu/strips/painters.h"
+#include "spu/strips/strips.h"
+#include "spu/strips/window_use.h"
+
+namespace understudy::spu {
+namespace {
+
+struct Drawn {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    return Chain::current()->find<Strip>()->call(call, words);
+  }
+};
+
+/// A painter draws for one application, whose contexts may share display lists.
+struct CompiledCalls {
+  explicit CompiledCalls(const std::string&) {}
+  std::atomic<bool> touch_scissor = false;
+};
+
+constexpr UnitOption options[] = {{.name = "part",
+                                   .type = OptionType::integer,
+                                   .fallback = "0",
+                                   .low = 0,
+                                   .high = most_strips - 1,
+                                   .help = "which strip, from the lowest"},
+                                  {.name = "of",
+                                   .type = OptionType::integer,
+                                   .fallback = "2",
+                                   .low = 2,
+                                   .high = most_strips,
+                                   .help = "strips of a window"}};
+
+}  // namespace
+
+Strip::Strip(Chain& chain, std::atomic<bool>& lists_touch_scissor, int part, int parts)
+    : chain_(chain), part_(part), parts_(parts), scissor_(lists_touch_scissor) {}
+
+void Strip::fill(Phase, DispatchTable& table) {
+  AsWords<Drawn>::fill(table);
+}
+
+void Strip::place(Extent2D extent) {
+  if (!std::exchange(placed_, true)) divides_ = window_divides(chain_.driver());
+  extent_ = extent;
+  scissor_.set(extent.width, rows());
+}
+
+std::uint64_t Strip::call(CallId call, const std::uint64_t* words) {
+  const DispatchTable& next = chain_.below(*this);
+  const WindowUse use = window_use(call);
+  if (inside_begin_ && use != WindowUse::ends) return invoke(next, call, words);
+  scissor_.note(call, words);
+  const bool lists = use == WindowUse::lists;
+  const bool draws = lists || use == WindowUse::draws || use == WindowUse::begins;
+  bool restricted = draws && divides_ && scissor_.begin(next, lists);
+  const std::uint64_t result = invoke(next, call, words);
+  if (use == WindowUse::begins) {
+    inside_begin_ = !scissor_.compiling();
+    restricted_ = restricted;
+    return result;
+  }
+  if (use == WindowUse::ends) {
+    inside_begin_ = false;
+    restricted = std::exchange(restricted_, false);
+  }
+  if (restricted) scissor_.end(next);
+  if (lists) scissor_.forget();
+  return result;
+}
+
+constinit const UnitDescription strip_description{
+    .name = "strip",
+    .help = "draws some rows of windows alone (of painters, see strips)",
+    .options = options,
+    .leads_to = "driver",
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      return std::make_unique<Strip>(place.chain, shared_by_file<CompiledCalls>("").touch_scissor,
+                                     int(place.options.integer("part")), int(place.options.integer("of")));
+    }};
+
+}  // namespace understudy::spu

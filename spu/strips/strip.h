@@ -1,0 +1,45 @@
+// The strip unit, of a painter: its process draws one strip of each window, and is played the stream by the one
+// that has the application (strips.h).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "spu/player/window_system.h"
+#include "spu/strips/strip_scissor.h"
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+class Strip final : public Unit {
+ public:
+  static constexpr char tag = '-';
+
+  Strip(Chain& chain, std::atomic<bool>& lists_touch_scissor, int part, int parts);
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase phase, DispatchTable& table) override;
+
+  /// The context is current with a drawable of this extent. To be called with every change.
+  void place(Extent2D extent);
+  /// Of the current drawable.
+  Rows rows() const { return rows_of_strip(extent_.height, part_, parts_); }
+  Extent2D extent() const { return extent_; }
+
+  std::uint64_t call(CallId call, const std::uint64_t* words);
+
+ private:
+  Chain& chain_;
+  const int part_;
+  const int parts_;
+  StripScissor scissor_;
+  Extent2D extent_;
+  bool placed_ = false;
+  bool divides_ = false;     ///< strips.h says when
+  bool restricted_ = false;  ///< from glBegin to glEnd
+  bool inside_begin_ = false;
+};
+
+extern const UnitDescription strip_description;
+
+}  // namespace understudy::spu

@@ -1,0 +1,300 @@
+#include "spu/strips/strips.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "dispatch/call_words.h"
+#include "spu/player/shown_picture.h"
+#include "spu/report/counters.h"
+#include "spu/shared_by_file.h"
+#include "spu/stream/event.h"
+#include "spu/stream/extent.h"
+#include "spu/stream/pixels.h"
+#include "spu/strips/whole_window.h"
+#include "spu/strips/window_use.h"
+
+namespace understudy::spu {
+namespace {
+
+/// Windows are made whole so often before it is cheaper to have one process draw them.
+constexpr int most_copies = 16;
+
+struct Divided {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    return Chain::current()->find<Strips>()->call(call, words);
+  }
+};
+
+GLint ask(const DispatchTable& gl, GLenum name) {
+  GLint value = 0;
+  gl.GetIntegerv(name, &value);
+  return value;
+}
+
+GLint ask_of_window(const DispatchTable& gl, GLenum attachment, GLenum name) {
+  GLint value = 0;
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, name, &value);
+  return value;
+}
+
+constexpr UnitOption options[] = {{.name = "of",
+                                   .type = OptionType::integer,
+                                   .fallback = "2",
+                                   .low = 2,
+                                   .high = most_strips,
+                                   .help = "strips of a window, each drawn by a process of its own"},
+                                  {.name = "stages",
+                                   .type = OptionType::text,
+                                   .fallback = "",
+                                   .help = "Unix socket of the stages that draw the others"}};
+
+}  // namespace
+
+bool window_divides(const DispatchTable& gl) {
+  if (ask(gl, GL_MAJOR_VERSION) < 3 || ask(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 || ask(gl, GL_SAMPLES) > 0)
+    return false;
+  const GLenum colour = ask(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK_LEFT : GL_FRONT_LEFT;
+  for (const GLenum channel : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
+                               GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE}) {
+    if (ask_of_window(gl, colour, channel) > 8) return false;
+  }
+  return depth_is_copied_exactly(gl);
+}
+
+Strips::Strips(Chain& chain, Painters& painters, int parts)
+    : chain_(chain),
+      painters_(painters),
+      parts_(parts),
+      recorder_(chain.driver()),
+      scissor_(painters.lists_touch_scissor()) {}
+
+void Strips::fill(Phase, DispatchTable& table) {
+  if (painters_.here() || !placed_) AsWords<Divided>::fill(table);
+}
+
+void Strips::introduce(std::span<const std::uint64_t> words) {
+  painters_.gather(parts_);
+  painters_.records().append_plain(event::context, words);
+}
+
+void Strips::place(std::uint64_t drawable, Extent2D extent) {
+  const bool first = !std::exchange(placed_, true);
+  if (!painters_.here()) {
+    if (first) chain_.refill();
+    return;
+  }
+  drawable_ = drawable;
+  extent_ = extent;
+  const std::uint64_t words[] = {chain_.surroundings().context, std::uint64_t(extent.width),
+                                 std::uint64_t(extent.height), drawable};
+  painters_.records().append_plain(event::current, words);
+  if (first && painters_.given_up() == nullptr && window_divides(chain_.driver())) {
+    divided_ = true;
+    painters_.begin_strips();
+  }
+  divide();
+}
+
+void Strips::divide() {
+  scissor_.set(extent_.width, rows_of_strip(extent_.height, 0, parts_));
+}
+
+void Strips::left() {
+  if (!painters_.here()) return;
+  constexpr std::uint64_t nothing[] = {0, 0, 0};
+  painters_.records().append_plain(event::current, nothing);
+}
+
+void Strips::abandon() {
+  if (!painters_.here()) return;
+  const std::uint64_t words[] = {chain_.surroundings().context};
+  painters_.records().append_plain(event::context_gone, words);
+  painters_.hand_on(true);
+  if (std::exchange(divided_, false)) painters_.end_strips();
+}
+
+std::uint64_t Strips::call(CallId call, const std::uint64_t* words) {
+  const DispatchTable& next = chain_.below(*this);
+  if (!painters_.here()) {
+    // A painter was lost just now.
+    stop_dividing();
+    return invoke(next, call, words);
+  }
+  if (recorder_.inside_begin()) return make(call, words, false);
+  const WindowUse use = window_use(call);
+  if (use == WindowUse::reads || use == WindowUse::asks) return read(call, words);
+  if (use == WindowUse::pushes) {
+    painters_.hand_on(true);
+    return invoke(next, call, words);
+  }
+  if (divided_ && !making_whole_) {
+    if (const char* why = beyond_strips(call, words)) painters_.give_up(why);
+    if (copies_window(call, words)) {
+      if (is_compiling()) {
+        painters_.give_up("display lists of the application copy pixels of a window");
+      } else if (++copies_ > most_copies) {
+        painters_.give_up("the application copies pixels of its window all the time");
+      } else {
+        make_whole();
+      }
+    }
+    if (painters_.given_up() != nullptr && !is_compiling()) {
+      stop_dividing();
+      if (!painters_.here()) return invoke(next, call, words);
+    }
+  }
+  scissor_.note(call, words);
+  const bool lists = use == WindowUse::lists;
+  const bool draws = lists || use == WindowUse::draws || use == WindowUse::begins;
+  return make(call, words, draws && divided_);
+}
+
+std::uint64_t Strips::make(CallId call, const std::uint64_t* words, bool restricted) {
+  const DispatchTable& next = chain_.below(*this);
+  const WindowUse use = window_use(call);
+  Records& records = painters_.records();
+  recorder_.before(call, words, records);
+  const bool lists = use == WindowUse::lists;
+  restricted = restricted && scissor_.begin(next, lists);
+  const std::uint64_t result = invoke(next, call, words);
+  if (use == WindowUse::begins) {
+    restricted_ = restricted;
+  } else if (use == WindowUse::ends) {
+    restricted = std::exchange(restricted_, false);
+  }
+  if (restricted && use != WindowUse::begins) scissor_.end(next);
+  if (lists) scissor_.forget();
+  if (CallRecorder::answers(call)) CallRecorder::append_answers(call, words, result, records);
+  recorder_.made(call, words, result);
+  if (!recorder_.inside_begin()) painters_.hand_on(false);
+  return result;
+}
+
+/// Pixels of a window that the call would move, or that later calls find where it puts them.
+bool Strips::copies_window(CallId call, const std::uint64_t* words) const {
+  const WindowUse use = window_use(call);
+  if (use != WindowUse::copies && use != WindowUse::blits) return false;
+  if (call == CallId::BlitNamedFramebuffer) return words[0] == 0;
+  return ask(chain_.driver(), GL_READ_FRAMEBUFFER_BINDING) == 0;
+}
+
+/// Answers stay in this process, unless they go to a buffer object, where later calls find them.
+std::uint64_t Strips::read(CallId call, const std::uint64_t* words) {
+  const DispatchTable& next = chain_.below(*this);
+  const bool pixels = window_use(call) == WindowUse::reads;
+  const auto parameters = call_shape(call).parameters();
+  const bool picture = std::any_of(parameters.begin(), parameters.end(), [](const ParameterShape& parameter) {
+    return parameter.rule == ExtentRule::image_out;
+  });
+  const bool window = pixels && divided_ && ask(next, GL_READ_FRAMEBUFFER_BINDING) == 0;
+  if (picture && ask(next, GL_PIXEL_PACK_BUFFER_BINDING) != 0) {
+    if (window) make_whole();
+    return make(call, words, false);
+  }
+  const std::uint64_t result = invoke(next, call, words);
+  if (window) fetch_rows(call, words);
+  return result;
+}
+
+void Strips::fetch_rows(CallId call, const std::uint64_t* words) {
+  const DispatchTable& next = chain_.below(*this);
+  const CallShape& shape = call_shape(call);
+  auto* to = reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(words[shape.parameter_count - 1]));
+  const PictureShape picture = picture_shape(call, words);
+  const PixelStore store = pixel_store(next, pack_names);
+  const auto extent = picture_extent(picture, store);
+  const std::uint8_t room_at = argument_named(shape, "bufSize");
+  if (!extent || to == nullptr ||
+      (room_at != no_argument && *extent > std::size_t(std::max(GLsizei(words[room_at]), 0)))) {
+    return;
+  }
+  const int bottom = GLint(words[1]);
+  const auto part_of = [&](int painter) {
+    const Rows rows = rows_of_strip(extent_.height, painter + 1, parts_);
+    const int first = std::max(rows.first, bottom);
+    return Rows{first, std::max(std::min(rows.first + rows.count, bottom + picture.height) - first, 0)};
+  };
+  painters_.hand_on(true);
+  for (int painter = 0; painter < painters_.count(); ++painter) {
+    const Rows rows = part_of(painter);
+    if (rows.count == 0) continue;
+    const std::array<std::uint64_t, 7> question = {
+        words[0], std::uint64_t(rows.first),       words[2], std::uint64_t(rows.count), words[4],
+        words[5], words[shape.parameter_count - 1]};
+    question_.clear();
+    recorder_.before(CallId::ReadPixels, question.data(), question_);
+    painters_.ask(painter, question_);
+  }
+  for (int painter = 0; painter < painters_.count(); ++painter) {
+    const Rows rows = part_of(painter);
+    if (rows.count == 0) continue;
+    const CallAnswer answer = painters_.answer(painter);
+    PictureShape part = picture;
+    part.height = rows.count;
+    // A format that OpenGL refuses has no answer, here or there.
+    if (answer.outputs.empty() || answer.outputs[0].bytes.size() != picture_extent(part, tight_pixels))
+      continue;
+    PixelStore above = store;
+    above.skip_rows += rows.first - bottom;
+    spread_picture(part, above, answer.outputs[0].bytes.data(), to);
+  }
+}
+
+void Strips::make_whole() {
+  making_whole_ = true;
+  complete_window(chain_.face(*this, chain_.phase()), extent_);
+  making_whole_ = false;
+}
+
+/// What this process lacks of its window is brought here, and from then on it draws all of it.
+void Strips::stop_dividing() {
+  if (divided_ && painters_.here()) make_whole();
+  if (std::exchange(divided_, false)) painters_.end_strips();
+  if (!painters_.here()) chain_.refill();
+}
+
+std::vector<std::uint8_t> Strips::shown_picture() {
+  const DispatchTable& next = chain_.below(*this);
+  if (!divided_ || !painters_.here()) return spu::shown_picture(next, extent_);
+  const std::uint64_t words[] = {++frames_, std::uint64_t(extent_.width), std::uint64_t(extent_.height)};
+  question_.clear();
+  question_.append_plain(event::frame, words);
+  painters_.hand_on(true);
+  for (int painter = 0; painter < painters_.count(); ++painter) painters_.ask(painter, question_);
+  const std::size_t row_bytes = std::size_t(4) * std::size_t(extent_.width);
+  std::vector<std::uint8_t> pixels =
+      shown_rows(next, extent_.width, rows_of_strip(extent_.height, 0, parts_).first,
+                 rows_of_strip(extent_.height, 0, parts_).count);
+  pixels.resize(row_bytes * std::size_t(extent_.height));
+  for (int painter = 0; painter < painters_.count(); ++painter) {
+    const Rows rows = rows_of_strip(extent_.height, painter + 1, parts_);
+    const CallAnswer answer = painters_.answer(painter);
+    if (answer.outputs.empty()) continue;
+    const std::vector<std::byte>& bytes = answer.outputs[0].bytes;
+    const std::size_t first = row_bytes * std::size_t(rows.first);
+    std::memcpy(pixels.data() + first, bytes.data(),
+                std::min(bytes.size(), row_bytes * std::size_t(rows.count)));
+  }
+  process_counters().strips.frames.fetch_add(1, std::memory_order_relaxed);
+  return pixels;
+}
+
+constinit const UnitDescription strips_description{
+    .name = "strips",
+    .help =
+        "has each strip of a window drawn by a process of its own (understudy run --remote --polygons strips)",
+    .options = options,
+    .leads_to = "driver",
+    .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
+      const std::string& stages = place.options.text("stages");
+      if (stages.empty())
+        throw ChainError("strips",
+                         "there are no stages to draw them; start the viewer with: understudy run "
+                         "--remote --polygons strips -n 2 -- viewer");
+      return std::make_unique<Strips>(place.chain, shared_by_file<Painters>(stages),
+                                      int(place.options.integer("of")));
+    }};
+
+}  // namespace understudy::spu

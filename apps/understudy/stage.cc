@@ -52,21 +52,25 @@ constexpr std::chrono::seconds patience_with_start{10};
 /// Different faults of a stream that are said.
 constexpr std::size_t most_faults_told = 20;
 
-/// What the stage of an application is given: where it finds others that draw strips of its windows.
+/// What the stage of an application is given: where its chain finds others that draw strips of its windows.
 spu::Options options_of_application(const std::string& socket) {
   spu::Options options = spu::options_from_environment();
-  if (options.polygons != "strips") return options;
-  const int strips = std::min(options.nodes, spu::most_strips);
-  if (strips < 2) {
-    fmt::print(stderr,
-               "understudy: --polygons strips: there is one node, which draws all; say -n 2, or more\n");
-    return options;
-  }
   spu::ChainSettings chain =
       spu::parse_chain(spu::resolved_chain(options.chain, std::filesystem::current_path()));
-  chain.insert(
-      chain.end() - 1,
-      {.name = "strips", .options = {{"of", std::to_string(strips), {}}, {"stages", socket, {}}}, .where = {}});
+  auto strips = std::find_if(chain.begin(), chain.end(),
+                             [](const spu::UnitSetting& unit) { return unit.name == "strips"; });
+  if (strips == chain.end() && options.polygons == "strips") {
+    const int parts = std::min(options.nodes, spu::most_strips);
+    if (parts < 2) {
+      fmt::print(stderr,
+                 "understudy: --polygons strips: there is one node, which draws all; say -n 2, or more\n");
+      return options;
+    }
+    strips = chain.insert(chain.end() - 1,
+                          {.name = "strips", .options = {{"of", std::to_string(parts), {}}}, .where = {}});
+  }
+  if (strips == chain.end()) return options;
+  strips->options.push_back({"stages", socket, {}});
   options.chain = spu::chain_text(chain);
   return options;
 }

@@ -21,7 +21,7 @@
 namespace understudy::spu {
 
 /// Whether the window of the current context, which has just been made, can be put together from strips: one
-/// sample a pixel, 8 bits a channel, and a depth that can be copied without loss.
+/// sample a pixel, 8 bits a channel, and a depth that can be copied.
 bool window_divides(const DispatchTable& gl);
 
 class Strips final : public Unit {

@@ -55,7 +55,7 @@ class ShownBuffer {
 
 }  // namespace
 
-bool depth_is_copied_exactly(const DispatchTable& gl) {
+bool depth_can_be_copied(const DispatchTable& gl) {
   // Blits copy depth between equal formats alone, and textures have this one.
   const auto bits = depth_and_stencil_bits(gl);
   return bits == std::pair{0, 0} || bits == std::pair{24, 8};

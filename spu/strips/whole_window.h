@@ -6,8 +6,8 @@
 
 namespace understudy::spu {
 
-/// Whether complete_window() gives the depth and the stencil of the window that is drawn into without loss.
-bool depth_is_copied_exactly(const DispatchTable& gl);
+/// Whether complete_window() can give the depth and the stencil of the window that is drawn into.
+bool depth_can_be_copied(const DispatchTable& gl);
 
 /// Reads the window through `gl`, which is to give all of it, and draws colour, depth and stencil into it
 /// again. Nothing else of the context is different afterwards.

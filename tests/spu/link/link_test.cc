@@ -9,96 +9,31 @@
 #include <cstring>
 #include <numeric>
 
-#include "apps/understudy/stage.h"
-#include "spu/assemble.h"
 #include "spu/report/counters.h"
-#include "spu/track/share_group.h"
-#include "spu/volume/render_session.h"
-#include "tests/apps/viewer/temporary_folder.h"
+#include "tests/spu/link/staged_application.h"
 
 namespace understudy::spu {
 namespace {
 
-thread_local const DispatchTable* installed = nullptr;
-
-void install(const DispatchTable* table) {
-  installed = table;
-}
-
-/// A window system of one window.
-class OneWindow final : public FrontEnd {
- public:
-  RecordedContext context() override {
-    return {.version = version, .profile = core ? 1U : 2U, .samples = 0, .double_buffered = true};
-  }
-  FrontDrawable drawable() override { return {7, extent}; }
-  /// By the link's own thread; read behind a glFinish.
-  void show(const FrontDrawable&, Extent2D shown_extent, std::span<const std::uint8_t> pixels) override {
-    ++shown;
-    picture.assign(pixels.begin(), pixels.end());
-    picture_extent = shown_extent;
-  }
-
-  /// Blue, green and red, from the upper left.
-  std::array<int, 3> at(int x, int y) const {
-    const std::size_t first = (std::size_t(y) * std::size_t(picture_extent.width) + std::size_t(x)) * 4;
-    return {picture[first], picture[first + 1], picture[first + 2]};
-  }
-
-  int version = 0;
-  bool core = false;
-  Extent2D extent{64, 48};
-  int shown = 0;
-  Extent2D picture_extent;
-  std::vector<std::uint8_t> picture;
-};
-
 class LinkTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const std::filesystem::path socket = folder_.file("stage.sock");
-    launcher::Environment environment = launcher::current_environment();
-    environment["UNDERSTUDY_CHAIN"] = std::string("driver");
-    stage_ = launcher::start_stage({PROGRAMS, LIBRARIES}, socket, environment);
-    link_ = std::make_unique<StageLink>(socket.string(), window_);
-    window_.version = link_->versions().compatibility;
-    ASSERT_GE(window_.version, 210);
-  }
-
-  /// Another context is current from now on.
-  Chain& make_context(bool core = false, std::uint64_t shares_with = 0) {
-    window_.core = core;
-    if (core) window_.version = link_->versions().core;
-    chains_.push_back(std::make_unique<Chain>(link_driver(), std::make_shared<ShareGroup>(), &install,
-                                              Surroundings{chains_.size() + 1, shares_with, link_.get()}));
-    const auto session = std::make_shared<RenderSession>(Options{});
-    EXPECT_EQ(assemble(*chains_.back(), "pack link", session), std::nullopt);
-    chains_.back()->make_current();
-    return *chains_.back();
-  }
-
-  void swap() {
-    Chain::current()->settle();
-    Chain::current()->frame_ended(FrameEnd::swap);
-  }
-
+  void SetUp() override { ASSERT_GE(application_.window.version, 210); }
   void TearDown() override {
-    if (installed != nullptr && !link_->lost()) {
+    if (application_.installed() != nullptr && !link_->lost()) {
       EXPECT_EQ(gl().GetError(), GLenum(GL_NO_ERROR));
     }
-    Chain::release_current();
-    chains_.clear();
-    link_.reset();
-    stage_->end(5000);
   }
 
-  static const DispatchTable& gl() { return *installed; }
+  Chain& make_context(bool core = false, std::uint64_t shares_with = 0) {
+    return application_.make_context(core, shares_with);
+  }
+  static void swap() { staged::StagedApplication::swap(); }
+  static const DispatchTable& gl() { return *staged::StagedApplication::installed(); }
 
-  viewer_test::TemporaryFolder folder_;
-  OneWindow window_;
-  std::unique_ptr<launcher::ChildProcess> stage_;
-  std::unique_ptr<StageLink> link_;
-  std::vector<std::unique_ptr<Chain>> chains_;
+  staged::StagedApplication application_{"driver"};
+  staged::OneWindow& window_ = application_.window;
+  std::unique_ptr<launcher::ChildProcess>& stage_ = application_.stage;
+  std::unique_ptr<StageLink>& link_ = application_.link;
 };
 
 TEST_F(LinkTest, TellsWhatTheStagesOpenGLIs) {

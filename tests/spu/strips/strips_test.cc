@@ -1,0 +1,511 @@
+// What an application sees and shows where painters draw strips of its window is what it sees and shows where
+// one process draws all of it, to the last bit.
+#include "spu/strips/strips.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "spu/report/counters.h"
+#include "spu/report/report.h"
+#include "tests/spu/link/staged_application.h"
+
+namespace understudy::spu {
+namespace {
+
+using staged::StagedApplication;
+
+constexpr int width = 96;
+constexpr int height = 80;
+
+/// What a run of an application shows and reads.
+struct Seen {
+  std::vector<std::vector<std::uint8_t>> pictures;
+  std::vector<std::vector<std::uint8_t>> read;
+  std::vector<GLenum> errors;
+  bool operator==(const Seen&) const = default;
+};
+
+/// An application that notes what it sees.
+class Application {
+ public:
+  explicit Application(const std::string& chain, const std::filesystem::path& counters_folder = {})
+      : on_stage(chain, counters_folder) {
+    on_stage.window.extent = {width, height};
+    on_stage.make_context();
+  }
+
+  const DispatchTable& gl() const { return *StagedApplication::installed(); }
+  void swap() {
+    StagedApplication::swap();
+    gl().Finish();
+    seen.pictures.push_back(on_stage.window.picture);
+  }
+  void read(int x, int y, int columns, int rows, GLenum format, GLenum type, std::size_t pixel_bytes) {
+    // What is not written stays as it is, on both.
+    std::vector<std::uint8_t> pixels(std::size_t(columns + 8) * std::size_t(rows + 8) * pixel_bytes, 77);
+    gl().ReadPixels(x, y, columns, rows, format, type, pixels.data());
+    seen.read.push_back(std::move(pixels));
+  }
+  void read_all() { read(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, 4); }
+  void note_error() { seen.errors.push_back(gl().GetError()); }
+
+  /// A fan of triangles of many colours, at depths that cross.
+  void draw_fan(double turn) const {
+    const DispatchTable& g = gl();
+    g.Begin(GL_TRIANGLES);
+    for (int i = 0; i < 12; ++i) {
+      const double angle = turn + i * 0.55;
+      g.Color3f(float(i % 3) / 2, float(i % 5) / 4, float(i % 7) / 6);
+      g.Vertex3d(0.1, -0.05, std::sin(angle) * 0.5);
+      g.Vertex3d(std::cos(angle), std::sin(angle), 0.4);
+      g.Vertex3d(std::cos(angle + 0.9), std::sin(angle + 0.9), -0.4);
+    }
+    g.End();
+  }
+  void clear(float red, float green, float blue) const {
+    gl().ClearColor(red, green, blue, 1);
+    gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  }
+  /// The texture that is bound, over the window from -1 to `right`.
+  void draw_textured(double right) const {
+    const DispatchTable& g = gl();
+    g.Enable(GL_TEXTURE_2D);
+    g.Begin(GL_QUADS);
+    for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+      g.TexCoord2d(x, y);
+      g.Vertex2d(x == 0 ? -1 : right, y * 2 - 1);
+    }
+    g.End();
+    g.Disable(GL_TEXTURE_2D);
+  }
+  void bind_texture(GLuint name) const {
+    gl().BindTexture(GL_TEXTURE_2D, name);
+    gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  }
+
+  StagedApplication on_stage;
+  Seen seen;
+  std::vector<std::vector<float>> depths;  ///< that a copy may have made different by one of 2^24
+};
+
+/// Why the stage under `run` gave strips up, as its counters have it.
+struct Counted {
+  std::uint64_t frames = 0;
+  std::string given_up;
+};
+
+class StripsTest : public ::testing::Test {
+ protected:
+  /// Plays `scene` alone and with painters.
+  Counted expect_same(const std::function<void(Application&)>& scene, int parts = 3) {
+    Seen alone;
+    std::vector<std::vector<float>> depths;
+    {
+      Application application("driver");
+      scene(application);
+      application.note_error();
+      alone = application.seen;
+      depths = application.depths;
+    }
+    EXPECT_FALSE(alone.pictures.empty() && alone.read.empty()) << "nothing is compared";
+    for (const auto& picture : alone.pictures)
+      EXPECT_GT(std::set<std::uint8_t>(picture.begin(), picture.end()).size(), 1U) << "an empty picture";
+    Application application("strips(of=" + std::to_string(parts) + ") driver", folder_.file(""));
+    scene(application);
+    application.note_error();
+    EXPECT_EQ(application.seen.errors, alone.errors);
+    EXPECT_EQ(application.seen.read.size(), alone.read.size());
+    for (std::size_t i = 0; i < alone.read.size(); ++i)
+      EXPECT_EQ(different(application.seen.read[i], alone.read[i]), 0U) << "bytes of what was read, " << i;
+    for (std::size_t i = 0; i < depths.size(); ++i)
+      EXPECT_THAT(application.depths[i],
+                  ::testing::Pointwise(::testing::FloatNear(1.01F / 16777215), depths[i]));
+    EXPECT_EQ(application.seen.pictures.size(), alone.pictures.size());
+    for (std::size_t i = 0; i < alone.pictures.size(); ++i)
+      EXPECT_EQ(different(application.seen.pictures[i], alone.pictures[i]), 0U) << "bytes of picture " << i;
+    return counted();
+  }
+
+  /// As many strips as there are frames, with nothing given up.
+  void expect_all_in_strips(const std::function<void(Application&)>& scene, int parts = 3) {
+    const Counted figures = expect_same(scene, parts);
+    EXPECT_GT(figures.frames, 0U);
+    EXPECT_EQ(figures.given_up, "");
+  }
+
+  static std::size_t different(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    if (a.size() != b.size()) return std::max(a.size(), b.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i] ? 1 : 0;
+    return count;
+  }
+
+  /// Of the stage's process for the application.
+  Counted counted() const {
+    for (const MappedCounters& counters : read_counters(folder_.file(""))) {
+      if (counters->strips.count == 0 && counters->strips.given_up[0] == 0) continue;
+      return {counters->strips.frames.load(), std::string(counters->strips.given_up)};
+    }
+    return {};
+  }
+
+  viewer_test::TemporaryFolder folder_;
+};
+
+TEST_F(StripsTest, PolygonsAtCrossingDepths) {
+  expect_all_in_strips([](Application& a) {
+    a.gl().Enable(GL_DEPTH_TEST);
+    for (int frame = 0; frame < 3; ++frame) {
+      a.clear(0.1F, 0.2F, 0.3F);
+      a.draw_fan(frame * 0.3);
+      a.swap();
+    }
+  });
+}
+
+TEST_F(StripsTest, AsManyStripsAsThereMayBe) {
+  expect_all_in_strips(
+      [](Application& a) {
+        a.clear(0, 0, 1);
+        a.draw_fan(0.2);
+        a.swap();
+      },
+      most_strips);
+}
+
+TEST_F(StripsTest, TheApplicationsScissorTest) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0, 0, 1);
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(10, 20, 50, 35);
+    a.clear(1, 0, 0);
+    a.draw_fan(1);
+    GLint box[4] = {};
+    gl.GetIntegerv(GL_SCISSOR_BOX, box);
+    a.seen.read.push_back({std::uint8_t(box[0]), std::uint8_t(box[1]), std::uint8_t(box[2]),
+                           std::uint8_t(box[3]), gl.IsEnabled(GL_SCISSOR_TEST)});
+    gl.PushAttrib(GL_SCISSOR_BIT);
+    gl.Disable(GL_SCISSOR_TEST);
+    a.draw_fan(2);
+    gl.PopAttrib();
+    gl.Scissor(0, 60, 96, 5);
+    a.clear(1, 1, 0);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, DisplayListsThatChangeTheScissorTest) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0, 0, 1);
+    gl.NewList(1, GL_COMPILE);
+    a.draw_fan(0.7);
+    gl.EndList();
+    gl.CallList(1);
+    a.swap();
+    gl.NewList(2, GL_COMPILE);
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(30, 30, 20, 20);
+    gl.CallList(1);
+    gl.EndList();
+    gl.CallList(2);
+    a.clear(0, 1, 0);
+    gl.CallList(1);
+    a.swap();
+    gl.NewList(3, GL_COMPILE_AND_EXECUTE);
+    a.draw_fan(1.7);
+    gl.EndList();
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, WhatIsReadIsOfAllStrips) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    gl.Enable(GL_DEPTH_TEST);
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    a.read_all();
+    a.read(7, 11, 50, 43, GL_RGB, GL_UNSIGNED_BYTE, 3);
+    a.read(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, 4);
+    a.read(3, 60, 20, 20, GL_BGRA, GL_FLOAT, 16);
+    // Partly outside the window, and in a corner of the application's memory.
+    gl.PixelStorei(GL_PACK_ROW_LENGTH, width + 3);
+    gl.PixelStorei(GL_PACK_SKIP_ROWS, 2);
+    gl.PixelStorei(GL_PACK_SKIP_PIXELS, 1);
+    a.read(10, 20, 40, 40, GL_RGBA, GL_UNSIGNED_BYTE, 4 * 4);
+    // Nothing is written then.
+    a.read(0, 0, 10, 10, GL_COLOR_INDEX, GL_UNSIGNED_BYTE, 4);
+    a.note_error();
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, PixelsOfTheWindowInTextures) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    a.bind_texture(5);
+    gl.CopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 0, 0, 64, 64, 0);
+    a.clear(0, 0, 0);
+    a.draw_textured(0.5);
+    gl.CopyTexSubImage2D(GL_TEXTURE_2D, 0, 8, 8, 20, 20, 40, 40);
+    a.draw_textured(1);
+    a.swap();
+    a.read_all();
+  });
+}
+
+TEST_F(StripsTest, PixelsThatAreCopiedWithinTheWindow) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    gl.WindowPos2i(0, 40);
+    gl.CopyPixels(0, 0, width, 35, GL_COLOR);
+    a.swap();
+    gl.BlitFramebuffer(0, 0, 30, 30, 40, 40, 90, 75, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, PixelsOfTheWindowInABufferAndBack) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    GLuint buffer = 0;
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+    gl.BufferData(GL_PIXEL_PACK_BUFFER, width * height * 4, nullptr, GL_STREAM_READ);
+    gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    a.clear(1, 1, 1);
+    gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+    gl.WindowPos2i(0, 0);
+    gl.PixelZoom(0.5F, 1);
+    gl.DrawPixels(width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, DepthOfTheWindowInATexture) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    gl.Enable(GL_DEPTH_TEST);
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    a.bind_texture(5);
+    gl.CopyTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT, 0, 0, 64, 64, 0);
+    gl.Disable(GL_DEPTH_TEST);
+    a.draw_textured(0.8);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, FramebufferObjectsAndStencils) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.bind_texture(9);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    GLuint framebuffer = 0;
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 9, 0);
+    a.clear(1, 0, 1);
+    a.draw_fan(0.3);
+    a.read(0, 0, 64, 64, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    a.clear(0, 0, 0);
+    gl.Enable(GL_STENCIL_TEST);
+    gl.StencilFunc(GL_ALWAYS, 1, 1);
+    gl.StencilOp(GL_REPLACE, GL_REPLACE, GL_REPLACE);
+    a.draw_fan(0.9);
+    gl.StencilFunc(GL_NOTEQUAL, 1, 1);
+    a.draw_textured(0.9);
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    gl.Disable(GL_STENCIL_TEST);
+    gl.BlitFramebuffer(0, 0, 64, 64, 5, 5, 30, 70, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, AWindowThatChangesItsSizeAndContextsThatShareLists) {
+  expect_all_in_strips([](Application& a) {
+    a.clear(0, 0, 1);
+    a.draw_fan(0.4);
+    a.swap();
+    a.on_stage.window.extent = {50, 33};
+    a.gl().Viewport(0, 0, 50, 33);
+    a.clear(0, 1, 1);
+    a.draw_fan(0.4);
+    a.swap();
+    a.gl().NewList(7, GL_COMPILE);
+    a.draw_fan(1.4);
+    a.gl().EndList();
+    a.on_stage.make_context(false, 1);
+    a.clear(1, 1, 0);
+    a.gl().CallList(7);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, WhatStaysInTheWindowFromFrameToFrame) {
+  expect_all_in_strips([](Application& a) {
+    a.clear(0, 0, 0);
+    for (int frame = 0; frame < 4; ++frame) {
+      a.draw_fan(frame * 0.6);
+      a.swap();
+    }
+  });
+}
+
+TEST_F(StripsTest, VertexArraysInTheApplicationsMemoryAndMappedBuffers) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    std::vector<float> corners = {-0.9F, -0.9F, 0.9F, -0.8F, 0.1F, 0.9F};
+    a.clear(0, 0, 1);
+    gl.EnableClientState(GL_VERTEX_ARRAY);
+    gl.VertexPointer(2, GL_FLOAT, 0, corners.data());
+    gl.Color3f(1, 1, 0);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    a.swap();
+    GLuint buffer = 0;
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(corners.size() * sizeof(float)), nullptr, GL_STATIC_DRAW);
+    auto* mapped = static_cast<float*>(gl.MapBuffer(GL_ARRAY_BUFFER, GL_WRITE_ONLY));
+    ASSERT_NE(mapped, nullptr);
+    for (std::size_t i = 0; i < corners.size(); ++i) mapped[i] = -corners[i];
+    gl.UnmapBuffer(GL_ARRAY_BUFFER);
+    gl.VertexPointer(2, GL_FLOAT, 0, nullptr);
+    gl.Color3f(0, 1, 0);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, ProgramsWhoseLocationsAreAsked) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    const char* text = "uniform vec4 colour; uniform float gain; void main() { gl_FragColor = colour * gain; }";
+    const GLuint shader = gl.CreateShader(GL_FRAGMENT_SHADER);
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    const GLuint program = gl.CreateProgram();
+    gl.AttachShader(program, shader);
+    gl.LinkProgram(program);
+    gl.UseProgram(program);
+    gl.Uniform1f(gl.GetUniformLocation(program, "gain"), 0.5F);
+    gl.Uniform4f(gl.GetUniformLocation(program, "colour"), 1, 0.5F, 0.2F, 1);
+    a.clear(0, 0, 1);
+    a.draw_fan(0.2);
+    gl.UseProgram(0);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, AreGivenUpWhereFragmentsAreCounted) {
+  const Counted figures = expect_same([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    gl.Enable(GL_DEPTH_TEST);
+    a.clear(0, 0, 1);
+    a.draw_fan(0.3);
+    a.swap();
+    a.draw_fan(0.4);
+    GLuint query = 0;
+    gl.GenQueries(1, &query);
+    gl.BeginQuery(GL_SAMPLES_PASSED, query);
+    a.draw_fan(0.7);
+    gl.EndQuery(GL_SAMPLES_PASSED);
+    GLuint samples = 0;
+    gl.GetQueryObjectuiv(query, GL_QUERY_RESULT, &samples);
+    EXPECT_GT(samples, 100U);
+    a.seen.read.push_back({std::uint8_t(samples), std::uint8_t(samples >> 8)});
+    a.swap();
+    // Drivers copy depth through floats, which costs its last bit here and there.
+    std::vector<float> depth(width * height);
+    gl.ReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    a.depths.push_back(depth);
+    a.draw_fan(0.9);
+    a.swap();
+  });
+  EXPECT_EQ(figures.frames, 1U);
+  EXPECT_THAT(figures.given_up, ::testing::HasSubstr("occlusion queries"));
+}
+
+TEST_F(StripsTest, AreGivenUpWhereTheWindowIsCopiedAllTheTime) {
+  const Counted figures = expect_same([](Application& a) {
+    a.bind_texture(5);
+    for (int frame = 0; frame < 20; ++frame) {
+      a.clear(0.1F, 0.2F, 0.3F);
+      a.draw_fan(0.1 * frame);
+      a.gl().CopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 0, 0, 64, 64, 0);
+      a.draw_textured(-0.2);
+      a.swap();
+    }
+  });
+  EXPECT_EQ(figures.frames, 16U);
+  EXPECT_THAT(figures.given_up, ::testing::HasSubstr("copies pixels"));
+}
+
+TEST_F(StripsTest, AreGivenUpForTheAccumulationBuffer) {
+  const Counted figures = expect_same([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0, 0, 1);
+    a.draw_fan(0.3);
+    gl.Accum(GL_LOAD, 0.5F);
+    a.draw_fan(0.9);
+    gl.Accum(GL_ACCUM, 0.5F);
+    gl.Accum(GL_RETURN, 1);
+    a.swap();
+  });
+  EXPECT_THAT(figures.given_up, ::testing::HasSubstr("accumulation"));
+}
+
+TEST_F(StripsTest, APainterThatIsGoneIsDoneWithout) {
+  Application a("strips(of=2) driver", folder_.file(""));
+  a.clear(0, 0, 1);
+  a.draw_fan(0.3);
+  a.swap();
+  // The stage's children are the one that plays for the application, and its painter.
+  std::vector<pid_t> children;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream status(entry.path() / "status");
+    for (std::string line; std::getline(status, line);) {
+      if (line == "PPid:\t" + std::to_string(a.on_stage.stage->pid()))
+        children.push_back(std::stoi(entry.path().filename()));
+    }
+  }
+  ASSERT_EQ(children.size(), 2U);
+  ::kill(std::max(children[0], children[1]), SIGKILL);
+  for (int frame = 0; frame < 3; ++frame) {
+    a.clear(1, 0, 0);
+    a.swap();
+  }
+  EXPECT_FALSE(a.on_stage.link->lost());
+  const std::vector<std::uint8_t>& last = a.seen.pictures.back();
+  for (std::size_t i = 0; i < last.size(); i += 4) ASSERT_EQ(last[i + 2], 255) << "pixel " << i / 4;
+  EXPECT_THAT(counted().given_up, ::testing::HasSubstr("lost"));
+}
+
+}  // namespace
+}  // namespace understudy::spu

@@ -33,6 +33,10 @@ void add_exchange_options(CLI::App& subcommand, NodeChoices& choices) {
   add_node_option(subcommand, "--overlap", choices.overlap);
 }
 
+void add_polygons_option(CLI::App& subcommand, std::string& polygons) {
+  add_node_option(subcommand, "--polygons", polygons);
+}
+
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) {
   subcommand
       .add_option(

@@ -13,6 +13,9 @@ namespace understudy::launcher {
 /// As spu/options.h has them; their variables count too, for viewers that start nodes of their own.
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
+/// `--polygons`, of those who start a stage.
+void add_polygons_option(CLI::App& subcommand, std::string& polygons);
+
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile);
 
 }  // namespace understudy::launcher

@@ -38,6 +38,7 @@ struct ServeArguments {
   std::string listen;       ///< host:port for clients of other machines; empty: none
   std::filesystem::path secret_file;
   bool stage = false;
+  std::string polygons = "root";
 };
 
 bool is_over(const ServeArguments& arguments) {
@@ -52,12 +53,14 @@ struct Doors {
 
 /// The stage has the options of this environment, and the nodes' socket.
 std::unique_ptr<ChildProcess> start_stage_of_nodes(const Installation& installation, const NodeGroupPlan& nodes,
+                                                   const std::string& polygons,
                                                    const std::filesystem::path& socket) {
   Environment environment = current_environment();
   environment.erase("UNDERSTUDY_REMOTE");
   environment.erase("UNDERSTUDY_RUN_DIR");
   environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
   environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
+  environment["UNDERSTUDY_POLYGONS"] = polygons;
   return start_stage(installation, socket, environment);
 }
 
@@ -83,7 +86,7 @@ Doors open_doors(const Installation& installation, const ServeArguments& argumen
                 .folder = nodes.folder};
   if (arguments.stage) {
     plan.stage = nodes.folder / "stage.sock";
-    doors.stage = start_stage_of_nodes(installation, nodes, plan.stage);
+    doors.stage = start_stage_of_nodes(installation, nodes, arguments.polygons, plan.stage);
   }
   doors.gate = start_gate(installation, plan);
   return doors;
@@ -164,6 +167,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   add_exchange_options(*subcommand, arguments->choices);
+  add_polygons_option(*subcommand, arguments->polygons);
   CLI::Option* secret_file =
       subcommand
           ->add_option("--secret-file", arguments->secret_file,

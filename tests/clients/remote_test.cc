@@ -122,6 +122,35 @@ TEST_F(Remote, CoreContextsAndNodes) {
   EXPECT_EQ(leftovers(), "");
 }
 
+TEST_F(Remote, PolygonsInStripsAreThoseOfOneProcess) {
+  if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  const auto frames = [&](const std::string& polygons) {
+    // A solid that reaches into the volume: its depth is read from all strips.
+    const Outcome outcome = run_well(
+        under({"-n", "2", "--remote", "--polygons", polygons, "--report", file("report.json")}) +
+            without_opengl() +
+            viewer("table",
+                   {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames", file(polygons)}),
+        on_display());
+    EXPECT_EQ(substituted(json("report.json")), 3) << outcome.err;
+    return json("report.json").at("strips");
+  };
+  EXPECT_EQ(frames("root"), nullptr);
+  const nlohmann::json strips = frames("strips");
+  EXPECT_EQ(strips.at("of"), 2);
+  EXPECT_EQ(strips.at("frames"), 3);
+  EXPECT_EQ(strips.at("given_up"), "");
+  for (const char* name : {"frame_0000.png", "frame_0001.png", "frame_0002.png"})
+    EXPECT_EQ(png(fmt::format("root/{}", name)).rgb, png(fmt::format("strips/{}", name)).rgb) << name;
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, StripsAreForStages) {
+  const Outcome outcome = run(under({"--polygons", "strips"}) + Words{"true"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("add --remote"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Remote, OffScreen) {
   const auto frame = [&](const std::string& name) {
     return engine_viewer("table", {"--azimuth", "40", "--screenshot", file(name)});

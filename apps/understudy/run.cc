@@ -33,6 +33,7 @@
 #include "compositor/exchange/settings.h"
 #include "compositor/tcp/address.h"
 #include "spu/assemble.h"
+#include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/report/keys.h"
 #include "spu/report/report.h"
@@ -42,8 +43,13 @@ namespace {
 
 constexpr int not_executable = 126;
 constexpr int stage_patience_ms = 5000;
-/// Of a viewer whose calls a stage makes: nothing is recognised in its own process.
+/// Of a viewer whose calls a stage makes: nothing is recognised in its own process. A chain that is to stand
+/// there ends in link.
 constexpr const char* remote_chain = "pack link";
+
+bool stands_in_viewer(const std::string& chain) {
+  return spu::parse_chain(chain).back().name == "link";
+}
 
 void say(const std::string& line) {
   std::fprintf(stderr, "understudy: %s\n", line.c_str());
@@ -94,18 +100,20 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
 /// The stage has the options of this run and no door; the viewer hands it everything. Returns what must stay
 /// alive.
 std::unique_ptr<ChildProcess> put_on_stage(const Installation& installation, Environment& viewer,
-                                           const Environment& without_door, const RunFolder& folder) {
+                                           const Environment& without_door, const RunFolder& folder,
+                                           const std::string& viewer_chain) {
   const std::filesystem::path socket = folder.path() / "stage.sock";
   auto stage = start_stage(installation, socket, without_door);
   viewer["UNDERSTUDY_REMOTE"] = socket;
-  viewer["UNDERSTUDY_CHAIN"] = remote_chain;
+  viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
   return stage;
 }
 
 /// Of a viewer whose calls are made on another machine.
-void put_on_stage_elsewhere(Environment& viewer, const std::filesystem::path& socket) {
+void put_on_stage_elsewhere(Environment& viewer, const std::filesystem::path& socket,
+                            const std::string& viewer_chain) {
   viewer["UNDERSTUDY_REMOTE"] = socket;
-  viewer["UNDERSTUDY_CHAIN"] = remote_chain;
+  viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
   viewer.erase("UNDERSTUDY_CONNECT");
 }
 
@@ -243,6 +251,9 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     say(error.what());
     return usage_error;
   }
+  std::string viewer_chain = remote_chain;
+  if (arguments.remote && stands_in_viewer(options.chain))
+    viewer_chain = std::exchange(options.chain, spu::Options().chain);
   if (arguments.remote && options.disable) {
     say("--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
         "unset one of them");
@@ -315,13 +326,14 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   Environment environment = viewer_environment(arguments, options, installation, folder, plan);
   std::unique_ptr<ChildProcess> stage;
   if (arguments.remote && link) {
-    put_on_stage_elsewhere(environment, link_socket);
+    put_on_stage_elsewhere(environment, link_socket, viewer_chain);
   } else if (arguments.remote) {
     RunArguments without_door = arguments;
     without_door.door.reset();
     try {
       stage = put_on_stage(installation, environment,
-                           viewer_environment(without_door, options, installation, folder, plan), folder);
+                           viewer_environment(without_door, options, installation, folder, plan), folder,
+                           viewer_chain);
     } catch (const std::exception& error) {
       say(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()));
       return 1;

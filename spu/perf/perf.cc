@@ -2,6 +2,7 @@
 
 #include "dispatch/call_words.h"
 #include "spu/argument_bytes.h"
+#include "spu/report/counters.h"
 #include "spu/shared_by_file.h"
 
 namespace understudy::spu {
@@ -18,20 +19,27 @@ struct Perf::Counted {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
     Perf& perf = *Chain::current()->find<Perf>();
     const std::uint64_t bytes = call_bytes(call, words);
+    const std::atomic<std::uint64_t>& round_trips = perf.round_trips_;
+    const std::uint64_t round_trips_before = round_trips.load(std::memory_order_relaxed);
     const Clock::time_point start = Clock::now();
     const std::uint64_t result = invoke(perf.chain_.below(perf), call, words);
     const std::uint64_t nanoseconds = nanoseconds_since(start);
+    const std::uint64_t waited = round_trips.load(std::memory_order_relaxed) - round_trips_before;
     for (CallFigures* figures : {&perf.figures_.by_call[std::size_t(call)], &perf.frame_}) {
       figures->calls.add(1);
       figures->nanoseconds.add(nanoseconds);
       figures->bytes.add(bytes);
+      if (waited != 0) figures->round_trips.add(waited);
     }
     return result;
   }
 };
 
 Perf::Perf(Chain& chain, const std::string& file)
-    : chain_(chain), file_(shared_by_file<PerfFile>(file)), figures_(file_.begin_context()) {}
+    : chain_(chain),
+      file_(shared_by_file<PerfFile>(file)),
+      figures_(file_.begin_context()),
+      round_trips_(process_counters().remote.round_trips) {}
 
 Perf::~Perf() {
   abandon();

@@ -1,7 +1,9 @@
 // The perf unit: counts every call, its time and its bytes, per call and per frame.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "spu/perf/figures.h"
@@ -30,6 +32,8 @@ class Perf final : public Unit {
   Chain& chain_;
   PerfFile& file_;
   Figures& figures_;
+  /// Of the process: threads that wait at once may count each other's.
+  const std::atomic<std::uint64_t>& round_trips_;
   CallFigures frame_;  ///< the one that is under way
   Clock::time_point frame_started_ = Clock::now();
   bool abandoned_ = false;

@@ -145,6 +145,21 @@ TEST_F(Remote, PolygonsInStripsAreThoseOfOneProcess) {
   EXPECT_EQ(leftovers(), "");
 }
 
+TEST_F(Remote, PerfShowsWhichCallsWaitForTheStage) {
+  const std::string chain = fmt::format("perf(file={}) pack link", file("calls.json").string());
+  run_well(under({"--remote", "--chain", chain, "--report", file("report.json")}) + without_opengl() +
+               viewer("table", {"--frames", "2"}),
+           on_display());
+  EXPECT_EQ(substituted(json("report.json")), 2);
+  const nlohmann::json perf = json("calls.json");
+  const auto all = perf.at("all").at("round_trips").get<std::uint64_t>();
+  EXPECT_GT(all, 0U);
+  // Contexts, swaps and their ends wait as well.
+  EXPECT_LE(all, json("report.json").at("remote_link").at("round_trips").get<std::uint64_t>());
+  EXPECT_GT(perf.at("calls").at("glGetString").at("round_trips"), 0);
+  EXPECT_EQ(perf.at("calls").at("glClear").at("round_trips"), 0);
+}
+
 TEST_F(Remote, StripsAreForStages) {
   const Outcome outcome = run(under({"--polygons", "strips"}) + Words{"true"});
   EXPECT_EQ(outcome.status, 2);

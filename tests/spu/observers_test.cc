@@ -11,6 +11,7 @@
 
 #include "dispatch/call_words.h"
 #include "spu/assemble.h"
+#include "spu/report/counters.h"
 #include "spu/track/share_group.h"
 #include "tests/spu/mock_driver.h"
 
@@ -104,11 +105,29 @@ TEST_F(Observers, PerfCountsCallsBytesAndFrames) {
   EXPECT_EQ(json["calls"]["glFinish"]["calls"], 1);
   EXPECT_EQ(json["calls"].size(), 3U) << "calls that were not made are not listed";
   EXPECT_EQ(json["all"]["calls"], 10);
+  EXPECT_EQ(json["all"]["round_trips"], 0);
   EXPECT_EQ(json["frames"], 3);
   EXPECT_EQ(json["frame_mean"]["calls"], 3);
   EXPECT_EQ(json["frame_largest"]["calls"], 4);
   EXPECT_EQ(json["frame_largest"]["bytes"], 3 * 64 + 256);
   EXPECT_GE(json["all"]["time_ms"], 0);
+}
+
+TEST_F(Observers, PerfCountsRoundTripsWithTheCallsThatWait) {
+  Chain& chain = use("perf(file=" + file("p.json") + ") driver");
+  mock_.slots().GetError = []() -> GLenum {
+    process_counters().remote.round_trips += 2;
+    return GL_NO_ERROR;
+  };
+  chain.refill();
+  installed().Finish();
+  for (int i = 0; i < 3; ++i) installed().GetError();
+  chain.frame_ended(FrameEnd::swap);
+  chain.abandon();
+  const auto json = nlohmann::json::parse(contents("p.json"));
+  EXPECT_EQ(json["calls"]["glGetError"]["round_trips"], 6);
+  EXPECT_EQ(json["calls"]["glFinish"]["round_trips"], 0);
+  EXPECT_EQ(json["frame_mean"]["round_trips"], 6);
 }
 
 TEST_F(Observers, PerfSumsOverTheContextsOfItsFile) {

@@ -17,7 +17,8 @@ void write_all(int count) {
   constexpr int columns = 12;
   for (int i = 0; i < count; ++i) {
     // A quarter of a pixel off: no rounding can tell one driver from another.
-    if (i % columns == 0) glRasterPos2f(4.25F, float(client::window_size - 18 * (i / columns + 1)) + 0.25F);
+    const int row = i / columns;
+    if (i % columns == 0) glRasterPos2f(4.25F, float(client::window_size - 18 * (row + 1)) + 0.25F);
     glCallList(GLuint(1 + i));
   }
 }

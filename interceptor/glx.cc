@@ -1,11 +1,13 @@
-// The GLX functions that say which context is current, end a frame, or hand out addresses. The others are
-// generated.
+// The GLX functions that say which context is current, end a frame, hand out addresses, or make calls of
+// OpenGL. The others are generated.
 #include <GL/glx.h>
 
 #include <cstring>
 
 #include "interceptor/life_cycle.h"
 #include "interceptor/real_function.h"
+#include "interceptor/remote/remote.h"
+#include "interceptor/remote/x_font.h"
 
 namespace understudy::interceptor {
 namespace {
@@ -150,6 +152,16 @@ UNDERSTUDY_ENTRY void glXCopySubBufferMESA(Display* display, GLXDrawable drawabl
 UNDERSTUDY_ENTRY void glXWaitGL() {
   static constinit RealFunction<void (*)()> real{glx, "glXWaitGL"};
   end_frame(FrameEnd::wait, [&] { real(); });
+}
+
+UNDERSTUDY_ENTRY void glXUseXFont(Font font, int first, int count, int list) {
+  static constinit RealFunction<void (*)(Font, int, int, int)> real{glx, "glXUseXFont"};
+  // Where nothing stands in the driver's place but the door, its calls are the application's.
+  const CurrentContext& current = door_thread.current;
+  const understudy::spu::DispatchTable* table = door_thread.state.table;
+  if (!is_remote()) return real(font, first, count, list);
+  if (table == nullptr || current.context == 0 || current.system != glx) return;
+  make_lists_of_font(*table, reinterpret_cast<Display*>(current.display), font, first, count, list);
 }
 
 UNDERSTUDY_ENTRY VoidFunction glXGetProcAddress(const GLubyte* name) {

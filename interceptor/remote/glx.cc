@@ -3,8 +3,12 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+#include <atomic>
 
 #include "interceptor/door_thread.h"
 #include "interceptor/remote/configs.h"
@@ -288,6 +292,16 @@ GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext shar
   return reinterpret_cast<GLXContext>(new_remote_context(*config_of(config), wish, context_of(share)));
 }
 
+/// Most of a context's state can be asked for only while it is current, and the stage's EGL copies none.
+void CopyContext(Display*, GLXContext, GLXContext, unsigned long) {
+  static constinit std::atomic_flag said{};
+  if (said.test_and_set()) return;
+  dprintf(STDERR_FILENO,
+          "understudy: the viewer calls glXCopyContext, which run --remote does not offer; the state of its "
+          "second context stays as it is, so what it draws there may look different: run it without "
+          "--remote\n");
+}
+
 void DestroyContext(Display*, GLXContext context) {
   destroy_remote_context(context_of(context));
 }
@@ -481,6 +495,9 @@ GLXFBConfigSGIX GetFBConfigFromVisualSGIX(Display* display, XVisualInfo* visual)
   return config != nullptr ? handle_of(*config) : nullptr;
 }
 
+/// Only asked whether it is there: the exported entry point does it itself.
+void UseXFont(Font, int, int, int) {}
+
 void wait() {}
 
 // Frames come as soon as they are drawn, whatever interval was asked for.
@@ -505,6 +522,7 @@ const NamedFunction functions[] = {
     {"glXChooseFBConfig", reinterpret_cast<AnyRemoteFunction>(&ChooseFBConfig)},
     {"glXChooseFBConfigSGIX", reinterpret_cast<AnyRemoteFunction>(&ChooseFBConfig)},
     {"glXChooseVisual", reinterpret_cast<AnyRemoteFunction>(&ChooseVisual)},
+    {"glXCopyContext", reinterpret_cast<AnyRemoteFunction>(&CopyContext)},
     {"glXCreateContext", reinterpret_cast<AnyRemoteFunction>(&CreateContext)},
     {"glXCreateContextAttribsARB", reinterpret_cast<AnyRemoteFunction>(&CreateContextAttribsARB)},
     {"glXCreateContextWithConfigSGIX", reinterpret_cast<AnyRemoteFunction>(&CreateContextWithConfigSGIX)},
@@ -552,6 +570,7 @@ const NamedFunction functions[] = {
     {"glXSwapIntervalEXT", reinterpret_cast<AnyRemoteFunction>(&SwapIntervalEXT)},
     {"glXSwapIntervalMESA", reinterpret_cast<AnyRemoteFunction>(&SwapIntervalMESA)},
     {"glXSwapIntervalSGI", reinterpret_cast<AnyRemoteFunction>(&SwapIntervalSGI)},
+    {"glXUseXFont", reinterpret_cast<AnyRemoteFunction>(&UseXFont)},
     {"glXWaitGL", reinterpret_cast<AnyRemoteFunction>(&wait)},
     {"glXWaitX", reinterpret_cast<AnyRemoteFunction>(&wait)},
 };

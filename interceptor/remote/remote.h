@@ -1,7 +1,7 @@
 // GLX and EGL without a driver, for processes whose calls are made by a stage (UNDERSTUDY_REMOTE).
 //
 // What is not offered is missing, as it would be in a small driver, and the extension string does not
-// announce it: OpenGL ES, glXCopyContext, glXUseXFont, EGLImages, EGLSyncs and so on.
+// announce it: OpenGL ES, EGLImages, EGLSyncs and so on. glXCopyContext says that it copies nothing.
 #pragma once
 
 #include "interceptor/body.h"

@@ -25,14 +25,15 @@ from registry import read_commands, read_egl_commands, read_enumerants, read_rul
 
 GL_ENTRY_FILES = 6  # compiled in parallel
 
-# Written by hand in interceptor/glx.cc and egl.cc: they change which context is current, end a frame, or hand out
-# addresses.
+# Written by hand in interceptor/glx.cc and egl.cc: they change which context is current, end a frame, hand out
+# addresses, or make calls of OpenGL.
 BY_HAND = {
     "glXCopySubBufferMESA", "glXCreateContext", "glXCreateContextAttribsARB", "glXCreateContextWithConfigSGIX",
     "glXCreateNewContext", "glXDestroyContext", "glXFreeContextEXT", "glXGetCurrentContext", "glXGetCurrentDisplay",
     "glXGetCurrentDisplayEXT", "glXGetCurrentDrawable", "glXGetCurrentReadDrawable", "glXGetCurrentReadDrawableSGI",
     "glXGetProcAddress", "glXGetProcAddressARB", "glXImportContextEXT", "glXMakeContextCurrent", "glXMakeCurrent",
-    "glXMakeCurrentReadSGI", "glXSwapBuffers", "glXSwapBuffersMscOML", "glXWaitGL",
+    "glXMakeCurrentReadSGI", "glXSwapBuffers", "glXSwapBuffersMscOML", "glXUseXFont",
+    "glXWaitGL",
     "eglCopyBuffers", "eglCreateContext", "eglDestroyContext", "eglGetCurrentContext", "eglGetCurrentDisplay",
     "eglGetCurrentSurface", "eglGetProcAddress", "eglMakeCurrent", "eglReleaseThread", "eglSwapBuffers",
     "eglTerminate", "eglWaitClient", "eglWaitGL",

@@ -96,7 +96,11 @@ const DispatchTable& link_driver() {
 }
 
 Link::Link(Chain& chain, StageLink& stage)
-    : chain_(chain), stage_(stage), pack_(*chain.find<Pack>()), question_encoder_(link_driver(), [] {}) {
+    : chain_(chain),
+      stage_(stage),
+      pack_(*chain.find<Pack>()),
+      question_encoder_(link_driver(), [] {}),
+      front_(true, chain.group()) {
   pack_.hand_to(*this);
   question_encoder_.hide_addresses();
 }
@@ -104,6 +108,7 @@ Link::Link(Chain& chain, StageLink& stage)
 void Link::introduce() {
   introduced_ = true;
   context_ = stage_.front().context();
+  front_ = FrontBuffer(context_.double_buffered, chain_.group());
   const std::array<std::uint64_t, event::context_words> words = {chain_.surroundings().context,
                                                                  chain_.surroundings().shares_with,
                                                                  0,
@@ -137,6 +142,7 @@ void Link::made_current() {
 }
 
 void Link::left() {
+  if (has_front_to_show()) show_front_now();
   constexpr std::uint64_t nothing[] = {0, 0, 0};
   Records records;
   records.append_plain(event::current, nothing);
@@ -159,13 +165,38 @@ void Link::show_frame() {
   Records records;
   records.append_plain(event::frame, words);
   stage_.show_frame(records, drawable_);
+  front_.shown();
+  front_owed_ = false;
   records.clear();
   note_drawable(records);
   stage_.send(records);
 }
 
+/// Nobody sees what is drawn off the screen.
+bool Link::has_front_to_show() {
+  if (drawable_.number == 0 || drawable_.screen == 0) return false;
+  return front_.is_drawn() || (front_owed_ && stage_.owes(drawable_));
+}
+
+/// An application may flush after each triangle: it need not wait until each of them is seen. False when the
+/// picture is owed.
+bool Link::show_front() {
+  pack_.hand_on();
+  front_owed_ = !stage_.show_front(drawable_);
+  front_.shown();
+  return !front_owed_;
+}
+
+void Link::show_front_now() {
+  pack_.hand_on();
+  stage_.show_front_now(drawable_);
+  front_.shown();
+  front_owed_ = false;
+}
+
 void Link::frame_ended(FrameEnd kind) {
   if (kind == FrameEnd::swap && drawable_.number != 0) show_frame();
+  if (kind == FrameEnd::wait && has_front_to_show()) show_front_now();
   // What the application then does to its windows by other means comes after its frames.
   if (kind == FrameEnd::wait) {
     pack_.hand_on();
@@ -246,8 +277,11 @@ void Link::before(CallId call, const std::uint64_t* words, Records& to) {
       writes_.before(chain_.driver(), call, words, to);
       drop_mappings(call, words);
     }
+    if (call == CallId::Flush && front_.is_drawn() && has_front_to_show() && show_front()) note_drawable(to);
+    if ((call == CallId::Finish || front_.is_left_by(call, words)) && has_front_to_show()) show_front_now();
   }
   state_.note(call, words);
+  front_.note(call, words);
 }
 
 /// What ends a mapping.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "spu/link/client_state.h"
+#include "spu/link/front_buffer.h"
 #include "spu/link/stage_link.h"
 #include "spu/pack/record_taker.h"
 #include "spu/stream/encode.h"
@@ -55,6 +56,9 @@ class Link final : public Unit, public RecordTaker {
   void tell_current(Records& to);
   void note_drawable(Records& to);
   void show_frame();
+  bool show_front();
+  void show_front_now();
+  bool has_front_to_show();
   std::optional<std::uint64_t> constant(CallId call, const std::uint64_t* words) const;
   std::uint64_t apply(const PackedCall& call, const CallAnswer& answer);
   void write_output(const PackedCall& call, const AnsweredOutput& output);
@@ -69,6 +73,7 @@ class Link final : public Unit, public RecordTaker {
   Records question_records_;
   Encoder question_encoder_;
   ClientState state_;
+  FrontBuffer front_;
   MappedBuffers writes_;
   std::map<GLuint, std::vector<std::max_align_t>> mappings_;  ///< by buffer: what the application sees of it
   std::map<Value, std::vector<std::byte>> constants_;
@@ -77,6 +82,7 @@ class Link final : public Unit, public RecordTaker {
   FrontDrawable drawable_;
   std::uint64_t frames_ = 0;
   bool introduced_ = false;
+  bool front_owed_ = false;     ///< the stage's link may still owe a picture of the front buffer
   bool without_error_ = false;  ///< glGetError said so, and nothing was called since
 };
 

@@ -15,6 +15,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/socket.h"
 #include "spu/report/counters.h"
+#include "spu/stream/event.h"
 
 namespace understudy::spu {
 
@@ -32,6 +33,13 @@ std::uint64_t thread_number() {
   static constinit std::atomic<std::uint64_t> threads{0};
   thread_local const std::uint64_t number = threads.fetch_add(1, std::memory_order_relaxed);
   return number;
+}
+
+Records front_shown(const FrontDrawable& drawable) {
+  const std::uint64_t words[] = {std::uint64_t(drawable.extent.width), std::uint64_t(drawable.extent.height)};
+  Records records;
+  records.append_plain(event::front_shown, words);
+  return records;
 }
 
 RemoteCounters& counters() {
@@ -57,18 +65,24 @@ StageLink::StageLink(const std::string& address, FrontEnd& front) : front_(front
         address, error.what()));
   }
   counters().is = 1;
-  // The application's signals are for its own threads.
+  receiver_ = start(&StageLink::receive_all);
+}
+
+/// The application's signals are for its own threads.
+std::thread StageLink::start(void (StageLink::*work)()) {
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  receiver_ = std::thread([this] { receive_all(); });
+  std::thread thread([this, work] { (this->*work)(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
 }
 
 StageLink::~StageLink() {
   end();
   receiver_.join();
+  if (payer_.joinable()) payer_.join();
 }
 
 void StageLink::end() {
@@ -100,8 +114,8 @@ void StageLink::lose(const std::string& why) {
   });
 }
 
-void StageLink::transmit(const Records& records, StageReply reply) {
-  const CallsHead head{thread_number(), reply, records.words().size(), records.payload().size()};
+void StageLink::transmit(const Records& records, StageReply reply, std::uint64_t thread) {
+  const CallsHead head{thread, reply, records.words().size(), records.payload().size()};
   chunks_.clear();
   chunks_.add(records.words(), records.payload());
   const std::uint64_t count = chunks_.heads().size();
@@ -205,13 +219,13 @@ void StageLink::put(Shown& shown, const PictureChange& change) {
 
 void StageLink::send(const Records& records) {
   const std::scoped_lock sending(sending_);
-  if (!lost_ && !records.empty()) transmit(records, StageReply::none);
+  if (!lost_ && !records.empty()) transmit(records, StageReply::none, thread_number());
 }
 
 std::optional<CallAnswer> StageLink::ask(const Records& records) {
   const std::scoped_lock sending(sending_);
   if (lost_) return std::nullopt;
-  transmit(records, StageReply::answer);
+  transmit(records, StageReply::answer, thread_number());
   std::unique_lock lock(replies_);
   wait_until(lock, [&] { return answer_.has_value(); });
   return std::exchange(answer_, std::nullopt);
@@ -223,11 +237,64 @@ void StageLink::show_frame(const Records& records, const FrontDrawable& drawable
   {
     const std::scoped_lock lock(replies_);
     frames_.push_back(drawable);
+    owed_.erase(drawable.number);
   }
-  transmit(records, StageReply::picture);
+  transmit(records, StageReply::picture, thread_number());
   ++frames_sent_;
   std::unique_lock lock(replies_);
   wait_until(lock, [&] { return frames_.size() < frames_in_flight; });
+}
+
+void StageLink::show_front_now(const FrontDrawable& drawable) {
+  show_frame(front_shown(drawable), drawable);
+}
+
+bool StageLink::show_front(const FrontDrawable& drawable) {
+  const std::scoped_lock sending(sending_);
+  if (lost_) return true;
+  {
+    const std::scoped_lock lock(replies_);
+    if (!frames_.empty()) {
+      owed_[drawable.number] = {thread_number(), drawable};
+      if (!payer_.joinable()) payer_ = start(&StageLink::show_owed);
+      return false;
+    }
+    frames_.push_back(drawable);
+    owed_.erase(drawable.number);
+  }
+  transmit(front_shown(drawable), StageReply::picture, thread_number());
+  ++frames_sent_;
+  return true;
+}
+
+bool StageLink::owes(const FrontDrawable& drawable) {
+  const std::scoped_lock lock(replies_);
+  return owed_.contains(drawable.number);
+}
+
+/// What an application has flushed is seen although the application says no more. The stage has then what was
+/// sent, which is what was drawn before the last flush or little more.
+void StageLink::show_owed() {
+  const auto can_pay = [&] { return !owed_.empty() && frames_.empty(); };
+  for (;;) {
+    {
+      std::unique_lock lock(replies_);
+      replied_.wait(lock, [&] { return lost_ || can_pay(); });
+      if (lost_) return;
+    }
+    // Another thread may hold this one for as long as it waits for an answer.
+    const std::scoped_lock sending(sending_);
+    Owed owed;
+    {
+      const std::scoped_lock lock(replies_);
+      if (lost_ || !can_pay()) continue;
+      owed = owed_.begin()->second;
+      owed_.erase(owed_.begin());
+      frames_.push_back(owed.drawable);
+    }
+    transmit(front_shown(owed.drawable), StageReply::picture, owed.thread);
+    ++frames_sent_;
+  }
 }
 
 void StageLink::wait_for_frames() {

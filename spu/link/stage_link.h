@@ -53,6 +53,13 @@ class StageLink {
   /// The records end with a `frame` event, whose picture will be shown in `drawable`. Waits while too many
   /// frames are on their way.
   void show_frame(const Records& records, const FrontDrawable& drawable);
+  /// What is in its front buffer will be shown in `drawable`. Never waits: while frames are on their way it is
+  /// owed, and asked for when they have come. False when it is owed.
+  bool show_front(const FrontDrawable& drawable);
+  /// The same, but waits while too many frames are on their way.
+  void show_front_now(const FrontDrawable& drawable);
+  /// Whether the drawable's front buffer was to be shown and is not on its way yet. A frame that is shown pays.
+  bool owes(const FrontDrawable& drawable);
   /// Waits until all frames are shown.
   void wait_for_frames();
 
@@ -71,9 +78,16 @@ class StageLink {
     std::vector<std::uint8_t> pixels;
   };
 
-  void transmit(const Records& records, StageReply reply);
+  struct Owed {
+    std::uint64_t thread = 0;  ///< whose context has the drawable
+    FrontDrawable drawable;
+  };
+
+  std::thread start(void (StageLink::*work)());
+  void transmit(const Records& records, StageReply reply, std::uint64_t thread);
   void lose(const std::string& why);
   void receive_all();
+  void show_owed();
   void take(compositor::Message message);
   void take_picture(const compositor::Message& message);
   void refine_picture(const compositor::Message& message);
@@ -96,13 +110,15 @@ class StageLink {
   std::mutex replies_;
   std::condition_variable replied_;
   std::optional<CallAnswer> answer_;
-  std::deque<FrontDrawable> frames_;  ///< on their way, the oldest first
+  std::deque<FrontDrawable> frames_;    ///< on their way, the oldest first
+  std::map<std::uint64_t, Owed> owed_;  ///< by drawable
   // For who may not wait for a lock.
   std::atomic<std::uint64_t> frames_sent_ = 0;
   std::atomic<std::uint64_t> frames_shown_ = 0;
 
   std::map<std::uint64_t, Shown> pictures_;  ///< by drawable; the receiving thread's
   std::thread receiver_;
+  std::thread payer_;  ///< of what is owed; started when something is
 };
 
 }  // namespace understudy::spu

@@ -21,7 +21,7 @@ struct StageVersions {
 enum class StageReply : std::uint64_t {
   none,
   answer,   ///< of the last record: call_answer.h
-  picture,  ///< the last record is a `frame` event
+  picture,  ///< the last record is a `frame` or `front_shown` event
 };
 
 /// Before the chunks (chunks.h) that make the records (spu/stream/record.h) of one thread, and their payload.

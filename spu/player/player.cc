@@ -118,6 +118,8 @@ std::string Player::play(const Record& record) {
       return end_context(record);
     case event::frame:
       return end_frame(record);
+    case event::front_shown:
+      return show_front(record);
     default:
       return call(record);
   }
@@ -250,6 +252,17 @@ std::string Player::end_frame(const Record& record) {
     context->frame_started = now;
   }
   context->chain.frame_ended(FrameEnd::swap);
+  return {};
+}
+
+std::string Player::show_front(const Record& record) {
+  const auto words = record.arguments();
+  if (origin_ != StreamOrigin::linked || words.size() < 2) return "front_shown: is of no linked stream";
+  Context* context = activate();
+  if (context == nullptr) return "front_shown: its thread has no context";
+  context->chain.settle();
+  const auto side = [](std::uint64_t pixels) { return int(std::min<std::uint64_t>(pixels, largest_side)); };
+  if (on_frame) on_frame({0, {side(words[0]), side(words[1])}});
   return {};
 }
 

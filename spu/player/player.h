@@ -23,7 +23,7 @@ class RenderSession;
 
 /// The drawable shows what was drawn. Its context is current and nothing is held back.
 struct ShownFrame {
-  std::uint64_t number = 0;  ///< as recorded
+  std::uint64_t number = 0;  ///< as recorded; 0: no frame has ended, but the front buffer was drawn into
   Extent2D extent;
 };
 
@@ -81,6 +81,7 @@ class Player {
   std::string make_current(const Record& record);
   std::string end_context(const Record& record);
   std::string end_frame(const Record& record);
+  std::string show_front(const Record& record);
   std::string call(const Record& record);
   std::shared_ptr<Group> group_of(const RecordedContext& context);
   void leave();

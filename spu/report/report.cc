@@ -299,6 +299,13 @@ std::uint64_t frames_from_a_stage(Processes processes) {
   return frames;
 }
 
+/// A stage of this run is one of its processes, and counts the calls that it plays.
+bool has_a_stage(Processes processes) {
+  return std::any_of(processes.begin(), processes.end(), [](const ProcessCounters* process) {
+    return process->remote.is.load() == 0 && calls_of(*process) > 0;
+  });
+}
+
 Json remote_link(Processes processes) {
   if (!is_remote(processes)) return nullptr;
   const std::uint64_t frames = frames_from_a_stage(processes);
@@ -412,7 +419,8 @@ std::string report_json(Processes processes) {
 
 std::string summary_line(Processes processes) {
   const Totals totals = totals_of(processes);
-  if (const std::uint64_t frames = frames_from_a_stage(processes); frames > 0 && totals.frames == 0)
+  if (const std::uint64_t frames = frames_from_a_stage(processes);
+      frames > 0 && totals.frames == 0 && !has_a_stage(processes))
     return fmt::format(
         "understudy: {} came from a stage on another machine, which knows what of them was substituted",
         counted(frames, "frame"));

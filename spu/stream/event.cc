@@ -6,7 +6,7 @@
 namespace understudy::spu::event {
 
 const char* name_of(std::uint32_t id) noexcept {
-  static constexpr std::array<std::pair<std::uint32_t, const char*>, 9> names = {{
+  static constexpr std::array<std::pair<std::uint32_t, const char*>, 10> names = {{
       {arrays, "understudy.arrays"},
       {arrays_end, "understudy.arrays_end"},
       {thread, "understudy.thread"},
@@ -15,6 +15,7 @@ const char* name_of(std::uint32_t id) noexcept {
       {current, "understudy.current"},
       {context_gone, "understudy.context_gone"},
       {frame, "understudy.frame"},
+      {front_shown, "understudy.front_shown"},
       {mapped_write, "understudy.mapped_write"},
   }};
   for (const auto& [known, name] : names) {

@@ -30,6 +30,9 @@ inline constexpr std::uint32_t current = stable_id_of("understudy.current");
 inline constexpr std::uint32_t context_gone = stable_id_of("understudy.context_gone");  ///< number
 /// The thread's drawable shows what was drawn: number of the frame from 1, width and height of the drawable.
 inline constexpr std::uint32_t frame = stable_id_of("understudy.frame");
+/// The thread's drawable shows what is in its front buffer, in the midst of a frame: width and height of the
+/// drawable. Of linked streams alone.
+inline constexpr std::uint32_t front_shown = stable_id_of("understudy.front_shown");
 /// The application wrote into a mapped buffer: address of the mapping as it was answered, offset, data.
 inline constexpr std::uint32_t mapped_write = stable_id_of("understudy.mapped_write");
 

@@ -18,11 +18,17 @@
 
 namespace understudy::spu {
 
+/// Where a display list leaves what follows to be drawn in the window.
+enum class ChosenBuffer : std::uint8_t { as_before, front, other };
+
 /// What executing a display list would do.
 struct ListRecord {
   bool draws = false;
   bool only_geometry = true;  ///< nothing but vertices, attributes and draws
   bool changes_textures = false;
+  // Followed where a stage makes the calls (spu/link/front_buffer.h):
+  bool draws_front = false;  ///< into a front buffer that it has chosen itself
+  ChosenBuffer leaves = ChosenBuffer::as_before;
 };
 
 /// Safe from any thread: contexts of one group may be current on several.

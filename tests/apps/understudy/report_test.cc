@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -178,6 +179,11 @@ TEST(Report, KnowsNothingOfFramesThatAStageElsewhereHasDrawnButTheirNumber) {
   EXPECT_EQ(
       summary_line(Processes(&one, 1)),
       "understudy: 12 frames came from a stage on another machine, which knows what of them was substituted");
+  // A window with one buffer shows pictures that end no frame.
+  const auto stage = std::make_unique<ProcessCounters>();
+  stage->calls[0] = 100;
+  const std::array<const ProcessCounters*, 2> both = {counters.get(), stage.get()};
+  EXPECT_THAT(summary_line(both), HasSubstr("0 frames: 0 substituted"));
 }
 
 class CountersInAFolder : public ::testing::Test {

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -47,14 +48,16 @@ constexpr std::size_t most_faults_told = 20;
 /// One application's calls, played as they come.
 class Performance {
  public:
-  explicit Performance(Connection& connection)
-      : connection_(connection), player_(windows_, spu::options_from_environment(), spu::StreamOrigin::linked) {
+  Performance(Connection& connection, const spu::Options& options)
+      : connection_(connection),
+        windows_(open_offscreen_contexts(options.stage_opengl)),
+        player_(*windows_, options, spu::StreamOrigin::linked) {
     player_.on_frame = [this](const spu::ShownFrame& frame) { show(frame); };
   }
 
   /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
   void run() {
-    const spu::StageVersions versions{windows_.highest_version(true), windows_.highest_version(false)};
+    const spu::StageVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
     connection_.send(MessageType::welcome, 0, spu::encode(versions), Clock::now() + limits::stage_patience);
     for (;;) {
       std::optional<Message> message;
@@ -122,7 +125,7 @@ class Performance {
   }
 
   Connection& connection_;
-  OffscreenContexts windows_;
+  const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   spu::ChunkReceiver chunks_;
   FrameChanges changes_;
@@ -140,7 +143,7 @@ int perform(FileDescriptor socket) {
     if (hello.type != MessageType::hello_client) throw MalformedMessage("its first message is no hello");
     Connection connection(std::move(same), limits::max_stage_message_bytes);
     try {
-      Performance(connection).run();
+      Performance(connection, spu::options_from_environment()).run();
     } catch (const compositor::ConnectionLost&) {
       throw;
     } catch (const std::exception& error) {

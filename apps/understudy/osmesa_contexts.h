@@ -3,7 +3,7 @@
 // OSMesa knows no drawables: every context has a framebuffer of its own, and memory that it copies pictures to.
 // Here drawables are shared as on other window systems: what one shows moves to the context that draws into it
 // next, with depth and stencil, but not what accumulates. Their one colour buffer looks like a back buffer
-// (spu/player/one_buffer.h).
+// (spu/player/one_buffer.h), and always has alpha: OSMesa draws wrongly into pixels of three bytes.
 #pragma once
 
 #include <map>

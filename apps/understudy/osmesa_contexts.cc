@@ -95,6 +95,7 @@ void OsmesaContexts::end_context(void* context) const {
 void OsmesaContexts::create(const spu::RecordedContext& wanted) {
   Context made;
   made.context = context_for(wanted);
+  made.core = is_core(wanted);
   made.double_buffered = wanted.double_buffered;
   made.depth_stencil = has_depth_stencil(wanted);
   contexts_[wanted.number] = std::move(made);
@@ -114,10 +115,17 @@ void OsmesaContexts::bind(Context& context, Drawable& drawable) {
   one_buffer_->made_current(context.double_buffered);
 }
 
+bool OsmesaContexts::compiles_a_list(const Context& context) const {
+  GLint list = 0;
+  if (!context.core) driver().GetIntegerv(GL_LIST_INDEX, &list);
+  return list != 0;
+}
+
 void OsmesaContexts::take_out(Drawable& drawable) {
   Context& holder = contexts_.at(drawable.holder);
   bind(holder, drawable);
-  drawable.contents = spu::window_contents(driver(), drawable.extent, holder.depth_stencil);
+  if (!compiles_a_list(holder))
+    drawable.contents = spu::window_contents(driver(), drawable.extent, holder.depth_stencil);
   drawable.holder = 0;
 }
 
@@ -142,7 +150,7 @@ void OsmesaContexts::make_current(std::uint64_t number, std::uint64_t drawable, 
   spu::WindowContents contents =
       place.contents ? std::move(*place.contents) : spu::cleared_contents(extent, context.depth_stencil);
   contents.depth_stencil.resize(context.depth_stencil ? contents.colours.size() / 4 : 0, spu::far_away);
-  spu::set_window_contents(driver(), contents);
+  if (!compiles_a_list(context)) spu::set_window_contents(driver(), contents);
   place.contents.reset();
   place.holder = number;
 }

@@ -42,6 +42,7 @@ class OsmesaContexts final : public OffscreenContexts {
   };
   struct Context {
     void* context = nullptr;
+    bool core = false;
     bool double_buffered = false;
     bool depth_stencil = false;
     Drawable own;
@@ -52,6 +53,8 @@ class OsmesaContexts final : public OffscreenContexts {
   void end_context(void* context) const override;
   Drawable& drawable_of(Context& context, std::uint64_t number);
   void bind(Context& context, Drawable& drawable);
+  /// Whether the current one does: whatever moves contents would be recorded there, so they are left.
+  bool compiles_a_list(const Context& context) const;
   /// Takes the contents out of the framebuffer that has them.
   void take_out(Drawable& drawable);
 

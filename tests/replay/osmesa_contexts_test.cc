@@ -469,6 +469,24 @@ TEST_F(Osmesa, TheStateOfContextsIsUntouchedByWhatMovesBetweenDrawables) {
   expect_no_error();
 }
 
+TEST_F(Osmesa, NothingElseGetsIntoAListWhileAWindowChangesItsSize) {
+  add(context(1));
+  const GLuint list = gl().GenLists(1);
+  gl().NewList(list, GL_COMPILE);
+  gl().ClearColor(0, 1, 0, 1);
+  windows.make_current(1, 0, {64, 48});
+  gl().Clear(GL_COLOR_BUFFER_BIT);
+  windows.make_current(1, 5, {64, 48});
+  windows.make_current(1, 0, {64, 48});
+  gl().EndList();
+  gl().BindTexture(GL_TEXTURE_2D, 77);
+  gl().CallList(list);
+  EXPECT_EQ(shown({64, 48}), green);
+  EXPECT_EQ(integer(GL_TEXTURE_BINDING_2D), 77);
+  EXPECT_EQ(integer(GL_ATTRIB_STACK_DEPTH), 0);
+  expect_no_error();
+}
+
 TEST_F(Osmesa, AccumulatesInCompatibilityContexts) {
   add(context(1));
   ASSERT_GT(integer(GL_ACCUM_RED_BITS), 0);

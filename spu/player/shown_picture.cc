@@ -100,9 +100,9 @@ void attach(const DispatchTable& gl, GLuint texture, GLenum attachment, GLint fo
 
 /// The buffers that are drawn to.
 std::vector<GLenum> draw_buffers(const DispatchTable& gl) {
-  std::vector<GLenum> buffers;
-  const GLint most = std::min(ask(gl, GL_MAX_DRAW_BUFFERS), 16);
-  for (GLint i = 0; i < most; ++i) buffers.push_back(GLenum(ask(gl, GLenum(GL_DRAW_BUFFER0 + i))));
+  std::vector<GLenum> buffers(std::size_t(std::clamp(ask(gl, GL_MAX_DRAW_BUFFERS), 1, 16)));
+  for (std::size_t i = 0; i < buffers.size(); ++i)
+    buffers[i] = GLenum(ask(gl, GLenum(GL_DRAW_BUFFER0) + GLenum(i)));
   while (buffers.size() > 1 && buffers.back() == GL_NONE) buffers.pop_back();
   return buffers;
 }

@@ -2,6 +2,7 @@
 // framebuffer is shared.
 #include "apps/understudy/osmesa_contexts.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -502,7 +503,7 @@ class KeptTraces : public testing::TestWithParam<const char*> {};
 
 TEST_P(KeptTraces, ShowTheSamePicturesOnOsmesa) {
   const std::string name = GetParam();
-  const fs::path folder = fs::path(testing::TempDir()) / ("osmesa." + name + "." + std::to_string(getpid()));
+  const fs::path folder = fs::path(testing::TempDir()) / fmt::format("osmesa.{}.{}", name, getpid());
   spu::Options options;
   options.chain = "driver";
   options.stage_opengl = "osmesa";
@@ -511,11 +512,11 @@ TEST_P(KeptTraces, ShowTheSamePicturesOnOsmesa) {
   EXPECT_EQ(played.errors, 0U);
   ASSERT_GT(played.frames, 0U);
   for (std::uint64_t frame = 1; frame <= played.frames; ++frame) {
-    const std::string number = std::to_string(frame);
-    EXPECT_GE(launcher::difference(launcher::read_picture(folder / ("frame_000" + number + ".png")),
-                                   launcher::read_picture(fs::path(EXPECTED) / (name + "_" + number + ".png")))
-                  .psnr(),
-              50)
+    EXPECT_GE(
+        launcher::difference(launcher::read_picture(folder / fmt::format("frame_000{}.png", frame)),
+                             launcher::read_picture(fs::path(EXPECTED) / fmt::format("{}_{}.png", name, frame)))
+            .psnr(),
+        50)
         << frame;
   }
   fs::remove_all(folder);

@@ -92,6 +92,12 @@ bool set_name(Options& options, const std::string& text) {
   return true;
 }
 
+bool set_stage_opengl(Options& options, const std::string& text) {
+  if (text != "auto" && text != "egl" && text != "osmesa") return false;
+  options.stage_opengl = text;
+  return true;
+}
+
 struct Row {
   OptionText text;
   bool (*set)(Options&, const std::string&);
@@ -167,6 +173,11 @@ constexpr std::array rows{
          "the stream processing units, first to last, with their options, or @FILE.json; `understudy units` "
          "lists them"},
         set_text<&Options::chain>},
+    Row{{"--stage-opengl", "UNDERSTUDY_STAGE_OPENGL", "NAME", "auto",
+         "what makes the calls of --remote and of traces: egl (without a window system), osmesa (on the CPU, "
+         "one "
+         "colour buffer), or auto, OSMesa where EGL makes no context"},
+        set_stage_opengl},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},
     Row{{"", "UNDERSTUDY_REMOTE", "PATH", "", "where the stage of `understudy run --remote` is (set by it)"},

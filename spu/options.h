@@ -32,7 +32,8 @@ struct Options {
   std::string polygons = "root";  ///< or "strips": who draws the windows of a stage
   int pipeline = 0;               ///< frames that pictures of a moving camera may be behind
   std::string chain = "track volume driver";
-  std::string run_dir;        ///< the launcher's folder for this run (counters); empty: no launcher
+  std::string run_dir;                ///< the launcher's folder for this run (counters); empty: no launcher
+  std::string stage_opengl = "auto";  ///< what stages and replays draw with: auto, egl or osmesa
   std::string remote;         ///< Unix socket of the stage that makes the calls; empty: they are made here
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application
 

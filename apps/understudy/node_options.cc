@@ -7,7 +7,7 @@
 namespace understudy::launcher {
 namespace {
 
-void add_node_option(CLI::App& subcommand, const std::string& flag, std::string& value) {
+void add_option_of_the_table(CLI::App& subcommand, const std::string& flag, std::string& value) {
   for (const spu::OptionText& option : spu::option_table()) {
     if (option.flag != flag) continue;
     const std::string variable = option.environment;
@@ -27,10 +27,14 @@ void add_node_option(CLI::App& subcommand, const std::string& flag, std::string&
 }  // namespace
 
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices) {
-  add_node_option(subcommand, "--exchange", choices.exchange);
-  add_node_option(subcommand, "--pixels", choices.pixels);
-  add_node_option(subcommand, "--home", choices.home);
-  add_node_option(subcommand, "--overlap", choices.overlap);
+  add_option_of_the_table(subcommand, "--exchange", choices.exchange);
+  add_option_of_the_table(subcommand, "--pixels", choices.pixels);
+  add_option_of_the_table(subcommand, "--home", choices.home);
+  add_option_of_the_table(subcommand, "--overlap", choices.overlap);
+}
+
+void add_stage_option(CLI::App& subcommand, std::string& opengl) {
+  add_option_of_the_table(subcommand, "--stage-opengl", opengl);
 }
 
 void add_polygons_option(CLI::App& subcommand, std::string& polygons) {

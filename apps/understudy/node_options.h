@@ -1,5 +1,5 @@
 // Options of commands that start nodes: `--exchange`, `--pixels`, `--home` and `--overlap`, how partial
-// pictures become one, and `--hostfile`, where the ranks are.
+// pictures become one, `--hostfile`, where the ranks are, and `--stage-opengl`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,6 +15,9 @@ void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
 /// `--polygons`, of those who start a stage.
 void add_polygons_option(CLI::App& subcommand, std::string& polygons);
+
+/// What a stage beside the nodes draws with, as spu/options.h has it.
+void add_stage_option(CLI::App& subcommand, std::string& opengl);
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile);
 

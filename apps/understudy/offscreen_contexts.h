@@ -1,44 +1,35 @@
-// OpenGL contexts on EGL without a window system, for traces: the recorded versions, profiles and pixel
-// formats, each context with a pbuffer of its own, or with those that stand for an application's windows.
+// OpenGL contexts without a window system, for traces and for applications whose calls come from elsewhere: of
+// the recorded versions and profiles, each with a drawable of its own, or with those that stand for an
+// application's windows. On EGL (egl_contexts.h), or where that has no driver, on OSMesa (osmesa_contexts.h).
 #pragma once
 
-#include <map>
 #include <memory>
-#include <utility>
+#include <string_view>
 
 #include "spu/player/window_system.h"
 
 namespace understudy::launcher {
 
-class OffscreenContexts final : public spu::WindowSystem {
+class OffscreenContexts : public spu::WindowSystem {
  public:
-  /// Opens libEGL here and not at the program's start, so that viewers are launched without it. Throws
-  /// std::runtime_error with what to install.
-  OffscreenContexts();
-  ~OffscreenContexts() override;
-  OffscreenContexts(const OffscreenContexts&) = delete;
-  OffscreenContexts& operator=(const OffscreenContexts&) = delete;
-
-  void create(const spu::RecordedContext& context) override;
-  void make_current(std::uint64_t context, std::uint64_t drawable, spu::Extent2D extent) override;
-  void release_current() override;
-  void destroy(std::uint64_t context) override;
-  const spu::DispatchTable& driver() const override { return driver_; }
   /// The highest version, as 100 * major + 10 * minor, of which there are contexts of the profile; 0: none.
   int highest_version(bool core) const;
 
- private:
-  struct Egl;
-  struct Context;
-  struct Surface;
+ protected:
+  /// Null where the driver has no such context. The version is the one that is asked for, not the recorded one.
+  virtual void* make_context(const spu::RecordedContext& wanted, int version) const = 0;
+  virtual void end_context(void* context) const = 0;
 
-  void clear(void* config, void* surface);
-
-  std::unique_ptr<Egl> egl_;
-  std::map<std::uint64_t, Context> contexts_;
-  /// By configuration and number of the drawable: contexts of several configurations may draw into a window.
-  std::map<std::pair<void*, std::uint64_t>, Surface> surfaces_;
-  spu::DispatchTable driver_{};
+  /// A context of the recorded version, or of a lower one, which is said: it may still have all that is used.
+  /// Throws std::runtime_error when there is none.
+  void* context_for(const spu::RecordedContext& wanted) const;
 };
+
+bool is_core(const spu::RecordedContext& context);
+
+/// `library` as --stage-opengl has it (spu/options.h): egl, osmesa, or auto, which is OSMesa where EGL makes no
+/// context, and says so. The libraries are opened here and not at the program's start, so that viewers are
+/// launched without them. Throws std::runtime_error with what to install.
+std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view library);
 
 }  // namespace understudy::launcher

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
@@ -52,7 +53,11 @@ class Progress {
 class Playing {
  public:
   Playing(const PlayPlan& plan, const spu::Options& options)
-      : plan_(plan), reader_(plan.trace), progress_(plan.trace), player_(windows_, options) {
+      : plan_(plan),
+        reader_(plan.trace),
+        progress_(plan.trace),
+        windows_(open_offscreen_contexts(options.stage_opengl)),
+        player_(*windows_, options) {
     player_.on_frame = [this](const spu::ShownFrame& frame) { frame_shown(frame); };
     player_.on_read = [this](const spu::Decoder::ReadPicture& picture) { picture_read(picture); };
   }
@@ -122,7 +127,7 @@ class Playing {
   const PlayPlan plan_;
   spu::TraceReader reader_;
   Progress progress_;
-  OffscreenContexts windows_;
+  const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   Played played_;
   std::uint64_t frame_ = 1;  ///< that is being drawn

@@ -312,6 +312,12 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   if (!plan && !arguments.hostfile.empty())
     say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
                     arguments.hostfile.string()));
+  const bool plays_here = arguments.remote ? !link : !arguments.door;
+  if (!plays_here && arguments.settings.contains("UNDERSTUDY_STAGE_OPENGL"))
+    say(
+        fmt::format("--stage-opengl {} is for a stage of this run (--remote); for one elsewhere give it to "
+                    "understudy serve --stage",
+                    options.stage_opengl));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   std::unique_ptr<ChildProcess> porter;
   const std::filesystem::path link_socket = folder.path() / "link.sock";

@@ -39,6 +39,7 @@ struct ServeArguments {
   std::filesystem::path secret_file;
   bool stage = false;
   std::string polygons = "root";
+  std::string stage_opengl = "auto";
 };
 
 bool is_over(const ServeArguments& arguments) {
@@ -53,14 +54,15 @@ struct Doors {
 
 /// The stage has the options of this environment, and the nodes' socket.
 std::unique_ptr<ChildProcess> start_stage_of_nodes(const Installation& installation, const NodeGroupPlan& nodes,
-                                                   const std::string& polygons,
-                                                   const std::filesystem::path& socket) {
+                                                   const std::filesystem::path& socket,
+                                                   const std::string& polygons, const std::string& opengl) {
   Environment environment = current_environment();
   environment.erase("UNDERSTUDY_REMOTE");
   environment.erase("UNDERSTUDY_RUN_DIR");
   environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
   environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
   environment["UNDERSTUDY_POLYGONS"] = polygons;
+  environment["UNDERSTUDY_STAGE_OPENGL"] = opengl;
   return start_stage(installation, socket, environment);
 }
 
@@ -86,7 +88,8 @@ Doors open_doors(const Installation& installation, const ServeArguments& argumen
                 .folder = nodes.folder};
   if (arguments.stage) {
     plan.stage = nodes.folder / "stage.sock";
-    doors.stage = start_stage_of_nodes(installation, nodes, arguments.polygons, plan.stage);
+    doors.stage =
+        start_stage_of_nodes(installation, nodes, plan.stage, arguments.polygons, arguments.stage_opengl);
   }
   doors.gate = start_gate(installation, plan);
   return doors;
@@ -185,6 +188,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->add_flag("--stage", arguments->stage,
                  "make the calls of viewers without OpenGL, too (understudy run --remote --connect HOST:PORT)")
       ->needs(listen);
+  add_stage_option(*subcommand, arguments->stage_opengl);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -88,7 +89,8 @@ class Performance {
   Performance(Connection& connection, const spu::Options& options, bool paints)
       : connection_(connection),
         paints_(paints),
-        player_(windows_, options, paints ? spu::StreamOrigin::elsewhere : spu::StreamOrigin::linked) {
+        windows_(open_offscreen_contexts(options.stage_opengl)),
+        player_(*windows_, options, paints ? spu::StreamOrigin::elsewhere : spu::StreamOrigin::linked) {
     player_.on_frame = [this](const spu::ShownFrame& frame) {
       if (paints_) return show_strip();
       show(frame);
@@ -97,7 +99,7 @@ class Performance {
 
   /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
   void run() {
-    const spu::StageVersions versions{windows_.highest_version(true), windows_.highest_version(false)};
+    const spu::StageVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
     connection_.send(MessageType::welcome, 0, spu::encode(versions), Clock::now() + limits::stage_patience);
     for (;;) {
       std::optional<Message> message;
@@ -196,7 +198,7 @@ class Performance {
 
   Connection& connection_;
   const bool paints_;
-  OffscreenContexts windows_;
+  const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   spu::ChunkReceiver chunks_;
   FrameChanges changes_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -58,7 +59,9 @@ std::uint64_t fingerprint(const void* bytes, std::size_t size) {
 /// The pictures of frames that are played natively: what is shown, and what is read back.
 class Pictures {
  public:
-  Pictures() : player_(windows_, bare()) {
+  Pictures()
+      : windows_(open_offscreen_contexts(spu::options_from_environment().stage_opengl)),
+        player_(*windows_, bare()) {
     player_.on_frame = [this](const spu::ShownFrame& shown) {
       const auto pixels = spu::shown_picture(player_.driver(), shown.extent);
       pictures_.push_back(fingerprint(pixels.data(), pixels.size()));
@@ -73,7 +76,7 @@ class Pictures {
   std::vector<std::uint64_t> take() { return std::exchange(pictures_, {}); }
 
  private:
-  OffscreenContexts windows_;
+  const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   std::vector<std::uint64_t> pictures_;
 };

@@ -1,4 +1,4 @@
-// The default framebuffer as bytes, without a trace in the context that shows it.
+// The default framebuffer as bytes, and back, without a trace in the context that shows it.
 #pragma once
 
 #include <cstdint>
@@ -14,5 +14,22 @@ namespace understudy::spu {
 std::vector<std::uint8_t> shown_picture(const DispatchTable& gl, Extent2D extent);
 /// `count` rows of it, from row `first` on.
 std::vector<std::uint8_t> shown_rows(const DispatchTable& gl, int width, int first, int count);
+
+/// Of depth and stencil in one word.
+constexpr std::uint32_t far_away = 0xffff'ff00U;
+
+/// All of a default framebuffer but what accumulates.
+struct WindowContents {
+  Extent2D extent;
+  std::vector<std::uint8_t> colours;         ///< as shown_picture() has them
+  std::vector<std::uint32_t> depth_stencil;  ///< GL_UNSIGNED_INT_24_8; empty where there is neither
+};
+
+/// As a cleared window has them: black, far away.
+WindowContents cleared_contents(Extent2D extent, bool depth_stencil);
+/// Of the current context's window. The depth is asked for only where there are 24 bits of it and 8 of stencil.
+WindowContents window_contents(const DispatchTable& gl, Extent2D extent, bool depth_stencil);
+/// Puts them into the current context's window, which has depth and stencil if they do.
+void set_window_contents(const DispatchTable& gl, const WindowContents& contents);
 
 }  // namespace understudy::spu

@@ -12,7 +12,6 @@
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
-#include "spu/strips/whole_window.h"
 #include "spu/strips/window_use.h"
 
 namespace understudy::spu {
@@ -39,6 +38,11 @@ GLint ask_of_window(const DispatchTable& gl, GLenum attachment, GLenum name) {
   return value;
 }
 
+std::pair<GLint, GLint> depth_and_stencil_bits(const DispatchTable& gl) {
+  return {ask_of_window(gl, GL_DEPTH, GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE),
+          ask_of_window(gl, GL_STENCIL, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE)};
+}
+
 constexpr UnitOption options[] = {{.name = "of",
                                    .type = OptionType::integer,
                                    .fallback = "2",
@@ -60,7 +64,9 @@ bool window_divides(const DispatchTable& gl) {
                                GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE}) {
     if (ask_of_window(gl, colour, channel) > 8) return false;
   }
-  return depth_can_be_copied(gl);
+  // Windows become whole by way of textures, which have such a depth (player/shown_picture.h).
+  const std::pair bits = depth_and_stencil_bits(gl);
+  return bits == std::pair{0, 0} || bits == std::pair{24, 8};
 }
 
 Strips::Strips(Chain& chain, Painters& painters, int parts)
@@ -92,6 +98,7 @@ void Strips::place(std::uint64_t drawable, Extent2D extent) {
   painters_.records().append_plain(event::current, words);
   if (first && painters_.given_up() == nullptr && window_divides(chain_.driver())) {
     divided_ = true;
+    has_depth_ = depth_and_stencil_bits(chain_.driver()).first > 0;
     painters_.begin_strips();
   }
   divide();
@@ -244,7 +251,9 @@ void Strips::fetch_rows(CallId call, const std::uint64_t* words) {
 
 void Strips::make_whole() {
   making_whole_ = true;
-  complete_window(chain_.face(*this, chain_.phase()), extent_);
+  // What these calls read is put together, and what they draw is drawn by all.
+  const DispatchTable& all = chain_.face(*this, chain_.phase());
+  set_window_contents(all, window_contents(all, extent_, has_depth_));
   making_whole_ = false;
 }
 

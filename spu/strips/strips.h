@@ -65,7 +65,8 @@ class Strips final : public Unit {
   std::uint64_t drawable_ = 0;
   Extent2D extent_;
   bool placed_ = false;
-  bool divided_ = false;       ///< every process draws its strip of the window
+  bool divided_ = false;  ///< every process draws its strip of the window
+  bool has_depth_ = false;
   bool making_whole_ = false;  ///< the calls of make_whole() are being made
   bool restricted_ = false;    ///< from glBegin to glEnd
   int copies_ = 0;

@@ -94,7 +94,7 @@ void LiveApplication::end() {
 }
 
 Played play_back(const std::filesystem::path& trace, const std::string& chain) {
-  launcher::OffscreenContexts windows;
+  launcher::EglContexts windows;
   spu::Options options;
   options.chain = chain;
   spu::Player player(windows, options);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/offscreen_contexts.h"
+#include "apps/understudy/egl_contexts.h"
 #include "spu/chain.h"
 #include "spu/player/window_system.h"
 
@@ -44,7 +44,7 @@ class LiveApplication {
 
  private:
   const std::filesystem::path trace_;
-  launcher::OffscreenContexts windows_;
+  launcher::EglContexts windows_;
   std::map<std::uint64_t, std::unique_ptr<spu::Chain>> chains_;
   std::vector<Pixels> shown_;
 };

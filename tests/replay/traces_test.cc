@@ -67,7 +67,7 @@ launcher::Picture expected(const std::string& name, int frame) {
 }
 
 bool is_expected_driver() {
-  launcher::OffscreenContexts windows;
+  launcher::EglContexts windows;
   windows.create(compatibility_context(1));
   windows.make_current(1, 0, {16, 16});
   const auto* name = reinterpret_cast<const char*>(windows.driver().GetString(GL_RENDERER));

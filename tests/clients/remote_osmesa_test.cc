@@ -1,0 +1,139 @@
+// Stages without EGL: they draw on OSMesa, and the viewer gets the pictures that it gets of EGL.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tests/apps/viewer/virtual_display.h"
+#include "tests/clients/stage.h"
+
+namespace clients {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class RemoteOsmesa : public Stage {
+ protected:
+  void SetUp() override {
+    if (const std::string lacking = missing({Need::engine, Need::x_server}); !lacking.empty())
+      GTEST_SKIP() << lacking;
+    auto started = viewer_test::VirtualDisplay::start();
+    ASSERT_TRUE(started) << "Xvfb does not start";
+    display_.emplace(std::move(*started));
+  }
+
+  /// The bundled viewer, in a window.
+  Words viewer(const std::string& mode, const Words& options) const {
+    return Words{(programs / "understudy-viewer").string(),
+                 engine_file().string(),
+                 "--mode",
+                 mode,
+                 "--window-size",
+                 "256",
+                 "256",
+                 "--azimuth",
+                 "40",
+                 "--elevation",
+                 "30"} +
+           options;
+  }
+
+  /// Two frames of a viewer without OpenGL, and the report beside them.
+  Outcome run_remote(const std::string& folder, const std::string& mode, const Words& options,
+                     std::map<std::string, std::string> environment = {}) const {
+    environment["DISPLAY"] = display_->name();
+    return run_well(under(Words{"--remote", "--report", file(folder + ".json")} + options) +
+                        viewer(mode, {"--frames", "2", "--orbit", "50", "--screenshot-frames", file(folder)}),
+                    environment);
+  }
+
+  void expect_substituted_and_alike(const std::string& a, const std::string& b) const {
+    for (const std::string& folder : {a, b}) {
+      EXPECT_EQ(json(folder + ".json").at("remote"), true);
+      EXPECT_EQ(json(folder + ".json").at("frames"), 2);
+      EXPECT_EQ(substituted(json(folder + ".json")), 2) << folder;
+    }
+    for (const char* name : {"frame_0000.png", "frame_0001.png"}) {
+      EXPECT_GE(told(fmt::format("{} and {}, {}", a, b, name), png(a + "/" + name), png(b + "/" + name)).psnr,
+                50);
+    }
+  }
+
+  void expect_same_pictures(const std::string& mode, const Words& nodes) const {
+    run_remote("egl", mode, nodes + Words{"--stage-opengl", "egl"});
+    const Outcome outcome = run_remote("osmesa", mode, nodes + Words{"--stage-opengl", "osmesa"});
+    EXPECT_THAT(outcome.err, Not(HasSubstr("OSMesa"))) << "nobody is told what he asked for";
+    expect_substituted_and_alike("egl", "osmesa");
+    EXPECT_EQ(leftovers(), "");
+  }
+
+  std::optional<viewer_test::VirtualDisplay> display_;
+};
+
+TEST_F(RemoteOsmesa, ShowsWhatAStageOnEglShows) {
+  expect_same_pictures("table", {});
+}
+
+TEST_F(RemoteOsmesa, CoreContextsAndNodes) {
+  if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
+  expect_same_pictures("core", {"-n", "2"});
+}
+
+/// libOSMesa is the system's, and Mesa's libraries for EGL are not there besides.
+TEST_F(RemoteOsmesa, TheStageOpensTheSystemsLibraryAlone) {
+  Child child(on_stage(under({"--remote", "--stage-opengl", "osmesa"}) +
+                           viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                       {{"DISPLAY", display_->name()}}),
+              file(""));
+  const auto mapped_by_a_stage = [&] {
+    for (const pid_t process : processes("understudy")) {
+      std::string mapped = contents(fmt::format("/proc/{}/maps", process));
+      if (mapped.find("libOSMesa") != std::string::npos) return mapped;
+    }
+    return std::string();
+  };
+  std::string mapped;
+  ASSERT_TRUE(comes_true([&] {
+    mapped = mapped_by_a_stage();
+    return !mapped.empty() || !child.running();
+  })) << child.err();
+  EXPECT_THAT(mapped, HasSubstr((system_libraries / "libOSMesa").string()));
+  for (const char* other : {"libEGL", "_dri.so", "libunderstudy"}) EXPECT_THAT(mapped, Not(HasSubstr(other)));
+  child.signal(SIGTERM);
+  EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(RemoteOsmesa, TakesThePlaceOfEglAndSaysWhy) {
+  run_remote("egl", "table", {"--stage-opengl", "egl"});
+  // Neither a vendor's library nor a driver.
+  const Outcome no_vendor =
+      run_remote("no_vendor", "table", {}, {{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
+  EXPECT_THAT(no_vendor.err, HasSubstr("drawing on OSMesa, as EGL has no display without a window system"));
+  expect_substituted_and_alike("egl", "no_vendor");
+  const Outcome no_driver = run_remote("no_driver", "table", {}, {{"LIBGL_DRIVERS_PATH", "/nowhere"}});
+  EXPECT_THAT(no_driver.err, HasSubstr("drawing on OSMesa, as EGL"));
+  expect_substituted_and_alike("egl", "no_driver");
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(RemoteOsmesa, WhoAsksForEglAloneIsToldWhatIsMissing) {
+  const Outcome outcome = run(under({"--remote", "--stage-opengl", "egl"}) + viewer("table", {"--frames", "1"}),
+                              {{"DISPLAY", display_->name()}, {"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("install libegl-mesa0"));
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(RemoteOsmesa, AStageElsewhereIsNotThisRunsToChoose) {
+  const Outcome outcome = run_well(under({"--stage-opengl", "osmesa"}) + viewer("table", {"--frames", "1"}),
+                                   {{"DISPLAY", display_->name()}});
+  EXPECT_THAT(outcome.err, HasSubstr("give it to understudy serve --stage"));
+}
+
+}  // namespace
+}  // namespace clients

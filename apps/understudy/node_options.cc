@@ -38,7 +38,7 @@ void add_stage_option(CLI::App& subcommand, std::string& opengl) {
 }
 
 void add_polygons_option(CLI::App& subcommand, std::string& polygons) {
-  add_node_option(subcommand, "--polygons", polygons);
+  add_option_of_the_table(subcommand, "--polygons", polygons);
 }
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) {

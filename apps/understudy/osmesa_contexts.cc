@@ -130,6 +130,7 @@ void OsmesaContexts::take_out(Drawable& drawable) {
 }
 
 void OsmesaContexts::make_current(std::uint64_t number, std::uint64_t drawable, spu::Extent2D extent) {
+  current_ = number;
   Context& context = contexts_.at(number);
   Drawable& place = drawable_of(context, drawable);
   std::vector<std::uint8_t> old_memory;  // which the current context may write to until another one is current
@@ -157,6 +158,7 @@ void OsmesaContexts::make_current(std::uint64_t number, std::uint64_t drawable, 
 
 void OsmesaContexts::release_current() {
   osmesa_->MakeCurrent(nullptr, nullptr, 0, 0, 0);
+  current_ = 0;
 }
 
 void OsmesaContexts::destroy(std::uint64_t number) {
@@ -167,7 +169,13 @@ void OsmesaContexts::destroy(std::uint64_t number) {
   // Windows outlive contexts.
   if (drawable.holder == number && context.drawable != 0) {
     take_out(drawable);
-    release_current();
+    // Another context may be in use meanwhile.
+    const auto other = contexts_.find(current_);
+    if (other == contexts_.end() || other == found) {
+      release_current();
+    } else {
+      bind(other->second, drawable_of(other->second, other->second.drawable));
+    }
   }
   end_context(context.context);
   contexts_.erase(found);

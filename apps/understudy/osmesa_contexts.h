@@ -63,6 +63,7 @@ class OsmesaContexts final : public OffscreenContexts {
   /// Before the contexts, which may write there until they end.
   std::map<std::uint64_t, Drawable> drawables_;
   std::map<std::uint64_t, Context> contexts_;
+  std::uint64_t current_ = 0;  ///< number of a context; 0: none
 };
 
 }  // namespace understudy::launcher

@@ -318,6 +318,10 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
         fmt::format("--stage-opengl {} is for a stage of this run (--remote); for one elsewhere give it to "
                     "understudy serve --stage",
                     options.stage_opengl));
+  if (link && options.polygons != "root")
+    say(fmt::format(
+        "--polygons {} is for a stage of this run; for one elsewhere give it to understudy serve --stage",
+        options.polygons));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   std::unique_ptr<ChildProcess> porter;
   const std::filesystem::path link_socket = folder.path() / "link.sock";

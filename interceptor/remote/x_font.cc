@@ -156,7 +156,7 @@ void make_lists(const spu::DispatchTable& gl, Display* display, const XFontStruc
         const int columns = glyph->rbearing - glyph->lbearing;
         const int rows = glyph->ascent + glyph->descent;
         // A font's bounds are what its file claims.
-        const bool fits = columns > 0 && rows > 0 && (columns + 7) / 8 * rows <= room;
+        const bool fits = columns > 0 && rows > 0 && columns <= width && rows <= height;
         if (fits) pixmap.draw(character, *glyph, columns, rows, bits);
         // The origin is where drivers have it, a row above the one that X draws on.
         // No null pointer: Mesa takes it for a lack of memory, although nothing is there to be read.

@@ -14,6 +14,7 @@ enum class Part : std::uint8_t {
   follows,        ///< chooses buffers, or has to do with lists, attributes or framebuffer objects
 };
 
+constexpr std::size_t attribute_stack_depth = 16;
 constexpr std::string_view draw_prefixes[] = {
     "glBegin",           "glDrawArrays",   "glDrawElements", "glDrawRangeElements",
     "glDrawPixels",      "glDrawMesh",     "glDrawTex",      "glDrawTransform",
@@ -142,6 +143,8 @@ void FrontBuffer::call_list(Calls& calls, GLuint list) const {
 void FrontBuffer::follow(CallId call, const std::uint64_t* words, Calls& calls) const {
   switch (call) {
     case CallId::PushAttrib:
+      // Most drivers refuse what is more than the 16 that OpenGL promises; a program may try every frame.
+      if (calls.pushed.size() == attribute_stack_depth) return;
       calls.pushed.emplace_back(GLbitfield(words[0]), calls.record.leaves);
       return;
     case CallId::PopAttrib:

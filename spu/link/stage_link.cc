@@ -129,7 +129,6 @@ void StageLink::transmit(const Records& records, StageReply reply, std::uint64_t
   }
   counters().bytes_up += sizeof(MessageHeader);
   for (const compositor::Bytes& part : parts) counters().bytes_up += part.size();
-  if (reply != StageReply::none) ++counters().round_trips;
 }
 
 /// Returns when `condition` holds or the stage is lost. Needs the lock of the replies.
@@ -226,6 +225,7 @@ std::optional<CallAnswer> StageLink::ask(const Records& records) {
   const std::scoped_lock sending(sending_);
   if (lost_) return std::nullopt;
   transmit(records, StageReply::answer, thread_number());
+  ++counters().round_trips;
   std::unique_lock lock(replies_);
   wait_until(lock, [&] { return answer_.has_value(); });
   return std::exchange(answer_, std::nullopt);
@@ -240,6 +240,7 @@ void StageLink::show_frame(const Records& records, const FrontDrawable& drawable
     owed_.erase(drawable.number);
   }
   transmit(records, StageReply::picture, thread_number());
+  ++counters().round_trips;
   ++frames_sent_;
   std::unique_lock lock(replies_);
   wait_until(lock, [&] { return frames_.size() < frames_in_flight; });

@@ -121,15 +121,22 @@ CallAnswer Painters::answer(int index) {
 }
 
 void Painters::end_strips() {
-  if (--in_strips_ > 0 || given_up_ == nullptr) return;
-  painters_.clear();
-  records_.clear();
+  --in_strips_;
+  let_go_if_unused();
 }
 
 void Painters::give_up(const char* why) {
   if (given_up_ != nullptr) return;
   given_up_ = why;
   put_text(process_counters().strips.given_up, why);
+  let_go_if_unused();
+}
+
+/// Of what is still drawn in strips they have a part.
+void Painters::let_go_if_unused() {
+  if (in_strips_ > 0 || given_up_ == nullptr) return;
+  painters_.clear();
+  records_.clear();
 }
 
 }  // namespace understudy::spu

@@ -67,6 +67,7 @@ class Painters {
 
   void send(Painter& painter, const Records& records, bool wants_answer);
   void lose(const char* what);
+  void let_go_if_unused();
 
   const std::string socket_;
   std::vector<std::unique_ptr<Painter>> painters_;

@@ -55,22 +55,18 @@ void Strip::place(Extent2D extent) {
 std::uint64_t Strip::call(CallId call, const std::uint64_t* words) {
   const DispatchTable& next = chain_.below(*this);
   const WindowUse use = window_use(call);
-  if (inside_begin_ && use != WindowUse::ends) return invoke(next, call, words);
-  scissor_.note(call, words);
   const bool lists = use == WindowUse::lists;
-  const bool draws = lists || use == WindowUse::draws || use == WindowUse::begins;
-  bool restricted = draws && divides_ && scissor_.begin(next, lists);
+  if (!begin_and_end_.inside()) {
+    scissor_.note(call, words);
+    const bool draws = lists || use == WindowUse::draws || use == WindowUse::begins;
+    restricted_ = draws && divides_ && scissor_.begin(next, lists);
+  }
   const std::uint64_t result = invoke(next, call, words);
-  if (use == WindowUse::begins) {
-    inside_begin_ = !scissor_.compiling();
-    restricted_ = restricted;
-    return result;
+  begin_and_end_.follow(call, words);
+  if (restricted_ && !begin_and_end_.inside()) {
+    scissor_.end(next);
+    restricted_ = false;
   }
-  if (use == WindowUse::ends) {
-    inside_begin_ = false;
-    restricted = std::exchange(restricted_, false);
-  }
-  if (restricted) scissor_.end(next);
   if (lists) scissor_.forget();
   return result;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "spu/player/window_system.h"
+#include "spu/stream/begin_and_end.h"
 #include "spu/strips/strip_scissor.h"
 #include "spu/unit_description.h"
 
@@ -37,7 +38,7 @@ class Strip final : public Unit {
   bool placed_ = false;
   bool divides_ = false;     ///< strips.h says when
   bool restricted_ = false;  ///< from glBegin to glEnd
-  bool inside_begin_ = false;
+  BeginAndEnd begin_and_end_;
 };
 
 extern const UnitDescription strip_description;

@@ -72,6 +72,8 @@ void StripScissor::note(CallId call, const std::uint64_t* words) {
     pushed_in_list_ = 0;
   } else if (effect == Effect::ends_list) {
     compiling_ = false;
+    // What such a list leaves pushed would be the strip's scissor test.
+    if (pushed_in_list_ > 0) lists_touch_scissor_ = true;
   } else if (compiling_) {
     note_compiled(call, words);
   }
@@ -114,7 +116,7 @@ bool StripScissor::begin(const DispatchTable& gl, bool lists) {
   if (!window_) return false;
   if (enabled_) {
     const int bottom = std::max(box_[1], rows_.first);
-    const int top = std::min(box_[1] + box_[3], rows_.first + rows_.count);
+    const auto top = int(std::min(std::int64_t(box_[1]) + box_[3], std::int64_t(rows_.first) + rows_.count));
     gl.Scissor(box_[0], bottom, box_[2], std::max(top - bottom, 0));
   } else {
     gl.Scissor(0, rows_.first, width_, rows_.count);

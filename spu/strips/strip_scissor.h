@@ -34,6 +34,8 @@ class StripScissor {
   void note(CallId call, const std::uint64_t* words);
   /// Between glNewList and glEndList: calls are compiled, and the scissor test would be, too.
   bool compiling() const { return compiling_; }
+  /// Viewports have scissor boxes of their own.
+  bool indexed() const { return indexed_; }
 
   /// Before a draw; false when it is drawn whole, as into framebuffer objects. `lists`: it calls display lists.
   bool begin(const DispatchTable& gl, bool lists);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -19,6 +20,8 @@ namespace {
 
 /// Windows are made whole so often before it is cheaper to have one process draw them.
 constexpr int most_copies = 16;
+/// Of one answer of a painter: what it reads for a stream from elsewhere is limited (stream/decode.h).
+constexpr std::size_t most_read_bytes = std::size_t(32) << 20;
 
 struct Divided {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
@@ -32,8 +35,12 @@ GLint ask(const DispatchTable& gl, GLenum name) {
   return value;
 }
 
+/// 0 for what the window does not have.
 GLint ask_of_window(const DispatchTable& gl, GLenum attachment, GLenum name) {
   GLint value = 0;
+  gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE,
+                                         &value);
+  if (value == GL_NONE) return 0;
   gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, attachment, name, &value);
   return value;
 }
@@ -57,7 +64,10 @@ constexpr UnitOption options[] = {{.name = "of",
 }  // namespace
 
 bool window_divides(const DispatchTable& gl) {
-  if (ask(gl, GL_MAJOR_VERSION) < 3 || ask(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 || ask(gl, GL_SAMPLES) > 0)
+  // Older ones do not know the questions, and would tell the application of the error.
+  const auto* version = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
+  if (version == nullptr || std::atof(version) < 3 || ask(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 ||
+      ask(gl, GL_SAMPLES) > 0)
     return false;
   const GLenum colour = ask(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK_LEFT : GL_FRONT_LEFT;
   for (const GLenum channel : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
@@ -96,7 +106,10 @@ void Strips::place(std::uint64_t drawable, Extent2D extent) {
   const std::uint64_t words[] = {chain_.surroundings().context, std::uint64_t(extent.width),
                                  std::uint64_t(extent.height), drawable};
   painters_.records().append_plain(event::current, words);
-  if (first && painters_.given_up() == nullptr && window_divides(chain_.driver())) {
+  if (first && painters_.given_up() == nullptr && !window_divides(chain_.driver())) {
+    painters_.give_up("a window has several samples a pixel, or an unusual depth or colour");
+    if (!painters_.here()) chain_.refill();
+  } else if (first && painters_.given_up() == nullptr) {
     divided_ = true;
     has_depth_ = depth_and_stencil_bits(chain_.driver()).first > 0;
     painters_.begin_strips();
@@ -133,20 +146,14 @@ std::uint64_t Strips::call(CallId call, const std::uint64_t* words) {
   const WindowUse use = window_use(call);
   if (use == WindowUse::reads || use == WindowUse::asks) return read(call, words);
   if (use == WindowUse::pushes) {
+    // Painters are to draw while this process does.
+    recorder_.before(CallId::Flush, words, painters_.records());
     painters_.hand_on(true);
     return invoke(next, call, words);
   }
   if (divided_ && !making_whole_) {
     if (const char* why = beyond_strips(call, words)) painters_.give_up(why);
-    if (copies_window(call, words)) {
-      if (is_compiling()) {
-        painters_.give_up("display lists of the application copy pixels of a window");
-      } else if (++copies_ > most_copies) {
-        painters_.give_up("the application copies pixels of its window all the time");
-      } else {
-        make_whole();
-      }
-    }
+    if (copies_window(call, words)) make_whole_for_copy();
     if (painters_.given_up() != nullptr && !is_compiling()) {
       stop_dividing();
       if (!painters_.here()) return invoke(next, call, words);
@@ -166,12 +173,11 @@ std::uint64_t Strips::make(CallId call, const std::uint64_t* words, bool restric
   const bool lists = use == WindowUse::lists;
   restricted = restricted && scissor_.begin(next, lists);
   const std::uint64_t result = invoke(next, call, words);
-  if (use == WindowUse::begins) {
-    restricted_ = restricted;
-  } else if (use == WindowUse::ends) {
-    restricted = std::exchange(restricted_, false);
+  restricted_ |= restricted;
+  if (restricted_ && !recorder_.inside_begin()) {
+    scissor_.end(next);
+    restricted_ = false;
   }
-  if (restricted && use != WindowUse::begins) scissor_.end(next);
   if (lists) scissor_.forget();
   if (CallRecorder::answers(call)) CallRecorder::append_answers(call, words, result, records);
   recorder_.made(call, words, result);
@@ -197,8 +203,9 @@ std::uint64_t Strips::read(CallId call, const std::uint64_t* words) {
   });
   const bool window = pixels && divided_ && ask(next, GL_READ_FRAMEBUFFER_BINDING) == 0;
   if (picture && ask(next, GL_PIXEL_PACK_BUFFER_BINDING) != 0) {
-    if (window) make_whole();
-    return make(call, words, false);
+    if (window && !making_whole_) make_whole_for_copy();
+    if (painters_.given_up() != nullptr && !is_compiling()) stop_dividing();
+    return painters_.here() ? make(call, words, false) : invoke(next, call, words);
   }
   const std::uint64_t result = invoke(next, call, words);
   if (window) fetch_rows(call, words);
@@ -217,35 +224,45 @@ void Strips::fetch_rows(CallId call, const std::uint64_t* words) {
       (room_at != no_argument && *extent > std::size_t(std::max(GLsizei(words[room_at]), 0)))) {
     return;
   }
-  const int bottom = GLint(words[1]);
-  const auto part_of = [&](int painter) {
+  PictureShape row = picture;
+  row.height = 1;
+  const std::size_t row_bytes = std::max<std::size_t>(picture_extent(row, tight_pixels).value_or(1), 1);
+  const std::int64_t at_once = std::max<std::int64_t>(std::int64_t(most_read_bytes / row_bytes), 1);
+  const std::int64_t bottom = GLint(words[1]);
+  const std::int64_t top = bottom + picture.height;
+  // Rows of a painter's strip that are wanted, but the `done` first ones.
+  const auto part_of = [&](int painter, std::int64_t done) {
     const Rows rows = rows_of_strip(extent_.height, painter + 1, parts_);
-    const int first = std::max(rows.first, bottom);
-    return Rows{first, std::max(std::min(rows.first + rows.count, bottom + picture.height) - first, 0)};
+    const std::int64_t first = std::max<std::int64_t>(rows.first, bottom) + done;
+    const std::int64_t last = std::min<std::int64_t>(rows.first + rows.count, top);
+    return Rows{int(first), int(std::clamp<std::int64_t>(last - first, 0, at_once))};
   };
   painters_.hand_on(true);
-  for (int painter = 0; painter < painters_.count(); ++painter) {
-    const Rows rows = part_of(painter);
-    if (rows.count == 0) continue;
-    const std::array<std::uint64_t, 7> question = {
-        words[0], std::uint64_t(rows.first),       words[2], std::uint64_t(rows.count), words[4],
-        words[5], words[shape.parameter_count - 1]};
-    question_.clear();
-    recorder_.before(CallId::ReadPixels, question.data(), question_);
-    painters_.ask(painter, question_);
-  }
-  for (int painter = 0; painter < painters_.count(); ++painter) {
-    const Rows rows = part_of(painter);
-    if (rows.count == 0) continue;
-    const CallAnswer answer = painters_.answer(painter);
-    PictureShape part = picture;
-    part.height = rows.count;
-    // A format that OpenGL refuses has no answer, here or there.
-    if (answer.outputs.empty() || answer.outputs[0].bytes.size() != picture_extent(part, tight_pixels))
-      continue;
-    PixelStore above = store;
-    above.skip_rows += rows.first - bottom;
-    spread_picture(part, above, answer.outputs[0].bytes.data(), to);
+  const std::int64_t most_rows = std::min<std::int64_t>(picture.height, extent_.height);
+  for (std::int64_t done = 0; done < most_rows; done += at_once) {
+    for (int painter = 0; painter < painters_.count(); ++painter) {
+      const Rows rows = part_of(painter, done);
+      if (rows.count == 0) continue;
+      const std::array<std::uint64_t, 7> question = {
+          words[0], std::uint64_t(rows.first),       words[2], std::uint64_t(rows.count), words[4],
+          words[5], words[shape.parameter_count - 1]};
+      question_.clear();
+      recorder_.before(CallId::ReadPixels, question.data(), question_);
+      painters_.ask(painter, question_);
+    }
+    for (int painter = 0; painter < painters_.count(); ++painter) {
+      const Rows rows = part_of(painter, done);
+      if (rows.count == 0) continue;
+      const CallAnswer answer = painters_.answer(painter);
+      PictureShape part = picture;
+      part.height = rows.count;
+      // A format that OpenGL refuses has no answer, here or there.
+      if (answer.outputs.empty() || answer.outputs[0].bytes.size() != picture_extent(part, tight_pixels))
+        continue;
+      PixelStore above = store;
+      above.skip_rows += GLint(rows.first - bottom);
+      spread_picture(part, above, answer.outputs[0].bytes.data(), to);
+    }
   }
 }
 
@@ -253,8 +270,22 @@ void Strips::make_whole() {
   making_whole_ = true;
   // What these calls read is put together, and what they draw is drawn by all.
   const DispatchTable& all = chain_.face(*this, chain_.phase());
+  // Otherwise it would be switched off for one viewport alone, after which the boxes are not all the same.
+  const bool tested = !scissor_.indexed() && all.IsEnabled(GL_SCISSOR_TEST) != GL_FALSE;
+  if (tested) all.Disable(GL_SCISSOR_TEST);
   set_window_contents(all, window_contents(all, extent_, has_depth_));
+  if (tested) all.Enable(GL_SCISSOR_TEST);
   making_whole_ = false;
+}
+
+void Strips::make_whole_for_copy() {
+  if (is_compiling()) {
+    painters_.give_up("display lists of the application copy pixels of a window");
+  } else if (++copies_ > most_copies) {
+    painters_.give_up("the application copies pixels of its window all the time");
+  } else {
+    make_whole();
+  }
 }
 
 /// What this process lacks of its window is brought here, and from then on it draws all of it.
@@ -286,6 +317,8 @@ std::vector<std::uint8_t> Strips::shown_picture() {
     std::memcpy(pixels.data() + first, bytes.data(),
                 std::min(bytes.size(), row_bytes * std::size_t(rows.count)));
   }
+  // A painter was lost: the other rows are at least what this process has.
+  if (!painters_.here()) return spu::shown_picture(next, extent_);
   process_counters().strips.frames.fetch_add(1, std::memory_order_relaxed);
   return pixels;
 }

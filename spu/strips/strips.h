@@ -3,9 +3,10 @@
 // rows of its strip alone (Humphreys et al. 2002, section 5: sort-first with a tile for each server).
 //
 // Framebuffer objects are drawn whole by all, as anybody's texture may be their contents. What is read from a
-// window is put together from the strips; before pixels of a window are copied, all windows are made whole. An
+// window is put together from the strips; before pixels of a window are copied, all processes make it whole. An
 // application that does what cannot be put together, or copies all the time, is drawn by this process alone
-// from then on.
+// from then on: the window that is current is made whole, another one of the same context when it is drawn
+// again.
 #pragma once
 
 #include <cstdint>
@@ -51,6 +52,7 @@ class Strips final : public Unit {
   std::uint64_t read(CallId call, const std::uint64_t* words);
   void fetch_rows(CallId call, const std::uint64_t* words);
   bool copies_window(CallId call, const std::uint64_t* words) const;
+  void make_whole_for_copy();
   void divide();
   void make_whole();
   void stop_dividing();

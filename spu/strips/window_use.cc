@@ -10,9 +10,20 @@
 namespace understudy::spu {
 namespace {
 
+/// Of textures and images, which mean something in one process alone.
+bool gives_handles(std::string_view name) {
+  return name.find("TextureHandle") != std::string_view::npos ||
+         name.find("TextureSamplerHandle") != std::string_view::npos ||
+         name.find("ImageHandle") != std::string_view::npos;
+}
+
 WindowUse find_use(CallId call) {
   const std::string_view name = call_name(call);
   if (name == "glFlush" || name == "glFinish") return WindowUse::pushes;
+  // Of another framebuffer than the one that is drawn into: whole.
+  if (name.starts_with("glClearNamedFramebuffer")) return WindowUse::none;
+  // They look like questions, and later calls speak of what they answer.
+  if (gives_handles(name)) return WindowUse::none;
   if (name == "glBitmap" || name.starts_with("glDrawTex")) return WindowUse::draws;
   if (name.starts_with("glReadPixels") || name.starts_with("glReadnPixels")) return WindowUse::reads;
   if (name.starts_with("glBlit")) return WindowUse::blits;
@@ -44,12 +55,22 @@ std::array<WindowUse, call_count> all_uses() {
 }
 
 /// Calls of which some need a look at their arguments.
-enum class Doubt : std::uint8_t { none, accumulation, images, query, buffer, draw_buffer, draw_buffers };
+enum class Doubt : std::uint8_t {
+  none,
+  accumulation,
+  images,
+  handles,
+  query,
+  buffer,
+  draw_buffer,
+  draw_buffers
+};
 
 Doubt find_doubt(CallId call) {
   const std::string_view name = call_name(call);
   if (name == "glAccum") return Doubt::accumulation;
   if (name.starts_with("glBindImageTexture")) return Doubt::images;
+  if (gives_handles(name)) return Doubt::handles;
   if (name.starts_with("glBeginQuery") || name.starts_with("glBeginOcclusionQuery")) return Doubt::query;
   if (name.starts_with("glBindBuffer")) return Doubt::buffer;
   if (name == "glDrawBuffer" || name == "glFramebufferDrawBufferEXT" || name == "glNamedFramebufferDrawBuffer")
@@ -112,6 +133,8 @@ const char* beyond_strips(CallId call, const std::uint64_t* words) {
       return "the application uses the accumulation buffer";
     case Doubt::images:
       return "shaders of the application write images";
+    case Doubt::handles:
+      return "the application uses handles of textures";
     case Doubt::query:
       return std::string_view(call_name(call)).find("Occlusion") != std::string_view::npos ||
                      counts_fragments(GLenum(words[0]))

@@ -53,7 +53,7 @@ std::vector<SourceFile> project_files() {
       const bool results =
           entry.depth() == 0 && (name.starts_with("build") || name == "out" || name == "shared");
       if (name.starts_with(".") || name == "__pycache__" || results) entry.disable_recursion_pending();
-    } else if (entry->is_regular_file()) {
+    } else if (entry->is_regular_file() && name != ".git") {  // of a git worktree
       files.push_back({fs::relative(entry->path(), root), contents(entry->path())});
     }
   }

@@ -371,6 +371,22 @@ TEST_F(Osmesa, DrawablesAreSharedByContextsWithDepthAndStencil) {
   expect_no_error();
 }
 
+TEST_F(Osmesa, AContextThatGoesLeavesTheCurrentOneCurrent) {
+  add(context(1));
+  add(context(2, 1));
+  windows.make_current(2, 7, extent);
+  fill(green);
+  windows.make_current(1, 8, extent);
+  windows.destroy(2);
+  fill(red);
+  EXPECT_EQ(shown(), red);
+  windows.make_current(1, 7, extent);
+  EXPECT_EQ(shown(), green);
+  windows.make_current(1, 8, extent);
+  EXPECT_EQ(shown(), red);
+  expect_no_error();
+}
+
 TEST_F(Osmesa, ADrawableThatChangesItsSizeIsCleared) {
   add(context(1));
   for (const std::uint64_t drawable : {0, 7}) {

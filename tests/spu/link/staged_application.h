@@ -25,7 +25,12 @@ namespace understudy::spu::staged {
 class OneWindow final : public FrontEnd {
  public:
   RecordedContext context() override {
-    return {.version = version, .profile = core ? 1U : 2U, .samples = 0, .double_buffered = true};
+    return {.version = version,
+            .profile = core ? 1U : 2U,
+            .depth = depth,
+            .stencil = depth == 0 ? 0 : 8,
+            .samples = samples,
+            .double_buffered = true};
   }
   FrontDrawable drawable() override { return {7, extent}; }
   /// By the link's own thread; read behind a glFinish.
@@ -43,6 +48,8 @@ class OneWindow final : public FrontEnd {
 
   int version = 0;
   bool core = false;
+  int depth = 24;
+  int samples = 0;
   Extent2D extent{64, 48};
   int shown = 0;
   Extent2D picture_extent;

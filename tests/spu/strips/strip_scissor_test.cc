@@ -113,6 +113,11 @@ TEST_F(StripScissorTest, IsNotAroundListsThatChangeIt) {
   lists_ = false;
   note(CallId::NewList, {1, GL_COMPILE});
   note(CallId::PushAttrib);
+  note(CallId::EndList);
+  EXPECT_FALSE(scissor_.begin(gl_, true)) << "the strip's scissor test would be pushed";
+  lists_ = false;
+  note(CallId::NewList, {1, GL_COMPILE});
+  note(CallId::PushAttrib);
   note(CallId::Enable, {GL_BLEND});
   note(CallId::PopAttrib);
   note(CallId::EndList);

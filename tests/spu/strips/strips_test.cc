@@ -7,6 +7,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -41,9 +42,11 @@ struct Seen {
 /// An application that notes what it sees.
 class Application {
  public:
-  explicit Application(const std::string& chain, const std::filesystem::path& counters_folder = {})
+  Application(const std::string& chain, const std::filesystem::path& counters_folder,
+              const std::function<void(staged::OneWindow&)>& before_context)
       : on_stage(chain, counters_folder) {
     on_stage.window.extent = {width, height};
+    if (before_context) before_context(on_stage.window);
     on_stage.make_context();
   }
 
@@ -115,7 +118,7 @@ class StripsTest : public ::testing::Test {
     Seen alone;
     std::vector<std::vector<float>> depths;
     {
-      Application application("driver");
+      Application application("driver", {}, before_context_);
       scene(application);
       application.note_error();
       alone = application.seen;
@@ -124,7 +127,8 @@ class StripsTest : public ::testing::Test {
     EXPECT_FALSE(alone.pictures.empty() && alone.read.empty()) << "nothing is compared";
     for (const auto& picture : alone.pictures)
       EXPECT_GT(std::set<std::uint8_t>(picture.begin(), picture.end()).size(), 1U) << "an empty picture";
-    Application application("strips(of=" + std::to_string(parts) + ") driver", folder_.file(""));
+    Application application("strips(of=" + std::to_string(parts) + ") driver", folder_.file(""),
+                            before_context_);
     scene(application);
     application.note_error();
     EXPECT_EQ(application.seen.errors, alone.errors);
@@ -164,6 +168,7 @@ class StripsTest : public ::testing::Test {
   }
 
   viewer_test::TemporaryFolder folder_;
+  std::function<void(staged::OneWindow&)> before_context_;
 };
 
 TEST_F(StripsTest, PolygonsAtCrossingDepths) {
@@ -348,6 +353,53 @@ TEST_F(StripsTest, FramebufferObjectsAndStencils) {
   });
 }
 
+TEST_F(StripsTest, FramebufferObjectsThatAreClearedByName) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.bind_texture(9);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    GLuint framebuffer = 0;
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 9, 0);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    const std::array<float, 4> yellow = {1, 1, 0, 1};
+    gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, yellow.data());
+    a.clear(0, 0, 0);
+    a.draw_textured(0.9);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, CopiesUnderTheScissorTest) {
+  expect_all_in_strips([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    a.clear(0.1F, 0.2F, 0.3F);
+    a.draw_fan(0.4);
+    gl.Enable(GL_SCISSOR_TEST);
+    gl.Scissor(5, 5, 60, 70);
+    a.bind_texture(5);
+    gl.CopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 0, 0, 64, 64, 0);
+    a.seen.read.push_back({gl.IsEnabled(GL_SCISSOR_TEST), gl.IsEnabledi(GL_SCISSOR_TEST, 1)});
+    a.clear(0, 0, 0);
+    a.draw_textured(0.5);
+    a.swap();
+  });
+}
+
+TEST_F(StripsTest, ReadsThatAreLargerThanOneAnswer) {
+  expect_all_in_strips(
+      [](Application& a) {
+        a.on_stage.window.extent = {4096, 1200};
+        a.gl().Viewport(0, 0, 4096, 1200);
+        a.clear(0.1F, 0.2F, 0.3F);
+        a.draw_fan(0.4);
+        a.read(0, 0, 4096, 1200, GL_RGBA, GL_FLOAT, 16);
+        a.swap();
+      },
+      2);
+}
+
 TEST_F(StripsTest, AWindowThatChangesItsSizeAndContextsThatShareLists) {
   expect_all_in_strips([](Application& a) {
     a.clear(0, 0, 1);
@@ -467,6 +519,40 @@ TEST_F(StripsTest, AreGivenUpWhereTheWindowIsCopiedAllTheTime) {
   EXPECT_THAT(figures.given_up, ::testing::HasSubstr("copies pixels"));
 }
 
+TEST_F(StripsTest, AreGivenUpWhereTheWindowIsReadIntoBuffersAllTheTime) {
+  const Counted figures = expect_same([](Application& a) {
+    const DispatchTable& gl = a.gl();
+    GLuint buffer = 0;
+    gl.GenBuffers(1, &buffer);
+    gl.BindBuffer(GL_PIXEL_PACK_BUFFER, buffer);
+    gl.BufferData(GL_PIXEL_PACK_BUFFER, width * height * 4, nullptr, GL_STREAM_READ);
+    for (int frame = 0; frame < 18; ++frame) {
+      a.clear(0.1F, 0.2F, 0.3F);
+      a.draw_fan(0.1 * frame);
+      gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+      a.swap();
+    }
+    std::vector<std::uint8_t> pixels(width * height * 4);
+    gl.GetBufferSubData(GL_PIXEL_PACK_BUFFER, 0, GLsizeiptr(pixels.size()), pixels.data());
+    a.seen.read.push_back(pixels);
+  });
+  EXPECT_EQ(figures.frames, 16U);
+  EXPECT_THAT(figures.given_up, ::testing::HasSubstr("copies pixels"));
+}
+
+TEST_F(StripsTest, AWindowWithoutDepth) {
+  before_context_ = [](staged::OneWindow& window) { window.depth = 0; };
+  expect_all_in_strips([](Application& a) {
+    a.note_error();
+    a.clear(0, 0, 1);
+    a.draw_fan(0.3);
+    a.bind_texture(5);
+    a.gl().CopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 0, 0, 64, 64, 0);
+    a.draw_textured(0);
+    a.swap();
+  });
+}
+
 TEST_F(StripsTest, AreGivenUpForTheAccumulationBuffer) {
   const Counted figures = expect_same([](Application& a) {
     const DispatchTable& gl = a.gl();
@@ -482,7 +568,7 @@ TEST_F(StripsTest, AreGivenUpForTheAccumulationBuffer) {
 }
 
 TEST_F(StripsTest, APainterThatIsGoneIsDoneWithout) {
-  Application a("strips(of=2) driver", folder_.file(""));
+  Application a("strips(of=2) driver", folder_.file(""), {});
   a.clear(0, 0, 1);
   a.draw_fan(0.3);
   a.swap();

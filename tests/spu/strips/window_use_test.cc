@@ -31,6 +31,7 @@ TEST(WindowUse, IsKnownByName) {
   EXPECT_EQ(window_use(CallId::ReadnPixels), WindowUse::reads);
   EXPECT_EQ(window_use(CallId::GetTexImage), WindowUse::asks);
   EXPECT_EQ(window_use(CallId::GetIntegerv), WindowUse::asks);
+  EXPECT_EQ(window_use(CallId::ClearNamedFramebufferfv), WindowUse::none) << "it names another framebuffer";
   // Later calls speak of what it answers.
   EXPECT_EQ(window_use(CallId::GetUniformLocation), WindowUse::none);
 }
@@ -46,6 +47,7 @@ TEST(WindowUse, WhatStripsCannotMakeIsNamed) {
   EXPECT_TRUE(why(CallId::BindBufferBase, {GL_SHADER_STORAGE_BUFFER, 0, 1}));
   EXPECT_FALSE(why(CallId::BindBufferBase, {GL_UNIFORM_BUFFER, 0, 1}));
   EXPECT_FALSE(why(CallId::BindBuffer, {GL_ARRAY_BUFFER, 1}));
+  EXPECT_TRUE(why(CallId::GetTextureHandleARB, {1}));
   EXPECT_TRUE(why(CallId::DrawBuffer, {GL_FRONT_AND_BACK}));
   EXPECT_FALSE(why(CallId::DrawBuffer, {GL_BACK}));
   EXPECT_TRUE(why(CallId::NamedFramebufferDrawBuffer, {0, GL_FRONT}));

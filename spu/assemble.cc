@@ -26,11 +26,10 @@
 namespace understudy::spu {
 namespace {
 
-constexpr std::array units_by_name = {&driver_description, &link_description,  &null_description,
-                                      &pack_description,   &pass_description,  &perf_description,
-                                      &print_description,  &strip_description, &strips_description,
-                                      &trace_description,  &track_description, &unpack_description,
-                                      &volume_description};
+constexpr std::array units_by_name = {
+    &driver_description, &link_description,   &null_description,  &pack_description,   &pass_description,
+    &perf_description,   &print_description,  &strip_description, &strips_description, &trace_description,
+    &track_description,  &unpack_description, &volume_description};
 
 struct PlannedUnit {
   const UnitDescription* description;

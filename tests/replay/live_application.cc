@@ -33,9 +33,8 @@ void install(const spu::DispatchTable* table) {
 
 std::filesystem::path trace_of_this_test() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) /
-      fmt::format("{}.{}.{}.ust", test->test_suite_name(), test->name(), ::getpid());
+  std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
+                               fmt::format("{}.{}.{}.ust", test->test_suite_name(), test->name(), ::getpid());
   std::filesystem::remove(path);
   return path;
 }

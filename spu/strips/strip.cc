@@ -75,7 +75,6 @@ constinit const UnitDescription strip_description{
     .name = "strip",
     .help = "draws some rows of windows alone (of painters, see strips)",
     .options = options,
-    .leads_to = "driver",
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Strip>(place.chain, shared_by_file<CompiledCalls>("").touch_scissor,
                                      int(place.options.integer("part")), int(place.options.integer("of")));

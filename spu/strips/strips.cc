@@ -328,7 +328,6 @@ constinit const UnitDescription strips_description{
     .help =
         "has each strip of a window drawn by a process of its own (understudy run --remote --polygons strips)",
     .options = options,
-    .leads_to = "driver",
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       const std::string& stages = place.options.text("stages");
       if (stages.empty())

@@ -90,12 +90,18 @@ TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
     if (unit->standing == Standing::last) continue;
     // Such pairs are assembled from their first unit; traces are files, and have tests of their own.
     if (std::string_view(unit->name) == "unpack" || std::string_view(unit->name) == "trace") continue;
+    // Others draw with it, and have to be somewhere (tests/spu/strips).
+    if (std::string_view(unit->name) == "strips") continue;
     std::string chain;
     for (const char* name : {unit->needs, unit->name, unit->leads_to, "driver"}) {
       if (name != nullptr) chain.append(name).append(" ");
     }
     EXPECT_EQ(error_of(chain), "") << unit->name;
   }
+}
+
+TEST_F(Assemble, StripsWithoutStagesAreToldWhereTheyAre) {
+  EXPECT_THAT(error_of("strips(of=2) driver"), HasSubstr("--polygons strips"));
 }
 
 TEST_F(Assemble, MakesUnitsInTheirOrder) {

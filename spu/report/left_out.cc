@@ -36,8 +36,10 @@ std::string why(Omission omission, const volume::FrameCounts& counts, const Reas
     case Omission::footprints:
       return counts.messages_of_whole_windows == 0
                  ? "one process: nothing travels"
-                 : fmt::format("samples reached these pixels; {} messages of {}, {} parts of nodes empty",
-                               counts.messages, counts.messages_of_whole_windows, counts.nodes_idle);
+                 : fmt::format(
+                       "samples reached these pixels; {} messages, with whole windows {}; {} parts of nodes "
+                       "empty",
+                       counts.messages, counts.messages_of_whole_windows, counts.nodes_idle);
     default:
       return listed(reasons);
   }

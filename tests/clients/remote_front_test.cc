@@ -11,8 +11,7 @@
 #include <optional>
 #include <thread>
 
-#include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/remote_viewer.h"
 
 namespace clients {
 namespace {
@@ -23,27 +22,11 @@ constexpr Colour blue{0, 0, 255};
 /// As wide and high as the programs' windows, which lie in the upper left corner.
 constexpr int window_size = 128;
 
-class RemoteFront : public Stage {
+class RemoteFront : public RemoteViewer {
  protected:
-  void SetUp() override {
-    if (const std::string lacking = missing({Need::x_server, Need::imagemagick}); !lacking.empty())
-      GTEST_SKIP() << lacking;
-    auto started = viewer_test::VirtualDisplay::start();
-    ASSERT_TRUE(started) << "Xvfb does not start";
-    display_.emplace(std::move(*started));
-  }
+  void SetUp() override { start_display({Need::x_server, Need::imagemagick}); }
 
-  std::map<std::string, std::string> on_display() const { return {{"DISPLAY", display_->name()}}; }
-  Words remotely() const {
-    return under({"--remote", "--report", file("report.json")}) + Words{"env", "LIBGL_DRIVERS_PATH=/nowhere"};
-  }
-
-  /// What the X server shows; nothing while it cannot be grabbed.
-  std::optional<viewer_test::Picture> screen() const {
-    const Words grab = {"import", "-window", "root", "png24:" + file("screen.png").string()};
-    if (Child({grab, on_display()}, file("")).finish().status != 0) return std::nullopt;
-    return png("screen.png");
-  }
+  Words remotely() const { return under({"--remote", "--report", file("report.json")}) + without_opengl(); }
 
   static Colour at(const viewer_test::Picture& picture, int x, int y) {
     const std::size_t first = (std::size_t(y) * std::size_t(picture.width) + std::size_t(x)) * 3;
@@ -97,8 +80,6 @@ class RemoteFront : public Stage {
     const viewer_test::Picture remote = rests_at(remotely() + writes, has_text);
     EXPECT_TRUE(remote.rgb == local.rgb) << font;
   }
-
-  std::optional<viewer_test::VirtualDisplay> display_;
 };
 
 TEST_F(RemoteFront, AWindowWithOneBufferIsShownByFlush) {

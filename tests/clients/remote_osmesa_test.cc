@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/remote_viewer.h"
 
 namespace clients {
 namespace {
@@ -16,31 +15,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class RemoteOsmesa : public Stage {
+class RemoteOsmesa : public RemoteViewer {
  protected:
-  void SetUp() override {
-    if (const std::string lacking = missing({Need::engine, Need::x_server}); !lacking.empty())
-      GTEST_SKIP() << lacking;
-    auto started = viewer_test::VirtualDisplay::start();
-    ASSERT_TRUE(started) << "Xvfb does not start";
-    display_.emplace(std::move(*started));
-  }
-
-  /// The bundled viewer, in a window.
-  Words viewer(const std::string& mode, const Words& options) const {
-    return Words{(programs / "understudy-viewer").string(),
-                 engine_file().string(),
-                 "--mode",
-                 mode,
-                 "--window-size",
-                 "256",
-                 "256",
-                 "--azimuth",
-                 "40",
-                 "--elevation",
-                 "30"} +
-           options;
-  }
+  void SetUp() override { start_display({Need::engine, Need::x_server}); }
 
   /// Two frames of a viewer without OpenGL, and the report beside them.
   Outcome run_remote(const std::string& folder, const std::string& mode, const Words& options,
@@ -70,8 +47,6 @@ class RemoteOsmesa : public Stage {
     expect_substituted_and_alike("egl", "osmesa");
     EXPECT_EQ(leftovers(), "");
   }
-
-  std::optional<viewer_test::VirtualDisplay> display_;
 };
 
 TEST_F(RemoteOsmesa, ShowsWhatAStageOnEglShows) {

@@ -9,41 +9,14 @@
 #include <optional>
 #include <set>
 
-#include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/remote_viewer.h"
 
 namespace clients {
 namespace {
 
-class Remote : public Stage {
+class Remote : public RemoteViewer {
  protected:
-  void SetUp() override {
-    if (const std::string lacking = missing({Need::engine, Need::x_server, Need::imagemagick});
-        !lacking.empty())
-      GTEST_SKIP() << lacking;
-    auto started = viewer_test::VirtualDisplay::start();
-    ASSERT_TRUE(started) << "Xvfb does not start";
-    display_.emplace(std::move(*started));
-  }
-
-  /// The bundled viewer in a window.
-  Words viewer(const std::string& mode, const Words& options) const {
-    return Words{(programs / "understudy-viewer").string(),
-                 engine_file().string(),
-                 "--mode",
-                 mode,
-                 "--window-size",
-                 "256",
-                 "256",
-                 "--azimuth",
-                 "40",
-                 "--elevation",
-                 "30"} +
-           options;
-  }
-  std::map<std::string, std::string> on_display() const { return {{"DISPLAY", display_->name()}}; }
-  /// A driver that is not there: whoever loads one here fails.
-  static Words without_opengl() { return {"env", "LIBGL_DRIVERS_PATH=/nowhere"}; }
+  void SetUp() override { start_display({Need::engine, Need::x_server, Need::imagemagick}); }
 
   void expect_same_pictures(const std::string& mode, const Words& nodes) {
     const auto frames = [&](const std::string& folder) {
@@ -68,12 +41,6 @@ class Remote : public Stage {
     }
   }
 
-  /// What the X server shows; nothing while it cannot be grabbed.
-  std::optional<viewer_test::Picture> screen() const {
-    const Words grab = {"import", "-window", "root", "png24:" + file("screen.png").string()};
-    if (Child({grab, on_display()}, file("")).finish().status != 0) return std::nullopt;
-    return png("screen.png");
-  }
   static bool shows_something(const viewer_test::Picture& picture) {
     return std::set<std::uint8_t>(picture.rgb.begin(), picture.rgb.end()).size() > 16;
   }
@@ -107,8 +74,6 @@ class Remote : public Stage {
     EXPECT_EQ(child.finish().status, 128 + SIGTERM);
     EXPECT_EQ(leftovers(), "");
   }
-
-  std::optional<viewer_test::VirtualDisplay> display_;
 };
 
 TEST_F(Remote, ShowsWhatIsShownWhereOpenGLIs) {

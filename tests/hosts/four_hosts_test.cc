@@ -100,6 +100,7 @@ class FourHosts : public clients::Stage {
     if (const std::string lacking = clients::missing({clients::Need::engine, clients::Need::mpi});
         !lacking.empty())
       GTEST_SKIP() << lacking;
+    fs::create_directory(file("tmp"));
     std::ofstream hostfile(file("hosts"));
     for (int number = 1; number <= all_hosts; ++number) hostfile << host(number) << " slots=1\n";
   }
@@ -130,7 +131,7 @@ class FourHosts : public clients::Stage {
 
   std::string left_behind() const {
     std::string left = leftovers();
-    for (const std::string& name : names_in(fs::temp_directory_path(), "ompi.host")) left += name + "\n";
+    for (const std::string& name : names_in(file("tmp"), "")) left += name + "\n";
     for (const std::string& name : names_in("/dev/shm", "")) left += "/dev/shm/" + name + "\n";
     for (const std::string& name : names_in("/run/netns", ""))
       if (!name.starts_with("host")) left += "namespace " + name + "\n";

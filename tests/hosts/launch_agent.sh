@@ -10,6 +10,8 @@ if [[ $answer != *refused* ]]; then
   echo "launch_agent: ${answer##*: }" >&2
   exit 255
 fi
-# The mark by which a test finds its processes again is all that is taken along.
-exec ip netns exec "$host" env -i PATH="$PATH" HOME=/ XDG_RUNTIME_DIR="$XDG_RUNTIME_DIR" unshare --uts --mount \
+# All that is taken along is the mark by which a test finds its processes again; beside it lies the test's own folder
+# for temporary files.
+exec ip netns exec "$host" env -i PATH="$PATH" HOME=/ XDG_RUNTIME_DIR="$XDG_RUNTIME_DIR" \
+  TMPDIR="${XDG_RUNTIME_DIR%/*}/tmp" unshare --uts --mount \
   sh -c "hostname $host && mount -t tmpfs none '$XDG_RUNTIME_DIR' && $*"

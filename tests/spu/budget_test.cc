@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <thread>
 
 #include "tests/volume/fields.h"
 #include "tests/volume/scenes.h"
@@ -21,6 +22,33 @@ using namespace volume::testing;
 using volume::Image;
 using volume::Method;
 using volume::RenderRequest;
+
+/// The nodes of a busy machine: each picture comes late.
+class LateService final : public compositor::RenderService {
+ public:
+  explicit LateService(compositor::RenderService& service) : service_(service) {}
+
+  void begin_volume(const volume::VolumeDescription& volume) override { service_.begin_volume(volume); }
+  void begin_change(volume::VolumeId id, std::uint64_t version) override { service_.begin_change(id, version); }
+  void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
+                  std::span<const std::byte> texels) override {
+    service_.add_texels(id, boxes, texels);
+  }
+  void end_volume(volume::VolumeId id) override { service_.end_volume(id); }
+  void forget_volume(volume::VolumeId id) override { service_.forget_volume(id); }
+  compositor::Rendered render(const RenderRequest& request) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    return service_.render(request);
+  }
+  std::vector<volume::PixelIntegral> integrals(const RenderRequest& request,
+                                               std::span<const volume::Pixel> pixels, double most_ms) override {
+    return service_.integrals(request, pixels, most_ms);
+  }
+  int nodes() const override { return service_.nodes(); }
+
+ private:
+  compositor::RenderService& service_;
+};
 
 class BudgetTest : public testing::Test {
  protected:
@@ -104,6 +132,15 @@ TEST_P(EveryBudget, KeepsTheErrorInEveryPixel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, EveryBudget, testing::Values(0.5, 8 / 255.0, 2 / 255.0, 0.5 / 255));
+
+TEST_F(BudgetTest, ABusyMachineKeepsTheErrorToo) {
+  LateService late(*service);
+  Budget budget({.error = 0.5 / 255});
+  const auto request = budget.request(late, own, "", texture.description, 1, counters);
+  ASSERT_TRUE(request) << counters.note;
+  EXPECT_STREQ(counters.note, "");
+  EXPECT_LE(error_of(*request), 0.5 / 255) << counters.setting;
+}
 
 TEST_F(BudgetTest, FewerSamplesAreTakenForALargerError) {
   std::uint64_t last = ~std::uint64_t(0);

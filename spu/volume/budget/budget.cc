@@ -131,8 +131,9 @@ void Budget::use(std::size_t of_front) {
 void Budget::prove(compositor::RenderService& service) {
   const auto& front = calibration_.front;
   do {
-    const std::size_t other = chosen_ + 1 < front.size() ? chosen_ + 1 : std::max<std::size_t>(chosen_, 1) - 1;
-    const compositor::Rendered beside = service.render(sampled_as(meaning_, front[other].setting));
+    Setting finer = front[std::min(chosen_ + 1, front.size() - 1)].setting;
+    if (chosen_ + 1 >= front.size()) finer.step /= 2;
+    const compositor::Rendered beside = service.render(sampled_as(meaning_, finer));
     const volume::Image kept = copy_of(beside.image);
     const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
     suspects_ = most_different(shown.image, kept.view(), proving_suspects);
@@ -142,6 +143,7 @@ void Budget::prove(compositor::RenderService& service) {
     const auto integrals = integrals_of(service, meaning_.request, pixels, suspects_.size(), proving_ms);
     spread_ += proving_spread;
     worst_ = greatest_error(shown.image, pixels, integrals);
+    if (integrals.size() < suspects_.size()) worst_ = std::max(worst_, front[chosen_].error);
   } while (worst_ > room_when_proven * asked_.error && go_finer());
 }
 

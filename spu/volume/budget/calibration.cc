@@ -27,8 +27,10 @@ constexpr std::array fine_samples{0.5, 0.25, 0.125, 0.0625, 0.03125};
 constexpr std::array segments_apart{1.0, 0.5, 2.0, 0.25, 0.125};
 /// The small picture has about so many pixels where there is something to see.
 constexpr double small_picture = 80.0 * 80.0;
-/// Finer settings are not tried after this.
+/// What may only save time is not tried after this.
 constexpr double patience_ms = 400;
+/// Samples finer and finer are, where an error is named: on a slow or busy machine as well, it is to be kept.
+constexpr double patience_for_an_error_ms = 5000;
 constexpr double integrals_ms = 250;
 constexpr std::size_t least_integrals = 64;
 /// For what must be integrated, whatever time it takes: beyond this the nodes hang, or are asked too much.
@@ -150,8 +152,8 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_picture))));
   const Meaning small{on_fewer_pixels(meaning.request, times), meaning.texels_a_step};
   std::vector<Tried> tried;
-  const auto try_out = [&](volume::Method method, double texels) {
-    if (!tried.empty() && milliseconds_since(start) > patience_ms) return;
+  const auto try_out = [&](volume::Method method, double texels, double patience) {
+    if (!tried.empty() && milliseconds_since(start) > patience) return;
     const Setting setting{method, texels / meaning.texels_a_step, termination};
     volume::RenderRequest request = sampled_as(small, setting);
     if (volume::margin_needed(volume, request) > volume.margin) return;
@@ -161,14 +163,15 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
     const compositor::Rendered rendered = service.render(request);
     tried.push_back({setting, milliseconds_since(begin) * times * times, copy_of(rendered.image)});
   };
-  for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels);
+  const double patience = enough > 0 ? patience_for_an_error_ms : patience_ms;
+  for (const double texels : coarse_samples) try_out(volume::Method::post_classified, texels, patience);
   for (const double texels : fine_samples) {
-    try_out(volume::Method::post_classified, texels);
+    try_out(volume::Method::post_classified, texels, patience);
     const std::size_t last = tried.size() - 1;
     if (last > 0 && greatest_difference(tried[last - 1].picture.view(), tried[last].picture.view()) < enough)
       break;
   }
-  for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels);
+  for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels, patience_ms);
 
   const ImageView finest =
       std::ranges::min_element(tried, {}, [](const Tried& one) { return one.setting.step; })->picture.view();

@@ -21,8 +21,9 @@ struct Calibration {
 };
 
 /// Settings that the volume was sent with enough margin for; `termination` belongs to all of them. Finer ones
-/// are not tried once pictures differ by less than `enough`. Takes well under a second. Throws as the service
-/// does.
+/// are not tried once pictures differ by less than `enough`; with 0 there is never enough, but time. Takes well
+/// under a second; on a slow or busy machine up to five, where they are what `enough` takes. Throws as the
+/// service does.
 Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
                       const volume::VolumeDescription& volume, float termination, double enough);
 

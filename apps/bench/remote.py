@@ -3,10 +3,10 @@
 Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that are network namespaces of this machine,
 joined by 1 Gbit/s with 0.5 ms to the other end and back, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own
 OpenGL and nodes there, all of it on a stage there; as it is, or with JPEG pictures while the view turns, or with bytes for
-the nodes' pictures. The bundled viewer turns 256^3 voxels in 512^2 pixels; glxgears, and osgvolume at rest, are drawn by the
-stage. Ways are alternated within each round of a line. What travelled is counted on the longer of two runs, less the shorter:
-upwards before it was compressed, as the volume, which is compressed by what the line seemed to be, travels in both runs;
-downwards as it travelled.
+the nodes' pictures. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
+has every line, and each line every way; times and ratios are medians of those of the rounds. What travelled is counted on the
+longer of two runs, less the shorter: upwards before it was compressed, as the volume, which is compressed by what the line
+seemed to be, travels in both runs; downwards as it travelled.
 Only root can make such lines.
 """
 
@@ -32,7 +32,7 @@ LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
         "stage, quality 80": ["--remote", "--quality", "80"]}
 PORT = 7070
-ROUNDS = 2
+ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run
 GEARS_SECONDS = 8
 SIDE = 512
@@ -115,18 +115,14 @@ class Client:
 
 
 def measure(line, folder, display, host_of_server=None, host_of_client=None):
-    """Rows of one line, as (name, figures)."""
+    """Figures of one line by name, once each."""
     with contextlib.ExitStack() as stack:
         link = None if line == "one machine" else stack.enter_context(server(folder, host_of_server))
         client = Client(folder, host_of_client, link, display)
-        ways = {way: WAYS[way] for way in (["nodes", "stage"] if link is None else WAYS)}
-        found = {way: [] for way in ways}
-        for number in range(ROUNDS):
-            for way, options in ways.items():
-                print(f"  {line}, round {number + 1} of {ROUNDS}, {way}", file=sys.stderr, flush=True)
-                found[way].append(client.turning(options))
-        figures = {f"turning/{way}": {key: statistics.median(one[key] for one in each) for key in each[0]}
-                   for way, each in found.items()}
+        figures = {}
+        for way in ["nodes", "stage"] if link is None else WAYS:
+            print(f"  {line}, {way}", file=sys.stderr, flush=True)
+            figures[f"turning/{way}"] = client.turning(WAYS[way])
         figures["resting/stage"] = client.turning(["--remote"], orbit=0)
         figures["glxgears/stage"] = client.gears(["--remote"])
         return figures
@@ -143,23 +139,31 @@ def in_namespaces(line, folder, display):
 
 
 def rows():
-    result = []
     folder = viewers.OUT / "bench" / "remote"
     folder.mkdir(parents=True, exist_ok=True)
+    lines = [line for line, hosts in LINES.items() if not hosts or (os.geteuid() == 0 and SWITCH.exists())]
+    for line in LINES.keys() - lines:
+        print(f"  {line}: needs root, and {SWITCH}", file=sys.stderr)
+    rounds = []
     with VirtualDisplay() as display:
-        for line, hosts in LINES.items():
-            if hosts and (os.geteuid() != 0 or not SWITCH.exists()):
-                print(f"  {line}: needs root, and {SWITCH}", file=sys.stderr)
-                continue
-            figures = in_namespaces(line, folder, display) if hosts else measure(line, folder, display)
-            for name, each in figures.items():
-                row = {"name": f"remote/{name}/{line}", "value": each["ms"], "unit": "ms", "bytes_up": each["up"],
-                       "bytes_down": each["down"], "round_trips": each["round_trips"]}
-                base = next((other for other in result if other["name"] == f"remote/{name}/one machine"), None)
-                if base:
-                    row |= {"ratio_to": base["name"], "ratio": row["value"] / base["value"]}
-                result.append(row)
+        for number in range(ROUNDS):
+            print(f"  round {number + 1} of {ROUNDS}", file=sys.stderr)
+            rounds.append({line: (in_namespaces if LINES[line] else measure)(line, folder, display) for line in lines})
+    result = []
+    for line in lines:
+        for name in rounds[0][line]:
+            row = {"name": f"remote/{name}/{line}", "value": median_of(rounds, line, name, "ms"), "unit": "ms"}
+            row |= {f"bytes_{way}": median_of(rounds, line, name, way) for way in ("up", "down")}
+            row["round_trips"] = median_of(rounds, line, name, "round_trips")
+            if line != "one machine" and name in rounds[0]["one machine"]:
+                row |= {"ratio_to": f"remote/{name}/one machine",
+                        "ratio": statistics.median(each[line][name]["ms"] / each["one machine"][name]["ms"] for each in rounds)}
+            result.append(row)
     return result
+
+
+def median_of(rounds, line, name, what):
+    return statistics.median(each[line][name][what] for each in rounds)
 
 
 def main(line, rate, one_way, folder, display):

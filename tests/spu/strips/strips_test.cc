@@ -99,6 +99,17 @@ class Application {
     gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   }
+  /// A new one, that draws into a new texture of that name, 64 x 64; both stay bound.
+  GLuint bind_framebuffer_of(GLuint texture) const {
+    const DispatchTable& g = gl();
+    bind_texture(texture);
+    g.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    GLuint framebuffer = 0;
+    g.GenFramebuffers(1, &framebuffer);
+    g.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    g.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    return framebuffer;
+  }
 
   StagedApplication on_stage;
   Seen seen;
@@ -328,12 +339,7 @@ TEST_F(StripsTest, DepthOfTheWindowInATexture) {
 TEST_F(StripsTest, FramebufferObjectsAndStencils) {
   expect_all_in_strips([](Application& a) {
     const DispatchTable& gl = a.gl();
-    a.bind_texture(9);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    GLuint framebuffer = 0;
-    gl.GenFramebuffers(1, &framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 9, 0);
+    const GLuint framebuffer = a.bind_framebuffer_of(9);
     a.clear(1, 0, 1);
     a.draw_fan(0.3);
     a.read(0, 0, 64, 64, GL_RGBA, GL_UNSIGNED_BYTE, 4);
@@ -356,12 +362,7 @@ TEST_F(StripsTest, FramebufferObjectsAndStencils) {
 TEST_F(StripsTest, FramebufferObjectsThatAreClearedByName) {
   expect_all_in_strips([](Application& a) {
     const DispatchTable& gl = a.gl();
-    a.bind_texture(9);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 64, 64, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    GLuint framebuffer = 0;
-    gl.GenFramebuffers(1, &framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 9, 0);
+    const GLuint framebuffer = a.bind_framebuffer_of(9);
     gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     const std::array<float, 4> yellow = {1, 1, 0, 1};
     gl.ClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, yellow.data());

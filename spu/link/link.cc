@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "dispatch/call_words.h"
 #include "spu/chain_text.h"
@@ -25,6 +26,8 @@ struct Asked {
 
 /// Most that is believed of an answer whose extent nobody knows.
 constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
+/// That are asked for at once; contexts have some hundreds.
+constexpr GLint most_extensions = 4096;
 
 std::byte* address(std::uint64_t word) {
   return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(word));
@@ -245,7 +248,27 @@ std::optional<std::uint64_t> Link::known(CallId call, const std::uint64_t* words
   }
   std::uint64_t result = 0;
   if (state_.answer(call, words, Asker::application, result)) return result;
+  if (call == CallId::GetStringi && GLenum(words[0]) == GL_EXTENSIONS) fetch_extensions();
   return constant(call, words);
+}
+
+/// Applications ask for one after the other, which took seconds over a line with a delay.
+void Link::fetch_extensions() {
+  if (std::exchange(extensions_fetched_, true)) return;
+  GLint count = 0;
+  const std::uint64_t asked_count[] = {GL_NUM_EXTENSIONS, reinterpret_cast<std::uintptr_t>(&count)};
+  ask(CallId::GetIntegerv, asked_count);
+  count = std::clamp(count, 0, most_extensions);
+  if (count == 0) return;
+  pack_.hand_on();
+  std::vector<std::array<std::uint64_t, 2>> calls;
+  std::vector<Records> questions(static_cast<std::size_t>(count));
+  for (Records& question : questions) {
+    calls.push_back({GL_EXTENSIONS, calls.size()});
+    question_encoder_.encode(CallId::GetStringi, calls.back().data(), question);
+  }
+  const std::vector<CallAnswer> answers = stage_.ask_all(questions);
+  for (std::size_t i = 0; i < answers.size(); ++i) apply({CallId::GetStringi, calls[i].data()}, answers[i]);
 }
 
 std::uint64_t Link::ask(CallId call, const std::uint64_t* words) {

@@ -60,6 +60,7 @@ class Link final : public Unit, public RecordTaker {
   void show_front_now();
   bool has_front_to_show();
   std::optional<std::uint64_t> constant(CallId call, const std::uint64_t* words) const;
+  void fetch_extensions();
   std::uint64_t apply(const PackedCall& call, const CallAnswer& answer);
   void write_output(const PackedCall& call, const AnsweredOutput& output);
   std::uint64_t keep_text(const PackedCall& call, const AnsweredOutput& output);
@@ -82,6 +83,7 @@ class Link final : public Unit, public RecordTaker {
   FrontDrawable drawable_;
   std::uint64_t frames_ = 0;
   bool introduced_ = false;
+  bool extensions_fetched_ = false;
   bool front_owed_ = false;     ///< the stage's link may still owe a picture of the front buffer
   bool without_error_ = false;  ///< glGetError said so, and nothing was called since
 };

@@ -167,7 +167,8 @@ void StageLink::take(Message message) {
   if (message.type != MessageType::answered || !answer) throw MalformedMessage("spoke out of turn");
   {
     const std::scoped_lock lock(replies_);
-    answer_ = std::move(answer);
+    if (answers_.size() == awaited_) throw MalformedMessage("answered what nobody asked");
+    answers_.push_back(std::move(*answer));
   }
   replied_.notify_all();
 }
@@ -222,13 +223,26 @@ void StageLink::send(const Records& records) {
 }
 
 std::optional<CallAnswer> StageLink::ask(const Records& records) {
+  std::vector<CallAnswer> answers = ask_all({&records, 1});
+  if (answers.empty()) return std::nullopt;
+  return std::move(answers.front());
+}
+
+std::vector<CallAnswer> StageLink::ask_all(std::span<const Records> questions) {
   const std::scoped_lock sending(sending_);
-  if (lost_) return std::nullopt;
-  transmit(records, StageReply::answer, thread_number());
+  if (lost_) return {};
+  {
+    const std::scoped_lock lock(replies_);
+    answers_.clear();
+    awaited_ = questions.size();
+  }
+  for (const Records& question : questions) transmit(question, StageReply::answer, thread_number());
   ++counters().round_trips;
   std::unique_lock lock(replies_);
-  wait_until(lock, [&] { return answer_.has_value(); });
-  return std::exchange(answer_, std::nullopt);
+  wait_until(lock, [&] { return answers_.size() == awaited_; });
+  awaited_ = 0;
+  if (answers_.size() < questions.size()) return {};
+  return std::exchange(answers_, {});
 }
 
 void StageLink::show_frame(const Records& records, const FrontDrawable& drawable) {

@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -50,6 +51,9 @@ class StageLink {
   /// And waits for what the last record answers; nothing when the stage is lost. All frames before are shown
   /// then.
   std::optional<CallAnswer> ask(const Records& records);
+  /// The same for several questions, all of which are on their way at once: answers in their order, or none
+  /// when the stage is lost.
+  std::vector<CallAnswer> ask_all(std::span<const Records> questions);
   /// The records end with a `frame` event, whose picture will be shown in `drawable`. Waits while too many
   /// frames are on their way.
   void show_frame(const Records& records, const FrontDrawable& drawable);
@@ -109,7 +113,8 @@ class StageLink {
 
   std::mutex replies_;
   std::condition_variable replied_;
-  std::optional<CallAnswer> answer_;
+  std::vector<CallAnswer> answers_;
+  std::size_t awaited_ = 0;             ///< answers to questions on their way
   std::deque<FrontDrawable> frames_;    ///< on their way, the oldest first
   std::map<std::uint64_t, Owed> owed_;  ///< by drawable
   // For who may not wait for a lock.

@@ -8,6 +8,8 @@
 #include <array>
 #include <cstring>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "spu/report/counters.h"
 #include "tests/spu/link/staged_application.h"
@@ -67,6 +69,26 @@ TEST_F(LinkTest, WhatIsAskedAgainDoesNotTravel) {
   gl().GetIntegerv(GL_ARRAY_BUFFER_BINDING, &value);
   EXPECT_EQ(again > 0, true);
   EXPECT_EQ(process_counters().remote.round_trips, before);
+}
+
+TEST_F(LinkTest, ExtensionsComeAtOnce) {
+  make_context();
+  GLint count = 0;
+  gl().GetIntegerv(GL_NUM_EXTENSIONS, &count);
+  ASSERT_GT(count, 20);
+  const std::uint64_t before = process_counters().remote.round_trips;
+  std::set<std::string> extensions;
+  for (GLint i = 0; i < count; ++i) {
+    const GLubyte* name = gl().GetStringi(GL_EXTENSIONS, GLuint(i));
+    ASSERT_NE(name, nullptr) << i;
+    extensions.insert(reinterpret_cast<const char*>(name));
+  }
+  EXPECT_EQ(process_counters().remote.round_trips, before + 1);
+  EXPECT_EQ(extensions.size(), std::size_t(count));
+  EXPECT_TRUE(extensions.contains("GL_ARB_vertex_buffer_object"));
+  EXPECT_EQ(gl().GetError(), GLenum(GL_NO_ERROR));
+  EXPECT_EQ(gl().GetStringi(GL_EXTENSIONS, GLuint(count)), nullptr);
+  EXPECT_EQ(gl().GetError(), GLenum(GL_INVALID_VALUE));
 }
 
 TEST_F(LinkTest, ErrorsComeWhenTheyAreAskedFor) {

@@ -27,7 +27,8 @@ constexpr double most_credit_ms = 10;
 constexpr std::size_t proving_suspects = 48;
 constexpr std::size_t proving_spread = 128;
 constexpr double proving_ms = 150;
-constexpr int patient_frames = 4;  ///< before time moves the setting again
+constexpr int patient_frames = 4;            ///< before time moves the setting again
+constexpr double finest_samples = 1.0 / 32;  ///< in texels; what lies between is linear
 /// Pictures of each kind to see whether half floats save time, and so much of it that they are worth their
 /// error.
 constexpr int turns_to_compare = 3;
@@ -185,7 +186,16 @@ bool Budget::go_finer() {
     use(chosen_);
     return true;
   }
-  if (chosen_ + 1 >= calibration_.front.size()) return false;
+  auto& front = calibration_.front;
+  if (chosen_ + 1 >= front.size()) {
+    // Calibration ended where its few rays were exact enough; now one was not. It is no worse than what was
+    // there.
+    Measured finer = front[chosen_];
+    finer.setting.step /= 2;
+    finer.ms *= 2;
+    if (finer.setting.step * meaning_.texels_a_step < finest_samples) return false;
+    front.push_back(finer);
+  }
   use(chosen_ + 1);
   return true;
 }

@@ -132,9 +132,7 @@ void Budget::use(std::size_t of_front) {
 void Budget::prove(compositor::RenderService& service) {
   const auto& front = calibration_.front;
   do {
-    Setting finer = front[std::min(chosen_ + 1, front.size() - 1)].setting;
-    if (chosen_ + 1 >= front.size()) finer.step /= 2;
-    const compositor::Rendered beside = service.render(sampled_as(meaning_, finer));
+    const compositor::Rendered beside = service.render(sampled_as(meaning_, next_finer().setting));
     const volume::Image kept = copy_of(beside.image);
     const compositor::Rendered shown = service.render(sampled_as(meaning_, front[chosen_].setting));
     suspects_ = most_different(shown.image, kept.view(), proving_suspects);
@@ -181,20 +179,26 @@ Setting Budget::setting() const {
   return setting;
 }
 
+/// Calibration ends where its few rays were exact enough. What is finer is taken to err no more, and to cost
+/// twice as much, until it is looked at.
+Measured Budget::next_finer() const {
+  const auto& front = calibration_.front;
+  if (chosen_ + 1 < front.size()) return front[chosen_ + 1];
+  Measured finer = front.back();
+  finer.setting.step /= 2;
+  finer.ms *= 2;
+  return finer;
+}
+
 bool Budget::go_finer() {
   if (as_halves_) {
     use(chosen_);
     return true;
   }
-  auto& front = calibration_.front;
-  if (chosen_ + 1 >= front.size()) {
-    // Calibration ended where its few rays were exact enough; now one was not. It is no worse than what was
-    // there.
-    Measured finer = front[chosen_];
-    finer.setting.step /= 2;
-    finer.ms *= 2;
+  if (chosen_ + 1 >= calibration_.front.size()) {
+    const Measured finer = next_finer();
     if (finer.setting.step * meaning_.texels_a_step < finest_samples) return false;
-    front.push_back(finer);
+    calibration_.front.push_back(finer);
   }
   use(chosen_ + 1);
   return true;

@@ -62,6 +62,7 @@ class Budget {
   void prove(compositor::RenderService& service);
   void try_halves(compositor::RenderService& service);
   Setting setting() const;
+  Measured next_finer() const;
   bool go_finer();
   bool keep_margin(const volume::VolumeDescription& volume);
   void keep_time();

@@ -29,7 +29,7 @@ constexpr std::array segments_apart{1.0, 0.5, 2.0, 0.25, 0.125};
 constexpr double small_picture = 80.0 * 80.0;
 /// What may only save time is not tried after this.
 constexpr double patience_ms = 400;
-/// Samples finer and finer are, where an error is named: on a slow or busy machine as well, it is to be kept.
+/// Where an error is named, finer samples are tried so long: a slow or busy machine is to keep it, too.
 constexpr double patience_for_an_error_ms = 5000;
 constexpr double integrals_ms = 250;
 constexpr std::size_t least_integrals = 64;

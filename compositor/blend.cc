@@ -95,7 +95,7 @@ void blend(volume::Operator op, std::span<float> front, std::span<const float> b
   assert(front.size() == back.size() && front.size() % 4 == 0);
   switch (op) {
     case volume::Operator::over:
-    case volume::Operator::first_hit:  // pictures whose pixels are opaque or empty
+    case volume::Operator::first_hit:  // images whose pixels are opaque or empty
       HWY_DYNAMIC_DISPATCH(over)(front.data(), back.data(), front.size());
       break;
     case volume::Operator::max:

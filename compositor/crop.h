@@ -6,7 +6,7 @@
 
 namespace understudy::compositor {
 
-/// Reduces `image` to that rectangle, in place; an image without any such pixel becomes empty. The picture
+/// Reduces `image` to that rectangle, in place; an image without any such pixel becomes empty. The image
 /// stays the same, because pixels outside an image count as untouched (volume::neutral_value).
 void crop_to_content(volume::Image& image, volume::Operator op);
 

@@ -1,4 +1,4 @@
-// The render service as its client sees it: volumes go down, pictures come up. Two services keep this contract:
+// The render service as its client sees it: volumes go down, images come up. Two services keep this contract:
 // the embedded one renders in this process, the linked one talks to a group of MPI nodes.
 #pragma once
 
@@ -32,7 +32,7 @@ class RequestRefused : public std::runtime_error {
 struct Rendered {
   volume::ImageView image;  ///< over its footprint only; valid until the next call but integrals()
   volume::FrameCounts counts;
-  bool repeated = false;  ///< nothing was cast: it is a picture that was there already
+  bool repeated = false;  ///< nothing was cast: it is an image that was there already
 };
 
 class RenderService {
@@ -47,8 +47,8 @@ class RenderService {
   /// A complete volume is about to get another version: the texels that differ follow.
   virtual void begin_change(volume::VolumeId id, std::uint64_t version) = 0;
   /// Texels of boxes inside `stored`, one box after the other, each tightly packed, x fastest, native byte
-  /// order, bytes_per_texel each. Between begin_volume() and end_volume() these are slabs: each covers `stored`
-  /// in x and y, and each slice comes once.
+  /// order, bytes_per_texel each. Between begin_volume() and end_volume() these are slice ranges: each covers
+  /// `stored` in x and y, and each slice comes once.
   virtual void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
                           std::span<const std::byte> texels) = 0;
   /// Nothing more follows; the volume is complete.
@@ -74,6 +74,6 @@ std::unique_ptr<RenderService> embedded_service();
 
 /// Connects to the launcher's Unix socket at `address` and is handed to rank 0 of the node group behind it.
 /// Waits at most `patience_ms` for the group. Throws ServiceLost.
-std::unique_ptr<RenderService> linked_service(const std::string& address, int patience_ms);
+std::unique_ptr<RenderService> remote_render_service(const std::string& address, int patience_ms);
 
 }  // namespace understudy::compositor

@@ -1,4 +1,4 @@
-// LD_AUDIT's door: the loader asks this library where to look for each library it is about to load.
+// LD_AUDIT's entry library: the loader asks this library where to look for each library it is about to load.
 //
 // It lives in a link namespace with a C library of its own, so it is kept to a few lines of C.
 #include <dlfcn.h>
@@ -17,23 +17,23 @@ using namespace understudy::interceptor;
 namespace {
 
 StubPaths stubs;
-char door_library[PATH_MAX];
+char entry_library[PATH_MAX];
 
 void set_folder(const char* folder) {
   stubs.set_folder(folder);
-  const int length = snprintf(door_library, sizeof door_library, "%s/../libunderstudy.so", folder);
-  if (length < 0 || length >= PATH_MAX) door_library[0] = '\0';
+  const int length = snprintf(entry_library, sizeof entry_library, "%s/../libunderstudy.so", folder);
+  if (length < 0 || length >= PATH_MAX) entry_library[0] = '\0';
 }
 
 void find_stubs() {
-  const char* given = getenv("UNDERSTUDY_DOOR_DIR");
+  const char* given = getenv("UNDERSTUDY_ENTRY_DIR");
   char folder[PATH_MAX];
   Dl_info self;
   if (given != nullptr && *given != '\0') {
     set_folder(given);
   } else if (dladdr(&stubs, &self) != 0 && realpath(self.dli_fname, folder) != nullptr) {
     const size_t own_name = static_cast<size_t>(base_name(folder) - folder);
-    snprintf(folder + own_name, sizeof folder - own_name, "door");
+    snprintf(folder + own_name, sizeof folder - own_name, "entry");
     set_folder(folder);
   }
 }
@@ -54,7 +54,7 @@ AUDIT_INTERFACE unsigned la_objopen(struct link_map* map, Lmid_t, uintptr_t* coo
 
 AUDIT_INTERFACE char* la_objsearch(const char* name, uintptr_t* cookie, unsigned flag) {
   // A stub that is given in the place of a file keeps that file's name, and would look for us beside it.
-  if (strcmp(name, "libunderstudy.so") == 0 && door_library[0] != '\0') return door_library;
+  if (strcmp(name, "libunderstudy.so") == 0 && entry_library[0] != '\0') return entry_library;
   const int stub = stub_for(name);
   if (stub < 0 || stubs.path[stub][0] == '\0') return const_cast<char*>(name);
   // Names are answered before the loader looks for a file. For OSMesa it is let look, until it is at a file

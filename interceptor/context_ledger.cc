@@ -11,7 +11,7 @@ struct Entry {
   std::uintptr_t context;
   std::uintptr_t group;  ///< the number of the group's first context
   bool desktop_gl;
-  bool known_to_body;
+  bool known_to_core;
   bool current;
   bool destroyed;
   Entry* next;
@@ -45,10 +45,10 @@ Entry* add(const ContextKey& key, std::uintptr_t group, bool desktop_gl) {
   return entry;
 }
 
-/// Another context of the group that the body knows, gone or not.
+/// Another context of the group that the core knows, gone or not.
 const Entry* known_companion(const Entry& of) {
   for (const Entry* entry = entries; entry != nullptr; entry = entry->next) {
-    if (entry != &of && entry->group == of.group && entry->known_to_body) return entry;
+    if (entry != &of && entry->group == of.group && entry->known_to_core) return entry;
   }
   return nullptr;
 }
@@ -58,9 +58,9 @@ KnownContext description(const Entry& entry) {
   return {entry.context, companion != nullptr ? companion->context : 0, entry.desktop_gl};
 }
 
-/// True while the body must keep `gone` for the sake of members of its group that it has not met.
+/// True while the core must keep `gone` for the sake of members of its group that it has not met.
 bool holds_objects_for_others(const Entry& gone) {
-  if (!gone.known_to_body || known_companion(gone) != nullptr) return false;
+  if (!gone.known_to_core || known_companion(gone) != nullptr) return false;
   for (const Entry* entry = entries; entry != nullptr; entry = entry->next) {
     if (entry->group == gone.group && !entry->destroyed) return true;
   }
@@ -111,7 +111,7 @@ KnownContext note_current(const ContextKey& key, bool desktop_gl_if_new) {
   if (entry == nullptr) entry = add(key, 0, desktop_gl_if_new);
   if (entry == nullptr) return {};
   entry->current = true;
-  entry->known_to_body = true;
+  entry->known_to_core = true;
   return description(*entry);
 }
 
@@ -130,7 +130,7 @@ std::uintptr_t next_gone() {
       link = &entry->next;
       continue;
     }
-    const std::uintptr_t told = entry->known_to_body ? entry->context : 0;
+    const std::uintptr_t told = entry->known_to_core ? entry->context : 0;
     *link = entry->next;
     free(entry);
     if (told != 0) return told;

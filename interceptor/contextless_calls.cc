@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "interceptor/open_body.h"
+#include "interceptor/open_core.h"
 #include "spu/report/counters.h"
 
 namespace understudy::interceptor {
@@ -25,7 +25,7 @@ void write_at(int file, std::size_t offset, const void* bytes, std::size_t size)
   (void)!pwrite(file, bytes, size, static_cast<off_t>(offset));
 }
 
-/// The same file that the body would keep (spu/report/counters.h), with zeros where nothing happened.
+/// The same file that the core would keep (spu/report/counters.h), with zeros where nothing happened.
 void leave_counters(const char* folder) {
   char path[PATH_MAX];
   const int length = snprintf(path, sizeof path, "%s/%d.counters", folder, static_cast<int>(getpid()));
@@ -48,7 +48,7 @@ void leave_counters(const char* folder) {
 
 [[gnu::destructor]] void at_library_end() {
   // A child after fork has its parent's count, and nothing to say of its own.
-  if (calls.load() == 0 || caller.load() != getpid() || body_is_out() || body() != nullptr) return;
+  if (calls.load() == 0 || caller.load() != getpid() || core_is_out() || core() != nullptr) return;
   const char* folder = getenv("UNDERSTUDY_RUN_DIR");
   if (folder != nullptr && *folder != '\0') leave_counters(folder);
 }

@@ -1,5 +1,5 @@
-// Calls of a process that never has a context: no body is opened for it, so the door itself leaves their number
-// for the launcher's report.
+// Calls of a process that never has a context: no core is opened for it, so the entry library itself leaves
+// their number for the launcher's report.
 #pragma once
 
 namespace understudy::interceptor {

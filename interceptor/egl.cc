@@ -84,7 +84,7 @@ UNDERSTUDY_ENTRY EGLBoolean eglReleaseThread() {
 UNDERSTUDY_ENTRY EGLBoolean eglTerminate(EGLDisplay display) {
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay)> real{egl, "eglTerminate"};
   const bool told = on_stage();
-  const CurrentContext& current = door_thread.current;
+  const CurrentContext& current = entry_thread.current;
   if (told && current.system == egl && current.display == number(display)) before_frame_end(FrameEnd::destroy);
   const EGLBoolean terminated = real(display);
   if (told && terminated == EGL_TRUE) {
@@ -131,7 +131,7 @@ UNDERSTUDY_ENTRY EGLBoolean eglWaitGL() {
 
 UNDERSTUDY_ENTRY VoidFunction eglGetProcAddress(const char* name) {
   void* real = real_proc_address(egl, name);
-  if (real == nullptr || door_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
+  if (real == nullptr || entry_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
   const bool ours = std::strncmp(name, "gl", 2) == 0 || std::strncmp(name, "egl", 3) == 0;
   void* own = ours ? own_entry(name) : nullptr;
   return reinterpret_cast<VoidFunction>(own != nullptr ? own : real);

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "interceptor/open_body.h"
+#include "interceptor/open_core.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/remote.h"
 
@@ -15,18 +15,18 @@ namespace {
 
 /// Of the context that is current on this thread, or of any.
 const spu::DispatchTable& real_functions() {
-  const spu::DispatchTable* driver = door_thread.state.driver;
+  const spu::DispatchTable* driver = entry_thread.state.driver;
   return driver != nullptr ? *driver : driver_table_without_context();
 }
 
 }  // namespace
 
 const spu::DispatchTable& enter_without_context() {
-  DoorThread& thread = door_thread;
+  EntryThread& thread = entry_thread;
   if (thread.level == 0) {
     if (thread.state.calls != nullptr) ++*thread.state.calls;
     // Nobody will ever want this thread's calls: let the next ones take the short way.
-    if (body_is_out()) {
+    if (core_is_out()) {
       thread.state.table = &real_functions();
       thread.state.calls = &thread.spare_calls;
     }

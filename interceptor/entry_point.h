@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dispatch/call_id.h"
-#include "interceptor/door_thread.h"
+#include "interceptor/entry_thread.h"
 
 #define UNDERSTUDY_ENTRY extern "C" __attribute__((visibility("default")))
 
@@ -13,7 +13,7 @@ const spu::DispatchTable& enter_without_context();
 
 /// Counts the call and answers with the table that it goes to.
 inline const spu::DispatchTable& entered_table() {
-  ThreadState& state = door_thread.state;
+  ThreadState& state = entry_thread.state;
   if (state.table != nullptr) [[likely]] {
     ++*state.calls;
     return *state.table;

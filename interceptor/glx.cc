@@ -42,7 +42,7 @@ using VoidFunction = void (*)();
 /// Our entry point for a name that we export and the driver has; what the driver answers for all others.
 VoidFunction proc_address(const char* name) {
   void* real = real_proc_address(glx, name);
-  if (real == nullptr || door_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
+  if (real == nullptr || entry_thread.level > 0) return reinterpret_cast<VoidFunction>(real);
   void* own = std::strncmp(name, "gl", 2) == 0 ? own_entry(name) : nullptr;
   return reinterpret_cast<VoidFunction>(own != nullptr ? own : real);
 }
@@ -156,9 +156,9 @@ UNDERSTUDY_ENTRY void glXWaitGL() {
 
 UNDERSTUDY_ENTRY void glXUseXFont(Font font, int first, int count, int list) {
   static constinit RealFunction<void (*)(Font, int, int, int)> real{glx, "glXUseXFont"};
-  // Where nothing stands in the driver's place but the door, its calls are the application's.
-  const CurrentContext& current = door_thread.current;
-  const understudy::spu::DispatchTable* table = door_thread.state.table;
+  // Where nothing stands in the driver's place but the entry library, its calls are the application's.
+  const CurrentContext& current = entry_thread.current;
+  const understudy::spu::DispatchTable* table = entry_thread.state.table;
   if (!is_remote()) return real(font, first, count, list);
   if (table == nullptr || current.context == 0 || current.system != glx) return;
   make_lists_of_font(*table, reinterpret_cast<Display*>(current.display), font, first, count, list);

@@ -7,11 +7,11 @@
 namespace understudy::interceptor {
 namespace {
 
-/// Lets the body set the thread's table for a context that is current on the driver.
-void enter(const BodyServices& services, const KnownContext& known, const CurrentContext& current) {
-  DoorThread& thread = door_thread;
+/// Lets the core set the thread's table for a context that is current on the driver.
+void enter(const CoreServices& services, const KnownContext& known, const CurrentContext& current) {
+  EntryThread& thread = entry_thread;
   if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
-  const InsideBody inside;
+  const InsideCore inside;
   services.context_current(known.context, known.share, current.system, known.desktop_gl, current.draw);
   if (thread.state.table == nullptr) thread.state.table = thread.state.driver;
   if (thread.state.calls == nullptr) thread.state.calls = &thread.spare_calls;
@@ -28,9 +28,9 @@ bool touches_current(const WantedContext& wanted, const CurrentContext& current)
 }
 
 /// A thread that ends lets its context go. The driver may have left the thread already: no call is made on its
-/// behalf, and what it still calls goes past the body.
+/// behalf, and what it still calls goes past the core.
 void thread_ends(void*) {
-  DoorThread& thread = door_thread;
+  EntryThread& thread = entry_thread;
   thread.state.table = nullptr;
   if (thread.current.context == 0) return;
   note_not_current(thread.current.context);
@@ -42,13 +42,13 @@ void watch_end_of_thread() {
   static constinit pthread_key_t key;
   static constinit pthread_once_t once = PTHREAD_ONCE_INIT;
   pthread_once(&once, [] { pthread_key_create(&key, &thread_ends); });
-  pthread_setspecific(key, &door_thread);  // any value but null has the key's function called
+  pthread_setspecific(key, &entry_thread);  // any value but null has the key's function called
 }
 
 }  // namespace
 
 void follow_driver(const WantedContext& wanted) {
-  ThreadState& state = door_thread.state;
+  ThreadState& state = entry_thread.state;
   if (wanted.handle == 0 && state.driver == nullptr) return;
   const spu::DispatchTable& driver = driver_table(wanted.system);
   if (wanted.handle == 0 && state.driver != &driver) return;  // another window system's context stays current
@@ -57,20 +57,20 @@ void follow_driver(const WantedContext& wanted) {
 }
 
 void before_make_current(const WantedContext& wanted) {
-  DoorThread& thread = door_thread;
-  const BodyServices* services = body();
+  EntryThread& thread = entry_thread;
+  const CoreServices* services = core();
   if (services == nullptr || !touches_current(wanted, thread.current)) return;
-  const InsideBody inside;
+  const InsideCore inside;
   services->before_frame_end(FrameEnd::make_current);
   if (!same_attachment(wanted, thread.current)) services->context_leaving();
 }
 
 void after_make_current(const WantedContext& wanted, bool succeeded) {
-  DoorThread& thread = door_thread;
+  EntryThread& thread = entry_thread;
   const bool same = same_attachment(wanted, thread.current);
   if (!succeeded) {
-    // The old context is still current: the body, which was told that it leaves, takes it up again.
-    const BodyServices* services = body();
+    // The old context is still current: the core, which was told that it leaves, takes it up again.
+    const CoreServices* services = core();
     if (services != nullptr && !same && touches_current(wanted, thread.current)) {
       enter(*services, known_context(thread.current.context), thread.current);
     }
@@ -83,7 +83,7 @@ void after_make_current(const WantedContext& wanted, bool succeeded) {
   thread.current = {};
   follow_driver(wanted);
   if (wanted.handle != 0) {
-    if (const BodyServices* services = open_body()) {
+    if (const CoreServices* services = open_core()) {
       const KnownContext known =
           note_current({wanted.system, wanted.display, wanted.handle}, wanted.desktop_gl_if_new);
       if (known.context != 0) {
@@ -98,21 +98,21 @@ void after_make_current(const WantedContext& wanted, bool succeeded) {
 }
 
 void before_frame_end(FrameEnd kind) {
-  const BodyServices* services = body();
-  if (services == nullptr || door_thread.level > 0 || door_thread.current.context == 0) return;
-  const InsideBody inside;
+  const CoreServices* services = core();
+  if (services == nullptr || entry_thread.level > 0 || entry_thread.current.context == 0) return;
+  const InsideCore inside;
   services->before_frame_end(kind);
 }
 
 void after_frame_end(FrameEnd kind) {
-  const BodyServices* services = body();
-  if (services == nullptr || door_thread.level > 0 || door_thread.current.context == 0) return;
-  const InsideBody inside;
+  const CoreServices* services = core();
+  if (services == nullptr || entry_thread.level > 0 || entry_thread.current.context == 0) return;
+  const InsideCore inside;
   services->after_frame_end(kind);
 }
 
 void before_destroy(const ContextKey& key) {
-  const CurrentContext& current = door_thread.current;
+  const CurrentContext& current = entry_thread.current;
   if (current.context != 0 && current.system == key.system && current.handle == key.handle) {
     before_frame_end(FrameEnd::destroy);
   }
@@ -124,10 +124,10 @@ void after_destroy(const ContextKey& key) {
 }
 
 void report_gone() {
-  const BodyServices* services = body();
+  const CoreServices* services = core();
   if (services == nullptr) return;
   while (const std::uintptr_t context = next_gone()) {
-    const InsideBody inside;
+    const InsideCore inside;
     services->context_destroyed(context);
   }
 }

@@ -1,18 +1,18 @@
-// What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Tells the body, around the
+// What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Tells the core, around the
 // real calls.
 #pragma once
 
 #include <cstdint>
 
 #include "interceptor/context_ledger.h"
-#include "interceptor/door_thread.h"
-#include "interceptor/open_body.h"
+#include "interceptor/entry_thread.h"
+#include "interceptor/open_core.h"
 
 namespace understudy::interceptor {
 
-/// True when the call came from the application and a body may want to know of it.
+/// True when the call came from the application and a core may want to know of it.
 inline bool on_stage() {
-  return door_thread.level == 0 && !body_is_out();
+  return entry_thread.level == 0 && !core_is_out();
 }
 
 /// What a make-current call asks for; `handle` 0 releases the current context.
@@ -26,7 +26,7 @@ struct WantedContext {
 };
 
 /// A make-current call has succeeded: from now on the thread's calls belong to that context's OpenGL, or to
-/// none. Wanted also where there is no body.
+/// none. Wanted also where there is no core.
 void follow_driver(const WantedContext& wanted);
 
 /// The two halves of a make-current call. `succeeded` false leaves everything as it was.
@@ -37,7 +37,7 @@ template <class RealCall>
 auto make_current(const WantedContext& wanted, RealCall real_call) {
   if (!on_stage()) {
     const auto result = real_call();
-    if (result != 0 && door_thread.level == 0) follow_driver(wanted);
+    if (result != 0 && entry_thread.level == 0) follow_driver(wanted);
     return result;
   }
   before_make_current(wanted);
@@ -46,7 +46,7 @@ auto make_current(const WantedContext& wanted, RealCall real_call) {
   return result;
 }
 
-/// Tells the body that this thread's frame is about to end, or has ended. Nothing without a body and a context.
+/// Tells the core that this thread's frame is about to end, or has ended. Nothing without a core and a context.
 void before_frame_end(FrameEnd kind);
 void after_frame_end(FrameEnd kind);
 
@@ -66,7 +66,7 @@ auto end_frame(FrameEnd kind, RealCall real_call) {
 void before_destroy(const ContextKey& key);
 void after_destroy(const ContextKey& key);
 
-/// Tells the body which contexts are gone.
+/// Tells the core which contexts are gone.
 void report_gone();
 
 }  // namespace understudy::interceptor

@@ -22,7 +22,7 @@ constinit Call real_flush = nullptr;
 
 /// glFlush and then glFinish end one frame, not two: something else must have been called since the last end.
 void frame_ended(std::uint64_t calls_of_this_end) {
-  DoorThread& thread = door_thread;
+  EntryThread& thread = entry_thread;
   if (thread.level > 0 || thread.current.context == 0) return;
   const std::uint64_t calls = *thread.state.calls;
   const bool drew = calls > thread.calls_at_frame_end + calls_of_this_end;
@@ -56,10 +56,10 @@ OSMesaContext created(OSMesaContext context, OSMesaContext share) {
 /// The application is about to get the address of a buffer: what is pending must be in it, depth included.
 /// Reading no pixel leaves everything as it is, and counts as looking at them.
 void settle_for_reading() {
-  if (!on_stage() || door_thread.current.system != osmesa || door_thread.current.context == 0) return;
+  if (!on_stage() || entry_thread.current.system != osmesa || entry_thread.current.context == 0) return;
   before_frame_end(FrameEnd::finish);
   char nothing;
-  const auto read = door_thread.state.table->ReadPixels;
+  const auto read = entry_thread.state.table->ReadPixels;
   if (read != nullptr) read(0, 0, 0, 0, GL_RGBA, GL_UNSIGNED_BYTE, &nothing);
 }
 
@@ -113,7 +113,7 @@ UNDERSTUDY_ENTRY GLboolean OSMesaMakeCurrent(OSMesaContext context, void* buffer
   const std::uintptr_t drawable = release ? 0 : number(buffer);
   const WantedContext wanted{osmesa, 0, release ? 0 : number(context), drawable,
                              release ? 0 : shape(type, width, height)};
-  if (on_stage() && door_thread.current.system == osmesa && door_thread.current.context != 0) {
+  if (on_stage() && entry_thread.current.system == osmesa && entry_thread.current.context != 0) {
     before_frame_end(FrameEnd::finish);
     frame_ended(0);
   }
@@ -127,7 +127,7 @@ UNDERSTUDY_ENTRY OSMesaContext OSMesaGetCurrentContext() {
 
 UNDERSTUDY_ENTRY OSMESAproc OSMesaGetProcAddress(const char* name) {
   void* real = real_proc_address(osmesa, name);
-  if (real == nullptr || door_thread.level > 0) return reinterpret_cast<OSMESAproc>(real);
+  if (real == nullptr || entry_thread.level > 0) return reinterpret_cast<OSMESAproc>(real);
   const bool ours = std::strncmp(name, "gl", 2) == 0 || std::strncmp(name, "OSMesa", 6) == 0;
   void* own = ours ? own_entry(name) : nullptr;
   return reinterpret_cast<OSMESAproc>(own != nullptr ? own : real);

@@ -114,7 +114,7 @@ AnyFunction understudy_outside_registry(const char* name) {
     report_missing(name);
     return &understudy_do_nothing;
   }
-  DoorThread& thread = door_thread;
+  EntryThread& thread = entry_thread;
   if (thread.level == 0) {
     if (thread.state.calls != nullptr) ++*thread.state.calls;
     if (!describes_a_vertex(name)) before_frame_end(FrameEnd::wait);

@@ -12,7 +12,7 @@
 #include <initializer_list>
 
 #include "dispatch/call_id.h"
-#include "interceptor/door_thread.h"
+#include "interceptor/entry_thread.h"
 #include "interceptor/gl_names.h"
 #include "interceptor/osmesa.h"
 #include "interceptor/remote/remote.h"
@@ -64,9 +64,9 @@ __attribute__((constructor)) void find_own_folder() {
   if (dladdr(&libraries, &info) == 0 || info.dli_fname == nullptr) return;
   if (realpath(info.dli_fname, folder_of_this_library) == nullptr) return;
   if (char* slash = strrchr(folder_of_this_library, '/')) *slash = '\0';
-  char door[PATH_MAX];
-  const int length = snprintf(door, sizeof door, "%s/door", folder_of_this_library);
-  if (length > 0 && length < static_cast<int>(sizeof door)) stubs.set_folder(door);
+  char entry[PATH_MAX];
+  const int length = snprintf(entry, sizeof entry, "%s/entry", folder_of_this_library);
+  if (length > 0 && length < static_cast<int>(sizeof entry)) stubs.set_folder(entry);
 }
 
 class Locked {
@@ -288,7 +288,7 @@ void claim_names() {
   if (claimed.test_and_set()) return;
   for (int stub = 0; stub < stub_count; ++stub) {
     if (stub == osmesa_stub || stubs.path[stub][0] == '\0') continue;
-    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs a door, no more
+    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs an entry library, no more
   }
 }
 

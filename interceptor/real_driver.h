@@ -7,7 +7,7 @@
 #pragma once
 
 #include "dispatch/table.h"
-#include "interceptor/body.h"
+#include "interceptor/core.h"
 
 namespace understudy::interceptor {
 

@@ -4,8 +4,8 @@
 #include <atomic>
 
 #include "interceptor/contextless_calls.h"
-#include "interceptor/door_thread.h"
 #include "interceptor/entry_point.h"
+#include "interceptor/entry_thread.h"
 #include "interceptor/real_driver.h"
 
 namespace understudy::interceptor {
@@ -30,7 +30,7 @@ class RealFunction<Result (*)(Arguments...)> {
       }
       function_.store(function, std::memory_order_relaxed);
     }
-    if (door_thread.level == 0) count_window_system_call();
+    if (entry_thread.level == 0) count_window_system_call();
     const InsideDriver inside;
     return reinterpret_cast<Result (*)(Arguments...)>(function)(arguments...);
   }

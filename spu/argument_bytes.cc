@@ -10,7 +10,7 @@ std::optional<std::size_t> argument_bytes(CallId call, std::size_t parameter, co
   switch (call_shape(call).parameters()[parameter].rule) {
     case ExtentRule::image:
     case ExtentRule::image_out:
-      return picture_extent(picture_shape(call, words), tight_pixels);
+      return image_extent(image_shape(call, words), tight_pixels);
     default:
       return pointee_bytes(call, parameter, words);
   }

@@ -1,4 +1,4 @@
-// How many bytes the pointer arguments of a call stand for, pictures included.
+// How many bytes the pointer arguments of a call stand for, images included.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace understudy::spu {
 
-/// Nothing when it is not known. Pictures are counted without gaps between their rows. 0 for a null pointer.
+/// Nothing when it is not known. Images are counted without gaps between their rows. 0 for a null pointer.
 std::optional<std::size_t> argument_bytes(CallId call, std::size_t parameter, const std::uint64_t* words);
 
 /// What a call hands to OpenGL, or has OpenGL write, through all of its pointers; what is not known counts

@@ -10,14 +10,14 @@
 #include "spu/chain_json.h"
 #include "spu/chain_text.h"
 #include "spu/driver/driver.h"
-#include "spu/link/link.h"
 #include "spu/null/null.h"
 #include "spu/pack/pack.h"
 #include "spu/pass/pass.h"
 #include "spu/perf/perf.h"
 #include "spu/print/print.h"
-#include "spu/strips/strip.h"
-#include "spu/strips/strips.h"
+#include "spu/remote/remote.h"
+#include "spu/tiles/tile.h"
+#include "spu/tiles/tiles.h"
 #include "spu/trace/trace.h"
 #include "spu/track/description.h"
 #include "spu/unpack/unpack.h"
@@ -27,8 +27,8 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::array units_by_name = {
-    &driver_description, &link_description,   &null_description,  &pack_description,   &pass_description,
-    &perf_description,   &print_description,  &strip_description, &strips_description, &trace_description,
+    &driver_description, &remote_description, &null_description,  &pack_description,  &pass_description,
+    &perf_description,   &print_description,  &tile_description,  &tiles_description, &trace_description,
     &track_description,  &unpack_description, &volume_description};
 
 struct PlannedUnit {
@@ -64,11 +64,11 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
       return std::any_of(planned.begin(), planned.end(),
                          [&](const PlannedUnit& before) { return name == before.description->name; });
     };
-    if (!planned.empty() && planned.back().description->standing == Standing::last) {
+    if (!planned.empty() && planned.back().description->position == UnitPosition::last) {
       throw ChainError(setting.where, fmt::format("{} stands behind {}, which must be last; move it before",
                                                   unit.name, planned.back().description->name));
     }
-    if (unit.standing == Standing::once && is_planned(unit.name)) {
+    if (unit.position == UnitPosition::once && is_planned(unit.name)) {
       throw ChainError(setting.where,
                        fmt::format("{} can stand only once in a chain, and is there already", unit.name));
     }
@@ -90,7 +90,7 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
     throw ChainError(settings[i].where, fmt::format("{0} needs {1} behind it; write \"{0} {1}\"",
                                                     planned[i].description->name, wanted));
   }
-  if (planned.empty() || planned.back().description->standing != Standing::last) {
+  if (planned.empty() || planned.back().description->position != UnitPosition::last) {
     throw ChainError(settings.empty() ? "chain" : settings.back().where,
                      "the chain must end in driver, the real OpenGL; write it last");
   }

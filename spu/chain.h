@@ -25,7 +25,8 @@ enum class Phase {
   plain,      ///< no volume texture exists: nothing is watched but texture uploads, lists and shaders
   watching,   ///< a volume texture exists: draws are looked at
   deferring,  ///< a run of slices is open: every call but more of the same closes it first
-  owing,      ///< watching, and the depth that slices would have written is not there: see volume/depth_debt.h
+  owing,      ///< watching, and the depth that slices would have written is not there: see
+              ///< volume/deferred_depth_write.h
   compiling,  ///< between glNewList and glEndList: calls are recorded by the driver, not executed
 };
 constexpr int phase_count = 5;
@@ -65,18 +66,18 @@ class Unit {
 /// All context shared state lives in the share group; see track/share_group.h.
 class ShareGroup;
 
-class StageLink;
+class ServerConnection;
 
 /// What a context is among the contexts of the process.
 struct Surroundings {
-  std::uint64_t context = 0;      ///< its number
-  std::uint64_t shares_with = 0;  ///< number of one that it shares objects with; 0: none
-  StageLink* stage = nullptr;     ///< where its calls are made; null: here
+  std::uint64_t context = 0;           ///< its number
+  std::uint64_t shares_with = 0;       ///< number of one that it shares objects with; 0: none
+  ServerConnection* server = nullptr;  ///< where its calls are made; null: here
 };
 
 class Chain {
  public:
-  /// `switch_table` installs a table as the calling thread's; the door provides it.
+  /// `switch_table` installs a table as the calling thread's; the entry library provides it.
   Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
         void (*switch_table)(const DispatchTable*), Surroundings surroundings = {});
   ~Chain();
@@ -175,7 +176,7 @@ class Chain {
   /// Of the unit at `place`, and of the units above it that inherit the slot from there.
   void set_inherited(std::size_t place, Phase phase, CallId call, AnyFunction function);
 
-  /// Read by every call that a unit looks at. The body, opened late, has but few bytes of these, and asking for
+  /// Read by every call that a unit looks at. The core, opened late, has but few bytes of these, and asking for
   /// their address by function costs 5 ns a call.
   [[gnu::tls_model("initial-exec")]] static constinit thread_local Chain* current_;
 

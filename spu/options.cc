@@ -58,14 +58,14 @@ bool set_time(Options& options, const std::string& text) {
   return true;
 }
 
-bool set_never_left_out(Options& options, const std::string& text) {
-  const std::optional<Omissions> omissions = omissions_in(text);
-  if (omissions) options.never_left_out = *omissions;
-  return omissions.has_value();
+bool set_disabled_optimizations(Options& options, const std::string& text) {
+  const std::optional<OptimizationSet> optimizations = optimizations_in(text);
+  if (optimizations) options.disabled_optimizations = *optimizations;
+  return optimizations.has_value();
 }
 
 bool set_polygons(Options& options, const std::string& text) {
-  if (text != "root" && text != "strips") return false;
+  if (text != "root" && text != "tiles") return false;
   options.polygons = text;
   return true;
 }
@@ -92,9 +92,9 @@ bool set_name(Options& options, const std::string& text) {
   return true;
 }
 
-bool set_stage_opengl(Options& options, const std::string& text) {
+bool set_server_opengl(Options& options, const std::string& text) {
   if (text != "auto" && text != "egl" && text != "osmesa") return false;
-  options.stage_opengl = text;
+  options.server_opengl = text;
   return true;
 }
 
@@ -111,30 +111,30 @@ constexpr std::array rows{
          "render on the node group of `understudy serve`: its socket, or HOST:PORT on another machine"},
         set_text<&Options::connect>},
     Row{{"--exchange", "UNDERSTUDY_EXCHANGE", "NAME", "auto",
-         "how the nodes' partial pictures become one: serial, tree, direct-send, binary-swap, radix-k, or "
+         "how the nodes' partial images become one: serial, tree, direct-send, binary-swap, radix-k, or "
          "auto, "
-         "the cheapest for each picture by what messages and bytes cost here"},
+         "the cheapest for each image by what messages and bytes cost here"},
         set_name<&Options::exchange, compositor::set_algorithm>},
     Row{{"--pixels", "UNDERSTUDY_PIXELS", "NAME", "float",
          "what travels between nodes: float (exact), half (rounds to 1/2048 of a value), byte (to 1/510)"},
         set_name<&Options::pixels, compositor::set_layout>},
-    Row{{"--home", "UNDERSTUDY_HOME", "WAY", "direct",
-         "how parts of a picture come to the viewer: direct (every node of this machine writes its own into "
+    Row{{"--gather", "UNDERSTUDY_GATHER", "WAY", "direct",
+         "how parts of an image come to the viewer: direct (every node of this machine writes its own into "
          "the "
          "viewer's memory) or gathered (by one node)"},
-        set_name<&Options::home, compositor::set_home>},
+        set_name<&Options::gather, compositor::set_gather>},
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
-         "composite parts of a picture while others are drawn: on, off, or auto, where that was faster"},
+         "composite parts of an image while others are drawn: on, off, or auto, where that was faster"},
         set_name<&Options::overlap, compositor::set_overlap>},
     Row{{"--polygons", "UNDERSTUDY_POLYGONS", "WHO", "root",
-         "with --remote, who draws what is no volume: root (one process), or strips (as many processes as "
+         "with --remote, who draws what is no volume: root (one process), or tiles (as many processes as "
          "nodes, "
          "each its own rows of the window)"},
         set_polygons},
-    Row{{"--pipeline", "UNDERSTUDY_PIPELINE", "FRAMES", "0",
-         "1: while the camera moves, show the picture of the frame before, so that nodes work while the viewer "
+    Row{{"--frame-latency", "UNDERSTUDY_FRAME_LATENCY", "FRAMES", "0",
+         "1: while the camera moves, show the image of the frame before, so that nodes work while the viewer "
          "does; once it rests, viewers that have a window are asked to draw again"},
-        set_number<&Options::pipeline, 0, 1>},
+        set_number<&Options::frame_latency, 0, 1>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
          "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
          "of "
@@ -149,21 +149,21 @@ constexpr std::array rows{
          "say for every volume what was recognised, and why draws were left to the viewer; for every frame and "
          "in the end what was left out of the work, and what was not, and why"},
         set_switch<&Options::explain>},
-    Row{{"--never-leave-out", "UNDERSTUDY_NEVER_LEAVE_OUT", "LIST", "none",
-         "do what nobody would see nevertheless, to compare: all, or some of empty-blocks, hidden-samples, "
-         "lesser-samples, footprints, unchanged-pictures, unchanged-texels, known-colours, absent-depth, "
+    Row{{"--disable-optimization", "UNDERSTUDY_DISABLE_OPTIMIZATION", "LIST", "none",
+         "do what nobody would see nevertheless, to compare: all, or some of empty-bricks, hidden-samples, "
+         "dominated-samples, footprints, unchanged-images, unchanged-texels, known-colours, absent-depth, "
          "unseen-depth, with commas between"},
-        set_never_left_out},
+        set_disabled_optimizations},
     Row{{"--error", "UNDERSTUDY_ERROR", "E", "none",
          "samples lie anywhere, as few as keep every channel of every pixel within E of the integral: a number "
          "like 0.002, or a fraction like 0.5/255, above 0 and at most 1"},
         set_error},
     Row{{"--time", "UNDERSTUDY_TIME", "T", "none",
-         "samples lie anywhere, as many as can be cast in T a picture: 30ms, or 0.03s, above 0 and at most a "
+         "samples lie anywhere, as many as can be cast in T an image: 30ms, or 0.03s, above 0 and at most a "
          "minute; with --error, that goes first"},
         set_time},
     Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
-         "save the composited float pictures: frame_0001.pfm and frame_0001_alpha.pfm, …"},
+         "save the composited float images: frame_0001.pfm and frame_0001_alpha.pfm, …"},
         set_text<&Options::save_frames>},
     Row{{"--debug-tint", "UNDERSTUDY_DEBUG_TINT", "", "off", "colour the pixels that Understudy drew"},
         set_switch<&Options::debug_tint>},
@@ -173,14 +173,15 @@ constexpr std::array rows{
          "the stream processing units, first to last, with their options, or @FILE.json; `understudy units` "
          "lists them"},
         set_text<&Options::chain>},
-    Row{{"--stage-opengl", "UNDERSTUDY_STAGE_OPENGL", "NAME", "auto",
+    Row{{"--server-opengl", "UNDERSTUDY_SERVER_OPENGL", "NAME", "auto",
          "what makes the calls of --remote and of traces: egl (without a window system), osmesa (on the CPU, "
          "one "
          "colour buffer), or auto, OSMesa where EGL makes no context"},
-        set_stage_opengl},
+        set_server_opengl},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},
-    Row{{"", "UNDERSTUDY_REMOTE", "PATH", "", "where the stage of `understudy run --remote` is (set by it)"},
+    Row{{"", "UNDERSTUDY_REMOTE", "PATH", "",
+         "where the GL server of `understudy run --remote` is (set by it)"},
         set_text<&Options::remote>},
 };
 

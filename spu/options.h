@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "spu/report/omission.h"
+#include "spu/report/optimization.h"
 
 namespace understudy::spu {
 
@@ -19,22 +19,22 @@ struct Options {
   std::string report;  ///< JSON file; empty: none
   int verify = 0;      ///< every K frames; 0: the first frame of every volume only; -1: never
   bool explain = false;
-  Omissions never_left_out;
+  OptimizationSet disabled_optimizations;
   bool disable = false;
   bool debug_tint = false;
-  double error = 0;               ///< that pictures may have; 0: samples are the viewer's own
-  double time_ms = 0;             ///< that pictures may take; 0: samples are the viewer's own
+  double error = 0;               ///< that images may have; 0: samples are the viewer's own
+  double time_ms = 0;             ///< that images may take; 0: samples are the viewer's own
   std::string save_frames;        ///< folder for PFM files; empty: none
   std::string exchange = "auto";  ///< name of compositor::set_algorithm
   std::string pixels = "float";   ///< name of compositor::set_layout
-  std::string home = "direct";    ///< name of compositor::set_home
+  std::string gather = "direct";  ///< name of compositor::set_gather
   std::string overlap = "auto";   ///< name of compositor::set_overlap
-  std::string polygons = "root";  ///< or "strips": who draws the windows of a stage
-  int pipeline = 0;               ///< frames that pictures of a moving camera may be behind
+  std::string polygons = "root";  ///< or "tiles": who draws the windows of a GL server
+  int frame_latency = 0;          ///< frames that images of a moving camera may be behind
   std::string chain = "track volume driver";
-  std::string run_dir;                ///< the launcher's folder for this run (counters); empty: no launcher
-  std::string stage_opengl = "auto";  ///< what stages and replays draw with: auto, egl or osmesa
-  std::string remote;         ///< Unix socket of the stage that makes the calls; empty: they are made here
+  std::string run_dir;                 ///< the launcher's folder for this run (counters); empty: no launcher
+  std::string server_opengl = "auto";  ///< what GL servers and replays draw with: auto, egl or osmesa
+  std::string remote;         ///< Unix socket of the GL server that makes the calls; empty: they are made here
   double verify_psnr = 30.0;  ///< below this the volume goes back to the application
 
   bool has_budget() const { return error > 0 || time_ms > 0; }

@@ -18,7 +18,7 @@ struct UnitPlace {
   std::shared_ptr<RenderSession> session;  ///< of the process
 };
 
-enum class Standing {
+enum class UnitPosition {
   once,        ///< it finds itself by its type, so a chain can hold one
   repeatable,  ///< any number of times
   last,        ///< the end of every chain
@@ -28,7 +28,7 @@ struct UnitDescription {
   const char* name;
   const char* help;  ///< one line
   std::span<const UnitOption> options = {};
-  Standing standing = Standing::once;
+  UnitPosition position = UnitPosition::once;
   const char* needs = nullptr;        ///< a unit that must stand somewhere before it
   const char* leads_to = nullptr;     ///< a unit that must stand somewhere behind it
   const char* or_leads_to = nullptr;  ///< or this one

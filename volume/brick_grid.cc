@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "volume/sight.h"
+#include "volume/visibility_order.h"
 
 namespace understudy::volume {
 
@@ -36,7 +36,7 @@ TexelBox BrickGrid::cells(std::size_t brick) const {
 std::vector<std::size_t> BrickGrid::in_visibility_order(const VolumeDescription& volume,
                                                         const RenderRequest& request) const {
   // Whatever face a ray crosses, the sum of what its brick counts on the three axes rises by one.
-  const Sight sight(request);
+  const VisibilityOrder visibility(request);
   std::array<std::vector<int>, 3> along;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<int>& counted = along[std::size_t(axis)];
@@ -44,7 +44,7 @@ std::vector<std::size_t> BrickGrid::in_visibility_order(const VolumeDescription&
     counted.assign(std::size_t(counts[a]), 0);
     for (std::size_t i = 1; i < counted.size(); ++i) {
       const double face = (origin[a] + int(i) * edge + 0.5) / volume.size[a];
-      counted[i] = counted[i - 1] + (sight.high_first(axis, face) ? -1 : 1);
+      counted[i] = counted[i - 1] + (visibility.high_first(axis, face) ? -1 : 1);
     }
   }
   const auto passed = [&](std::size_t brick) {

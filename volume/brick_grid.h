@@ -24,7 +24,7 @@ struct BrickGrid {
   TexelBox cells(std::size_t brick) const;
 
   /// All bricks, such that on every ray samples in a brick named earlier come before those in one named later;
-  /// exact for any camera while a request's planes keep one order over the picture, as KdTree says. Throws
+  /// exact for any camera while a request's planes keep one order over the image, as KdTree says. Throws
   /// std::invalid_argument when the matrix is singular.
   std::vector<std::size_t> in_visibility_order(const VolumeDescription& volume,
                                                const RenderRequest& request) const;

@@ -35,10 +35,10 @@ struct LinearMap {
   bool operator==(const LinearMap&) const = default;
 };
 
-/// A transfer function of two samples, the front and the back of a slab (see Slab): edge x edge plain RGBA
-/// entries, edge >= 2, at low + i (high - low) / (edge - 1) in both directions, the front's running faster;
-/// bilinear between entries and constant outside [low, high]. Alpha is the opacity of one slab.
-struct PairTable {
+/// A transfer function of two samples, the front and the back of a segment (see SliceSegment): edge x edge
+/// plain RGBA entries, edge >= 2, at low + i (high - low) / (edge - 1) in both directions, the front's running
+/// faster; bilinear between entries and constant outside [low, high]. Alpha is the opacity of one segment.
+struct PreIntegrationTable {
   float low = 0.0F;
   float high = 1.0F;
   int edge = 0;
@@ -46,9 +46,9 @@ struct PairTable {
   /// Colour is multiplied by alpha after the interpolation. False: it is premultiplied already.
   bool multiply_by_alpha = true;
 
-  bool operator==(const PairTable&) const = default;
+  bool operator==(const PreIntegrationTable&) const = default;
 };
 
-using Classification = std::variant<TransferFunction, LinearMap, PairTable>;
+using Classification = std::variant<TransferFunction, LinearMap, PreIntegrationTable>;
 
 }  // namespace understudy::volume

@@ -1,4 +1,4 @@
-// Pictures as they travel: premultiplied float RGBA over a rectangle of the framebuffer.
+// Images as they travel: premultiplied float RGBA over a rectangle of the framebuffer.
 #pragma once
 
 #include <algorithm>

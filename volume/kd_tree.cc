@@ -12,30 +12,30 @@ KdTree::KdTree(const VolumeDescription& volume, Partition partition)
 
 KdTree::KdTree(const VolumeDescription& volume, int ranks) : KdTree(volume, by_blocks(volume, ranks)) {}
 
-void KdTree::walk(int child, const Sight& sight, std::vector<int>& order) const {
+void KdTree::walk(int child, const VisibilityOrder& visibility, std::vector<int>& order) const {
   if (child < 0) {
     order.push_back(~child);
     return;
   }
   const Partition::Split& node = partition_.splits[std::size_t(child)];
-  const bool high_first = sight.high_first(node.axis, planes_[std::size_t(child)]);
-  walk(high_first ? node.high : node.low, sight, order);
-  walk(high_first ? node.low : node.high, sight, order);
+  const bool high_first = visibility.high_first(node.axis, planes_[std::size_t(child)]);
+  walk(high_first ? node.high : node.low, visibility, order);
+  walk(high_first ? node.low : node.high, visibility, order);
 }
 
-std::vector<int> KdTree::visibility_order(const Sight& sight) const {
+std::vector<int> KdTree::visibility_order(const VisibilityOrder& visibility) const {
   std::vector<int> order;
   order.reserve(boxes_.size());
-  walk(root(), sight, order);
+  walk(root(), visibility, order);
   return order;
 }
 
 std::vector<int> KdTree::visibility_order(const Matrix4& texture_to_clip) const {
-  return visibility_order(Sight(texture_to_clip));
+  return visibility_order(VisibilityOrder(texture_to_clip));
 }
 
 std::vector<int> KdTree::visibility_order(const RenderRequest& request) const {
-  return visibility_order(Sight(request));
+  return visibility_order(VisibilityOrder(request));
 }
 
 }  // namespace understudy::volume

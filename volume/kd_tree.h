@@ -1,5 +1,5 @@
 // A volume's cells in one convex box per rank, as a partition divides them, and the order in which the boxes
-// cover each other. (Bentley 1975; for sort-last volume rendering Ma, Painter, Hansen, Krogh 1994.)
+// cover each other. (Bentley 1975; for sort-last volume rendering Ma, TileWorker, Hansen, Krogh 1994.)
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include "volume/brick/cell_lattice.h"
 #include "volume/partition.h"
 #include "volume/request.h"
-#include "volume/sight.h"
+#include "volume/visibility_order.h"
 
 namespace understudy::volume {
 
@@ -29,7 +29,7 @@ class KdTree {
 
   /// All ranks, in the order in which a request's samples meet their boxes: on every ray, samples in a box
   /// named earlier have smaller plane indices. Follows the planes, so that it also holds for reversed depth.
-  /// Exact for any camera while the planes keep one order over the picture; they do not when the eye lies
+  /// Exact for any camera while the planes keep one order over the image; they do not when the eye lies
   /// between slices that do not face it, where the application's own order is wrong on one side. Throws
   /// std::invalid_argument when the matrix is singular.
   std::vector<int> visibility_order(const RenderRequest& request) const;
@@ -38,8 +38,8 @@ class KdTree {
   std::vector<int> visibility_order(const Matrix4& texture_to_clip) const;
 
  private:
-  std::vector<int> visibility_order(const Sight& sight) const;
-  void walk(int child, const Sight& sight, std::vector<int>& order) const;
+  std::vector<int> visibility_order(const VisibilityOrder& visibility) const;
+  void walk(int child, const VisibilityOrder& visibility, std::vector<int>& order) const;
   int root() const { return partition_.splits.empty() ? ~0 : 0; }
 
   Partition partition_;

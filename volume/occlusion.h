@@ -1,4 +1,4 @@
-// What ranks nearer to the eye have drawn already, tile by tile, while a picture is still being drawn: tiles in
+// What ranks nearer to the eye have drawn already, tile by tile, while an image is still being drawn: tiles in
 // which all their pixels are opaque hide what lies behind them, so that others need neither draw it nor send
 // it.
 #pragma once
@@ -32,14 +32,14 @@ class Occlusion {
   Occlusion& operator=(Occlusion&&) = default;
 };
 
-/// Whether pictures of such a request can hide each other, and may be left out for that.
+/// Whether images of such a request can hide each other, and may be left out for that.
 bool can_occlude(const RenderRequest& request);
 
 /// Whether every pixel of `rect`, which lies inside `image`, lets less through than the request's rays go on
 /// for.
 bool is_opaque(const Image& image, const Rect& rect, const RenderRequest& request);
 
-/// Tells `occlusion` of every tile of a picture that has been drawn as a whole.
+/// Tells `occlusion` of every tile of an image that has been drawn as a whole.
 void cover_opaque_tiles(const Image& image, const RenderRequest& request, Occlusion& occlusion);
 
 /// The tiles that `rect` touches, in units of tiles.

@@ -46,7 +46,7 @@ RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing
         "the second, and a positive distance in half diagonals of the volume",
         camera.azimuth, camera.elevation, camera.distance));
   if (width < 1 || height < 1)
-    throw std::invalid_argument(fmt::format("a picture of {} x {} pixels has none", width, height));
+    throw std::invalid_argument(fmt::format("an image of {} x {} pixels has none", width, height));
   if (!(step > 0 && std::isfinite(step)))
     throw std::invalid_argument(fmt::format("a step of {} voxels leads nowhere; give a positive one", step));
 

@@ -20,9 +20,9 @@ constexpr double orbit_field_of_view = 30;
 /// From the volume's middle to the eye, of length 1, in the volume's axes.
 Vec3 eye_direction(const OrbitCamera& camera);
 
-/// A picture of `width` x `height` pixels of a volume of this size and spacing: one sample every `step` of the
+/// An image of `width` x `height` pixels of a volume of this size and spacing: one sample every `step` of the
 /// smallest spacing along each ray, the first half a step behind where it enters. The classification is left to
-/// the caller. Throws std::invalid_argument for a camera, a picture or a step that makes no sense.
+/// the caller. Throws std::invalid_argument for a camera, an image or a step that makes no sense.
 RenderRequest orbit_request(const VolumeDescription& volume, const Vec3& spacing, const OrbitCamera& camera,
                             int width, int height, double step);
 

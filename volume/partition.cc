@@ -165,11 +165,11 @@ std::array<int, 3> factors(const VolumeDescription& volume, int ranks) {
 Partition by_factors(const VolumeDescription& volume, int ranks) {
   const TexelBox lattice = cell_lattice(volume).box();
   const std::array<int, 3> parts = factors(volume, ranks);
-  // x is cut first, then y; so the rank's number within a slab of x says how far y has been cut.
-  const int slab = parts[1] * parts[2];
+  // x is cut first, then y; so the rank's number within a segment of x says how far y has been cut.
+  const int slice_segment = parts[1] * parts[2];
   return divided(lattice, ranks, [&](const TexelBox& cells, int, int here) {
-    const int axis = here > slab ? 0 : here > parts[2] ? 1 : 2;
-    const int unit = axis == 0 ? slab : axis == 1 ? parts[2] : 1;
+    const int axis = here > slice_segment ? 0 : here > parts[2] ? 1 : 2;
+    const int unit = axis == 0 ? slice_segment : axis == 1 ? parts[2] : 1;
     const int left = here / unit / 2;
     return Cut{axis, even_cut(lattice, cells, axis, left, here / unit), left * unit};
   });

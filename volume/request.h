@@ -16,8 +16,8 @@
 #include "volume/classification.h"
 #include "volume/fog.h"
 #include "volume/image.h"
-#include "volume/leave_out.h"
 #include "volume/light.h"
+#include "volume/optimizations.h"
 #include "volume/surface.h"
 
 namespace understudy::volume {
@@ -52,15 +52,15 @@ struct VolumeDescription {
   /// The texels that travel: the part of the texture that the application shows, with one texel around it for
   /// the filter. What lies outside (power-of-two padding) is never sent and never sampled.
   TexelBox stored;
-  /// So many cells around its own each node holds beside them: for the second samples of slabs and segments,
-  /// and for gradients (see margin_needed()).
-  int margin = 0;
+  /// So many cells around its own each node holds beside them: for the second samples of segments and segments,
+  /// and for gradients (see ghost_layer_needed()).
+  int ghost_layer = 0;
 
   bool operator==(const VolumeDescription&) const = default;
 };
 
 /// How a ray's samples become a pixel. First-hit: the first sample whose opacity is above 0 alone, opaque, in
-/// its plain colour (premultiplied colour over opacity, kept within what a float holds); pictures of it are
+/// its plain colour (premultiplied colour over opacity, kept within what a float holds); images of it are
 /// composed by `over`, front to back.
 enum class Operator : std::uint8_t { over, max, min, add, first_hit };
 enum class Filter : std::uint8_t { nearest, linear };
@@ -124,15 +124,15 @@ struct RaySteps {
   bool operator==(const RaySteps&) const = default;
 };
 
-/// Where the second sample of a slab lies, whose first one lies on its plane: so many plane spacings further
+/// Where the second sample of a segment lies, whose first one lies on its plane: so many plane spacings further
 /// along the ray (0: none), and then away by a vector. It is not bound to the region, and may be anywhere that
 /// the texture's wrapping (repetition aside) gives it a value.
-struct Slab {
+struct SliceSegment {
   double planes = 0;
   Vec3 offset{};
   /// The two samples are nowhere further apart than this, axis by axis in texture space.
   Vec3 reach{};
-  bool operator==(const Slab&) const = default;
+  bool operator==(const SliceSegment&) const = default;
 };
 
 struct Box {
@@ -170,14 +170,15 @@ struct RenderRequest {
   Box region;  ///< where slices exist: samples outside this box of texture space do not; rays enter it
   std::vector<HalfSpace> clip_planes;
   Classification classification;
-  std::optional<Slab> slab;  ///< set where the classification is a PairTable, and only there
-  std::optional<Fog> fog;    ///< under any operator but `min`; not with slabs
+  std::optional<SliceSegment>
+      slice_segment;       ///< set where the classification is a PreIntegrationTable, and only there
+  std::optional<Fog> fog;  ///< under any operator but `min`; not with segments
   // The following are for scalar fields with a transfer function, under `over`, with a linear filter and
   // without fog; those before `light` are for samples on `steps` that end before opaque geometry.
   Method method = Method::post_classified;
   /// Pre-integrated, if not 0: segments end at the faces of bricks with so many blocks of 8^3 cells along each
   /// edge, and where the cells of a node do, as bricks that share no texel but their faces would have it
-  /// (Mueller et al. 2006). It makes pictures depend on the partition, and is here to be compared with.
+  /// (Mueller et al. 2006). It makes images depend on the partition, and is here to be compared with.
   std::uint8_t cut_at_bricks = 0;
   /// Adaptive: steps are divided until the error of each, in colour and opacity, is estimated to be no more.
   float tolerance = 1e-3F;
@@ -190,7 +191,7 @@ struct RenderRequest {
   std::optional<DepthImage> depth;
   /// Nodes that send each other floats may send half floats, each time rounded to 2^-11 of a value.
   bool may_travel_as_halves = false;
-  LeaveOut leave_out;
+  Optimizations optimizations;
 
   bool operator==(const RenderRequest&) const = default;
 };
@@ -202,8 +203,8 @@ struct FrameCounts {
   std::uint64_t samples = 0;  ///< samples inside the region, had nothing been left out
   std::uint64_t samples_taken = 0;
   std::uint64_t samples_hidden = 0;  ///< left out behind what is opaque
-  std::uint64_t samples_lesser =
-      0;                     ///< left out under a maximum, in empty blocks or such that show nothing larger
+  std::uint64_t dominated_samples =
+      0;                     ///< left out under a maximum, in empty bricks or such that show nothing larger
   std::uint64_t blocks = 0;  ///< blocks of 8^3 cells held
   std::uint64_t blocks_empty = 0;  ///< of these, invisible under the classification
   std::uint64_t nodes_idle = 0;    ///< nodes that had nothing to show and sent nothing
@@ -222,7 +223,7 @@ struct FrameCounts {
     samples += other.samples;
     samples_taken += other.samples_taken;
     samples_hidden += other.samples_hidden;
-    samples_lesser += other.samples_lesser;
+    dominated_samples += other.dominated_samples;
     blocks += other.blocks;
     blocks_empty += other.blocks_empty;
     nodes_idle += other.nodes_idle;

@@ -1,5 +1,5 @@
 // understudy-bench-balance: one scene under no balancing, Mueller's twice and the predicting one. Prints one
-// JSON object a line: for each balancer its sums, and its pictures.
+// JSON object a line: for each balancer its sums, and its images.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -19,7 +19,7 @@
 #include "volume/file/volume_file.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/segment_scene.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Settings {
   std::string table = "engine";
   int ranks = 4;
   int pixels = 256;
-  int pictures = 160;
+  int images = 160;
   unsigned seed = 1;
 };
 
@@ -61,8 +61,8 @@ Loaded load(const std::vector<std::string>& names) {
     loaded.spacing = description.spacing;
     std::vector<std::byte>& texels = loaded.texels.emplace_back();
     while (!stream.done()) {
-      const auto slab = stream.next(std::size_t(16) << 20);
-      texels.insert(texels.end(), slab.texels.begin(), slab.texels.end());
+      const auto slice_range = stream.next(std::size_t(16) << 20);
+      texels.insert(texels.end(), slice_range.texels.begin(), slice_range.texels.end());
     }
   }
   return loaded;
@@ -83,30 +83,31 @@ double largest_value(const Loaded& loaded) {
 bench::TraceScene scene_of(const Settings& settings) {
   auto loaded = std::make_shared<Loaded>(load(settings.volumes));
   const double step = 1, top = largest_value(*loaded);
-  const volume::TransferFunction table = volume::sampled(volume::knots_named(settings.table), 0, top, step);
+  const volume::TransferFunction table =
+      volume::sampled(volume::control_points_named(settings.table), 0, top, step);
   // What the second table shows is what is densest.
-  volume::TransferKnots dense = volume::knots_named("grey");
-  dense.knots = {{0, {1, 1, 1}, 0}, {0.7, {1, 1, 1}, 0}, {0.75, {1, 1, 1}, 0.3}, {1, {1, 1, 1}, 0.6}};
+  volume::TransferControlPoints dense = volume::control_points_named("grey");
+  dense.control_points = {{0, {1, 1, 1}, 0}, {0.7, {1, 1, 1}, 0}, {0.75, {1, 1, 1}, 0.3}, {1, {1, 1, 1}, 0.6}};
   const volume::TransferFunction second = volume::sampled(dense, 0, top, step);
 
   bench::TraceScene scene;
   scene.ranks = settings.ranks;
   scene.seed = settings.seed;
-  scene.pictures = settings.pictures;
+  scene.images = settings.images;
   const std::string& name = settings.scene;
   const bool slowed = name.starts_with("slowed"), changing = name == "changing";
-  const int pictures = scene.pictures, volumes = int(loaded->texels.size());
+  const int images = scene.images, volumes = int(loaded->texels.size());
   const auto make_request = [=, spacing = loaded->spacing](const volume::VolumeDescription& description,
-                                                           int picture) {
+                                                           int image) {
     volume::OrbitCamera camera;
-    camera.azimuth = 30 + (slowed ? 0.2 : 1.0) * picture;
+    camera.azimuth = 30 + (slowed ? 0.2 : 1.0) * image;
     if (name == "zooming") {
-      camera.distance = 2.5 + 1.7 * std::cos(2 * std::numbers::pi * 3 * picture / pictures);
+      camera.distance = 2.5 + 1.7 * std::cos(2 * std::numbers::pi * 3 * image / images);
       camera.azimuth = 30;
     }
     volume::RenderRequest request =
         volume::orbit_request(description, spacing, camera, settings.pixels, settings.pixels, step);
-    request.classification = name == "switched" && picture / 50 % 2 == 1 ? second : table;
+    request.classification = name == "switched" && image / 50 % 2 == 1 ? second : table;
     if (name == "slowed-surface") {
       volume::TransferFunction nothing = table;
       std::ranges::fill(nothing.entries, volume::Rgba{});
@@ -114,24 +115,25 @@ bench::TraceScene scene_of(const Settings& settings) {
       request.surfaces = {{0.4, {0.9F, 0.9F, 0.9F, 1}}};
     }
     if (name == "slowed-lit") request.light.emplace();
-    if (changing) request.version = std::uint64_t(picture * volumes / pictures);
+    if (changing) request.version = std::uint64_t(image * volumes / images);
     return request;
   };
   scene.description = loaded->description;
   scene.description.id = 1;
-  scene.description.margin = volume::margin_needed(scene.description, make_request(scene.description, 0));
-  scene.request = [make_request, description = scene.description](int picture) {
-    return make_request(description, picture);
+  scene.description.ghost_layer =
+      volume::ghost_layer_needed(scene.description, make_request(scene.description, 0));
+  scene.request = [make_request, description = scene.description](int image) {
+    return make_request(description, image);
   };
   scene.texels = [loaded](std::uint64_t version) { return loaded->texels[version]; };
   if (slowed) {
-    const int from = pictures / 4;
-    scene.slowness = [from](int picture, int rank) { return rank == 1 && picture >= from ? 4.0 : 1.0; };
+    const int from = images / 4;
+    scene.relative_cost = [from](int image, int rank) { return rank == 1 && image >= from ? 4.0 : 1.0; };
     scene.events = {0, from};
   }
   if (name == "switched") {
     scene.events.clear();
-    for (int picture = 0; picture < pictures; picture += 50) scene.events.push_back(picture);
+    for (int image = 0; image < images; image += 50) scene.events.push_back(image);
   }
   return scene;
 }
@@ -143,10 +145,10 @@ int main(int argc, char** argv) {
   CLI::App app{"plays one scene under each way to balance its ranks"};
   app.add_option("scene", settings.scene, "what happens")->required()->check(CLI::IsMember(scenes));
   app.add_option("volumes", settings.volumes, "files; several: one after the other")->required();
-  app.add_option("--table", settings.table, "transfer function: " + volume::built_in_knots());
+  app.add_option("--table", settings.table, "transfer function: " + volume::built_in_control_points());
   app.add_option("--ranks", settings.ranks)->check(CLI::Range(1, 64));
-  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 4096));
-  app.add_option("--pictures", settings.pictures)->check(CLI::Range(10, 10000));
+  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 4096));
+  app.add_option("--images", settings.images)->check(CLI::Range(10, 10000));
   app.add_option("--seed", settings.seed, "of the noise in times");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -161,7 +163,7 @@ int main(int argc, char** argv) {
     balancers.emplace_back("muller-firm", compositor::muller_balancer(firm));
     balancers.emplace_back("predicted", compositor::predicting_balancer());
     for (const auto& [name, balancer] : balancers) {
-      const std::vector<bench::TracePicture> trace = player.play(balancer.get());
+      const std::vector<bench::TraceImage> trace = player.play(balancer.get());
       const bench::TraceSums sums = player.sums(trace);
       nlohmann::ordered_json row{{"balance", name},
                                  {"mean_ms", sums.mean_ms},
@@ -172,12 +174,12 @@ int main(int argc, char** argv) {
                                  {"bytes", sums.bytes},
                                  {"planes_moved", sums.planes_moved},
                                  {"reversals", sums.reversals}};
-      for (const bench::TracePicture& picture : trace) {
-        row["render_ms"].push_back(picture.render_ms);
-        row["transfer_ms"].push_back(picture.transfer_ms);
-        row["deviation"].push_back(picture.deviation);
-        row["picture_bytes"].push_back(picture.bytes);
-        row["cuts"].push_back(picture.cuts);
+      for (const bench::TraceImage& image : trace) {
+        row["render_ms"].push_back(image.render_ms);
+        row["transfer_ms"].push_back(image.transfer_ms);
+        row["deviation"].push_back(image.deviation);
+        row["image_bytes"].push_back(image.bytes);
+        row["cuts"].push_back(image.cuts);
       }
       fmt::print("{}\n", row.dump());
     }

@@ -1,8 +1,8 @@
-"""Four ranks that are balanced, picture by picture: not at all, after Mueller et al. 2006, and by prediction.
+"""Four ranks that are balanced, image by image: not at all, after Mueller et al. 2006, and by prediction.
 
-Every picture is really cast, on every rank's own box; a rank's time is its samples times 2 ns times its slowness, with 5 %
+Every image is really cast, on every rank's own box; a rank's time is its samples times 2 ns times its relative cost, with 5 %
 of seeded noise and one time in a hundred that is three times as long, so figures do not depend on the machine or its load.
-Blocks travel at 1 GB/s, 50 us a move. `value` is the mean of a picture's time, rendering on the slowest rank and what
+Blocks travel at 1 GB/s, 50 us a move. `value` is the mean of an image's time, rendering on the slowest rank and what
 travelled before it; deviation is (max - min) / mean of the ranks' times. Of Mueller's two settings the better one in each
 scene has a row. Plots go to out/bench/balance/.
 """
@@ -38,7 +38,7 @@ def volumes(case):
 def played(case, files):
     scene, table, _ = TITLES[case]
     command = [viewers.PROGRAMS / "understudy-bench-balance", scene, *files, "--table", table, "--pixels", "512"]
-    command += ["--pictures", "200"] if case == "switched" else []
+    command += ["--images", "200"] if case == "switched" else []
     text = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, text=True, check=True).stdout
     runs = {run["balance"]: run for run in map(json.loads, text.splitlines())}
     firm = runs.pop("muller-firm")
@@ -72,7 +72,7 @@ def rows():
 
 
 def table(result):
-    lines = ["| scene | balance | ms a picture | ideal | deviation | at the end | pictures to settle | MB moved | planes moved "
+    lines = ["| scene | balance | ms an image | ideal | deviation | at the end | images to settle | MB moved | planes moved "
              "| back |", "|---|---|---|---|---|---|---|---|---|---|"]
     for row in result:
         _, case, name = row["name"].split("/")

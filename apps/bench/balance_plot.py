@@ -22,8 +22,8 @@ def plot(runs, title, path):
     above.set_ylabel("(max - min) / mean")
     above.set_ylim(bottom=0)
     above.legend(fontsize=8, ncol=3, loc="upper right")
-    below.set_ylabel("picture, ms")
-    below.set_xlabel("picture")
+    below.set_ylabel("image, ms")
+    below.set_xlabel("image")
     # Single times that are three times as long would flatten the rest.
     times = sorted(time for run in runs.values() for time in run["render_ms"])
     below.set_ylim(0, 1.15 * times[int(0.985 * len(times))])

@@ -96,45 +96,45 @@ const TracePlayer::Version& TracePlayer::version(std::uint64_t number) {
   return versions_.emplace(number, std::move(made)).first->second;
 }
 
-const volume::BlockCosts& TracePlayer::expected(int picture) {
-  const auto found = expected_.find(picture);
+const volume::BlockCosts& TracePlayer::expected(int frame) {
+  const auto found = expected_.find(frame);
   if (found != expected_.end()) return found->second;
-  const volume::RenderRequest request = scene_.request(picture);
+  const volume::RenderRequest request = scene_.request(frame);
   const Version& texels = version(request.version);
   Stores::Entry& whole = stores_->find(request.version, lattice_,
                                        [&] { return filled(scene_.description, lattice_, texels.texels); });
   volume::BlockCosts costs(lattice_, BrickStore::block_cells);
   volume::add_expected_samples(whole.store, request, costs);
-  return expected_.emplace(picture, std::move(costs)).first->second;
+  return expected_.emplace(frame, std::move(costs)).first->second;
 }
 
-std::uint64_t TracePlayer::samples(int picture, const TexelBox& box) {
+std::uint64_t TracePlayer::samples(int frame, const TexelBox& box) {
   if (volume::is_empty(box)) return 0;
   std::vector<int> key(box.low.begin(), box.low.end());
   key.insert(key.end(), box.high.begin(), box.high.end());
-  const auto found = samples_.find({picture, key});
+  const auto found = samples_.find({frame, key});
   if (found != samples_.end()) return found->second;
-  const volume::RenderRequest request = scene_.request(picture);
+  const volume::RenderRequest request = scene_.request(frame);
   const Version& texels = version(request.version);
   Stores::Entry& entry =
       stores_->find(request.version, box, [&] { return filled(scene_.description, box, texels.texels); });
   volume::Image image(volume::footprint(request, scene_.description, box));
   volume::FrameCounts counts;
   entry.caster.render(request, image, counts);
-  samples_[{picture, key}] = counts.samples_taken;
+  samples_[{frame, key}] = counts.samples_taken;
   return counts.samples_taken;
 }
 
-double TracePlayer::measured_ms(int picture, int rank, std::uint64_t samples) const {
-  std::seed_seq seed{scene_.seed, unsigned(picture), unsigned(rank)};
+double TracePlayer::measured_ms(int frame, int rank, std::uint64_t samples) const {
+  std::seed_seq seed{scene_.seed, unsigned(frame), unsigned(rank)};
   std::mt19937 random(seed);
   const double unit = double(random()) / double(std::mt19937::max());
   const bool interrupted = random() % 100 == 0;
-  const double ms = 1e-6 * scene_.ns_per_sample * double(samples) * scene_.slowness(picture, rank);
+  const double ms = 1e-6 * scene_.ns_per_sample * double(samples) * scene_.relative_cost(frame, rank);
   return ms * (1 + scene_.noise * (2 * unit - 1)) * (interrupted && scene_.noise > 0 ? 3 : 1);
 }
 
-std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
+std::vector<TraceImage> TracePlayer::play(compositor::Balancer* balancer) {
   Partition partition = volume::by_blocks(scene_.description, scene_.ranks);
   const auto ranks = std::size_t(scene_.ranks);
   const TexelBox blocks = compositor::blocks_owned(lattice_, lattice_);
@@ -143,11 +143,11 @@ std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
   std::vector<int> last_direction(partition.splits.size());
   const double per_ms = 1e6 * scene_.gigabytes_per_second;
   double ms_per_block = double(bytes_per_texel(scene_.description.type) * BrickStore::block_texels) / per_ms;
-  std::vector<TracePicture> trace;
+  std::vector<TraceImage> trace;
   std::uint64_t drawn_version = scene_.request(0).version;
-  for (int picture = 0; picture < scene_.pictures; ++picture) {
-    TracePicture& now = trace.emplace_back();
-    const volume::RenderRequest request = scene_.request(picture);
+  for (int frame = 0; frame < scene_.images; ++frame) {
+    TraceImage& now = trace.emplace_back();
+    const volume::RenderRequest request = scene_.request(frame);
     const Version& texels = version(request.version);
     const auto packed_bytes = [&](const BlockPlace& place) {
       const std::size_t row = std::size_t(place[2]) * std::size_t(blocks.high[1]) + std::size_t(place[1]);
@@ -157,7 +157,7 @@ std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
       for (BlockCache& cache : caches) cache.clear();
     drawn_version = request.version;
     if (balancer != nullptr) {
-      const Partition next = balancer->decide({partition, lattice_, work, expected(picture), ms_per_block});
+      const Partition next = balancer->decide({partition, lattice_, work, expected(frame), ms_per_block});
       for (std::size_t i = 0; i < next.splits.size(); ++i) {
         const int way = direction(partition.splits[i].cut, next.splits[i].cut);
         if (way == 0) continue;
@@ -199,15 +199,15 @@ std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
     work.clear();
     double slowest = 0, fastest = 0, sum = 0, all_samples = 0, all_speed = 0;
     for (int rank = 0; rank < scene_.ranks; ++rank) {
-      const std::uint64_t taken = samples(picture, parts[std::size_t(rank)]);
-      const double slowness = scene_.slowness(picture, rank);
-      const double ms = 1e-6 * scene_.ns_per_sample * double(taken) * slowness;
+      const std::uint64_t taken = samples(frame, parts[std::size_t(rank)]);
+      const double relative_cost = scene_.relative_cost(frame, rank);
+      const double ms = 1e-6 * scene_.ns_per_sample * double(taken) * relative_cost;
       slowest = std::max(slowest, ms);
       fastest = rank == 0 ? ms : std::min(fastest, ms);
       sum += ms;
       all_samples += double(taken);
-      all_speed += 1 / slowness;
-      work.push_back({measured_ms(picture, rank, taken), taken});
+      all_speed += 1 / relative_cost;
+      work.push_back({measured_ms(frame, rank, taken), taken});
       now.render_ms = std::max(now.render_ms, work.back().ms);
     }
     now.ideal_ms = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
@@ -218,16 +218,16 @@ std::vector<TracePicture> TracePlayer::play(compositor::Balancer* balancer) {
   return trace;
 }
 
-TraceSums TracePlayer::sums(const std::vector<TracePicture>& trace) const {
+TraceSums TracePlayer::sums(const std::vector<TraceImage>& trace) const {
   TraceSums sums;
-  const auto pictures = double(trace.size());
-  for (const TracePicture& picture : trace) {
-    sums.mean_ms += (picture.render_ms + picture.transfer_ms) / pictures;
-    sums.ideal_ms += picture.ideal_ms / pictures;
-    sums.mean_deviation += picture.deviation / pictures;
-    sums.bytes += double(picture.bytes);
-    sums.planes_moved += picture.planes_moved;
-    sums.reversals += picture.reversals;
+  const auto images = double(trace.size());
+  for (const TraceImage& frame : trace) {
+    sums.mean_ms += (frame.render_ms + frame.transfer_ms) / images;
+    sums.ideal_ms += frame.ideal_ms / images;
+    sums.mean_deviation += frame.deviation / images;
+    sums.bytes += double(frame.bytes);
+    sums.planes_moved += frame.planes_moved;
+    sums.reversals += frame.reversals;
   }
   for (std::size_t e = 0; e < scene_.events.size(); ++e) {
     const auto begin = std::size_t(scene_.events[e]);

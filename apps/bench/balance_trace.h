@@ -1,6 +1,6 @@
-// A run of pictures on several ranks under a balancer, played on one machine: the pictures are really cast,
+// A run of images on several ranks under a balancer, played on one machine: the images are really cast,
 // rank by rank, and the samples that each rank takes are counted. A rank's time is its samples times its
-// slowness, and scatters by seeded noise; so a trace is the same on every machine, however loaded.
+// relative cost, and scatters by seeded noise; so a trace is the same on every machine, however loaded.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,16 @@
 
 namespace understudy::bench {
 
-/// What is played: all functions of the picture's number alone.
+/// What is played: all functions of the image's number alone.
 struct TraceScene {
   volume::VolumeDescription description;
-  int pictures = 0;
+  int images = 0;
   int ranks = 4;
-  /// The stored texels. They may change with every picture; `version` of the request then does, too.
+  /// The stored texels. They may change with every image; `version` of the request then does, too.
   std::function<std::vector<std::byte>(std::uint64_t version)> texels;
-  std::function<volume::RenderRequest(int picture)> request;
-  std::function<double(int picture, int rank)> slowness = [](int, int) { return 1; };
-  /// From these pictures on something is different: the first one, always, is 0.
+  std::function<volume::RenderRequest(int image)> request;
+  std::function<double(int image, int rank)> relative_cost = [](int, int) { return 1; };
+  /// From these images on something is different: the first one, always, is 0.
   std::vector<int> events{0};
 
   double ns_per_sample = 2;
@@ -38,7 +38,7 @@ struct TraceScene {
   unsigned seed = 1;
 };
 
-struct TracePicture {
+struct TraceImage {
   double render_ms = 0;    ///< slowest rank, with noise
   double transfer_ms = 0;  ///< before it: busiest rank
   double ideal_ms = 0;     ///< had all samples been divided by the ranks' speeds, without noise
@@ -58,7 +58,7 @@ struct TraceSums {
   double bytes = 0;
   int planes_moved = 0;
   int reversals = 0;
-  /// Pictures after each event until the slowest rank's time stays within a tenth of what it is at the end of
+  /// Images after each event until the slowest rank's time stays within a tenth of what it is at the end of
   /// that stretch, the mean over events.
   double settling = 0;
   double end_deviation = 0;  ///< over the last tenth of each stretch between events
@@ -69,8 +69,8 @@ class TracePlayer {
   explicit TracePlayer(TraceScene scene);
 
   /// From a partition by blocks. None: it stays.
-  std::vector<TracePicture> play(compositor::Balancer* balancer);
-  TraceSums sums(const std::vector<TracePicture>& trace) const;
+  std::vector<TraceImage> play(compositor::Balancer* balancer);
+  TraceSums sums(const std::vector<TraceImage>& trace) const;
   const TraceScene& scene() const { return scene_; }
 
  private:
@@ -81,9 +81,9 @@ class TracePlayer {
   };
 
   const Version& version(std::uint64_t number);
-  const volume::BlockCosts& expected(int picture);
-  std::uint64_t samples(int picture, const volume::TexelBox& box);
-  double measured_ms(int picture, int rank, std::uint64_t samples) const;
+  const volume::BlockCosts& expected(int image);
+  std::uint64_t samples(int image, const volume::TexelBox& box);
+  double measured_ms(int image, int rank, std::uint64_t samples) const;
 
   TraceScene scene_;
   volume::TexelBox lattice_;

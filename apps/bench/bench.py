@@ -2,7 +2,7 @@
 """./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
 
 A row: name, value and unit, always; ratio_to (another row's name), ratio = value / its value and difference = value -
-its value; rms (error against that row's picture), where they apply. Other fields are explained by each benchmark.
+its value; rms (error against that row's image), where they apply. Other fields are explained by each benchmark.
 """
 
 import json

@@ -31,7 +31,7 @@ double processor_seconds() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-/// Smooth over some pixels, as pictures are; no pixel untouched.
+/// Smooth over some pixels, as images are; no pixel untouched.
 Image smooth_image(int side, unsigned seed) {
   Image image({0, 0, side, side});
   std::mt19937 random(seed);

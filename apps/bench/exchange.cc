@@ -1,4 +1,4 @@
-// understudy-bench-exchange: partial images become one picture on rank 0, by each of our exchanges and, where
+// understudy-bench-exchange: partial images become one image on rank 0, by each of our exchanges and, where
 // it was found when this was built, by IceT. One rank of an MPI job. All ways get the same images in turn; time
 // is that of the slowest rank, from a barrier until it is done. Rank 0 prints one JSON object a line.
 #include "compositor/exchange/exchange.h"
@@ -19,8 +19,8 @@
 #include "apps/bench/message_counter.h"
 #include "apps/bench/partial_images.h"
 #include "compositor/exchange/cost.h"
-#include "compositor/exchange/measure_link.h"
-#include "compositor/exchange/mpi_link.h"
+#include "compositor/exchange/measure_message_cost.h"
+#include "compositor/exchange/mpi_communicator.h"
 #ifdef UNDERSTUDY_ICET
 #include "apps/bench/icet_compositor.h"
 #endif
@@ -28,7 +28,7 @@
 namespace {
 
 using namespace understudy;
-using compositor::Link;
+using compositor::Communicator;
 using volume::Image;
 using volume::ImageView;
 using volume::Rect;
@@ -41,16 +41,16 @@ struct Settings {
   std::vector<std::string> only;  ///< ways; none: all
 };
 
-/// One way from partial images to a picture. Both functions are called by all ranks; what is prepared is not
+/// One way from partial images to an image. Both functions are called by all ranks; what is prepared is not
 /// timed.
 struct Way {
   std::string name;
   std::function<void(const Image& mine)> prepare;
   std::function<void()> compose;
-  std::function<ImageView()> picture;  ///< on rank 0, of the last compose()
+  std::function<ImageView()> image;  ///< on rank 0, of the last compose()
   std::vector<double> seconds{};
   bench::Sent sent{};  ///< by all ranks, once
-  double error = 0;    ///< of the last picture, the largest of all components
+  double error = 0;    ///< of the last image, the largest of all components
 };
 
 /// Front to back in double precision.
@@ -69,20 +69,19 @@ std::vector<double> product_of(const std::vector<Image>& images, std::span<const
   return product;
 }
 
-/// What lies outside of the picture counts as clear.
-double largest_error(const ImageView& picture, std::span<const double> product, int pixels) {
+/// What lies outside of the image counts as clear.
+double largest_error(const ImageView& image, std::span<const double> product, int pixels) {
   double largest = 0;
   for (int y = 0; y < pixels; ++y)
     for (int x = 0; x < pixels; ++x) {
-      const Rect& rect = picture.rect;
+      const Rect& rect = image.rect;
       const bool inside = !intersection(rect, {x, y, 1, 1}).empty();
       for (std::size_t c = 0; c < 4; ++c) {
         const double exact = product[4 * (std::size_t(y) * std::size_t(pixels) + std::size_t(x)) + c];
-        const double shown = inside
-                                 ? double(picture.rgba[4 * (std::size_t(y - rect.y) * std::size_t(rect.width) +
-                                                            std::size_t(x - rect.x)) +
-                                                       c])
-                                 : 0;
+        const double shown = inside ? double(image.rgba[4 * (std::size_t(y - rect.y) * std::size_t(rect.width) +
+                                                             std::size_t(x - rect.x)) +
+                                                        c])
+                                    : 0;
         largest = std::max(largest, std::abs(shown - exact));
       }
     }
@@ -90,11 +89,11 @@ double largest_error(const ImageView& picture, std::span<const double> product, 
 }
 
 /// All images on rank 0; elsewhere nothing.
-std::vector<Image> gathered(const Image& mine, std::span<const Rect> footprints, Link& link) {
+std::vector<Image> gathered(const Image& mine, std::span<const Rect> footprints, Communicator& communicator) {
   std::vector<Image> images;
-  if (link.rank() != 0) {
+  if (communicator.rank() != 0) {
     const compositor::Outgoing out{0, std::as_bytes(std::span(mine.rgba))};
-    if (!mine.rgba.empty()) link.transfer({&out, 1}, {});
+    if (!mine.rgba.empty()) communicator.transfer({&out, 1}, {});
     return images;
   }
   std::vector<compositor::Incoming> incoming;
@@ -103,73 +102,81 @@ std::vector<Image> gathered(const Image& mine, std::span<const Rect> footprints,
   for (std::size_t rank = 1; rank < images.size(); ++rank)
     if (!images[rank].rgba.empty())
       incoming.push_back({int(rank), std::as_writable_bytes(std::span(images[rank].rgba)), nullptr});
-  link.transfer({}, incoming);
+  communicator.transfer({}, incoming);
   return images;
 }
 
-std::vector<Rect> footprints_of(Rect mine, Link& link) {
-  std::vector<Rect> footprints(std::size_t(link.size()));
-  link.gather_to_all(compositor::bytes_of(mine), std::as_writable_bytes(std::span(footprints)));
+std::vector<Rect> footprints_of(Rect mine, Communicator& communicator) {
+  std::vector<Rect> footprints(std::size_t(communicator.size()));
+  communicator.gather_to_all(compositor::bytes_of(mine), std::as_writable_bytes(std::span(footprints)));
   return footprints;
 }
 
 /// The ranks as they are on machines of their own: nothing is read in place.
-class Apart final : public Link {
+class Apart final : public Communicator {
  public:
-  explicit Apart(Link& link) : link_(link) {}
-  compositor::Rank rank() const override { return link_.rank(); }
-  int size() const override { return link_.size(); }
+  explicit Apart(Communicator& communicator) : communicator_(communicator) {}
+  compositor::Rank rank() const override { return communicator_.rank(); }
+  int size() const override { return communicator_.size(); }
   void transfer(std::span<const compositor::Outgoing> outgoing,
                 std::span<const compositor::Incoming> incoming) override {
     std::vector<compositor::Outgoing> sent(outgoing.begin(), outgoing.end());
     std::vector<compositor::Incoming> come(incoming.begin(), incoming.end());
     for (compositor::Outgoing& message : sent) message.may_be_seen = false;
     for (compositor::Incoming& message : come) message.seen = nullptr;
-    link_.transfer(sent, come);
+    communicator_.transfer(sent, come);
   }
-  void broadcast(compositor::Rank root, std::span<std::byte> bytes) override { link_.broadcast(root, bytes); }
+  void broadcast(compositor::Rank root, std::span<std::byte> bytes) override {
+    communicator_.broadcast(root, bytes);
+  }
   void gather_to_all(std::span<const std::byte> mine, std::span<std::byte> all) override {
-    link_.gather_to_all(mine, all);
+    communicator_.gather_to_all(mine, all);
   }
-  void post(compositor::Rank to, std::span<const std::byte> note) override { link_.post(to, note); }
-  std::optional<compositor::Note> take_note() override { return link_.take_note(); }
-  compositor::Note wait_for_note() override { return link_.wait_for_note(); }
+  void send_control(compositor::Rank to, std::span<const std::byte> control) override {
+    communicator_.send_control(to, control);
+  }
+  std::optional<compositor::ControlMessage> take_control_message() override {
+    return communicator_.take_control_message();
+  }
+  compositor::ControlMessage wait_for_control_message() override {
+    return communicator_.wait_for_control_message();
+  }
   [[noreturn]] void abandon(const std::string& why) override {
-    link_.abandon(why);
-    throw compositor::LinkLost(
+    communicator_.abandon(why);
+    throw compositor::RankLost(
         why);  // never reached; gcc does not believe a virtual function that it will not return
   }
 
  private:
-  Link& link_;
+  Communicator& communicator_;
 };
 
 /// Our exchanges, as a node calls them: the footprints are agreed upon first.
 class Ours {
  public:
-  Ours(Link& link, compositor::LinkCost cost) : link_(link), cost_(cost) {}
+  Ours(Communicator& communicator, compositor::MessageCost cost) : communicator_(communicator), cost_(cost) {}
 
   Way way(std::string name, std::optional<compositor::Algorithm> algorithm, compositor::Layout layout,
           const std::vector<int>& order, bool packed = true) {
-    return {
-        .name = std::move(name),
-        .prepare = [this](const Image& mine) { image_ = mine; },
-        .compose =
-            [this, algorithm, layout, packed, &order] {
-              const std::vector<Rect> footprints = footprints_of(image_.rect, link_);
-              compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
-                                                    : cheapest(order, footprints, layout, cost_);
-              plan.packed = packed;
-              picture_ =
-                  compositor::exchange(std::move(image_), plan, volume::Operator::over, layout, link_).picture;
-            },
-        .picture = [this] { return picture_.view(); }};
+    return {.name = std::move(name),
+            .prepare = [this](const Image& mine) { image_ = mine; },
+            .compose =
+                [this, algorithm, layout, packed, &order] {
+                  const std::vector<Rect> footprints = footprints_of(image_.rect, communicator_);
+                  compositor::Schedule plan = algorithm ? schedule(*algorithm, order, footprints)
+                                                        : cheapest(order, footprints, layout, cost_);
+                  plan.packed = packed;
+                  composited_ = compositor::exchange(std::move(image_), plan, volume::Operator::over, layout,
+                                                     communicator_)
+                                    .image;
+                },
+            .image = [this] { return composited_.view(); }};
   }
 
  private:
-  Link& link_;
-  compositor::LinkCost cost_;
-  Image image_, picture_;
+  Communicator& communicator_;
+  compositor::MessageCost cost_;
+  Image image_, composited_;
 };
 
 double slowest(double seconds) {
@@ -214,19 +221,19 @@ std::vector<std::byte> read(const std::string& file, std::size_t count) {
   return bytes;
 }
 
-void run(const Settings& settings, Link& link) {
+void run(const Settings& settings, Communicator& communicator) {
   const auto side = std::size_t(settings.side);
   const std::vector<std::byte> texels = read(settings.file, side * side * side);
-  Apart apart(link);
-  const compositor::LinkCost cost = measure_link(link);
-  Ours ours(apart, cost), on_one_machine(link, cost);
+  Apart apart(communicator);
+  const compositor::MessageCost cost = measure_message_cost(communicator);
+  Ours ours(apart, cost), on_one_machine(communicator, cost);
 #ifdef UNDERSTUDY_ICET
   bench::IcetCompositor icet;
 #endif
   for (const int pixels : settings.pixels)
     for (const bench::Scene scene : bench::all_scenes) {
       const bench::PartialImage mine =
-          partial_image(scene, pixels, texels, settings.side, link.rank(), link.size());
+          partial_image(scene, pixels, texels, settings.side, communicator.rank(), communicator.size());
       std::vector<Way> ways;
       for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
         ways.push_back(ours.way(std::string(name_of(compositor::Algorithm(a))), compositor::Algorithm(a),
@@ -248,27 +255,27 @@ void run(const Settings& settings, Link& link) {
         ways.push_back({.name = "icet/" + strategy,
                         .prepare = [&](const Image& image) { icet.lay_in(image); },
                         .compose = [&icet, &shown, strategy] { shown = icet.compose(strategy); },
-                        .picture = [&] { return shown; }});
+                        .image = [&] { return shown; }});
 #endif
       if (!settings.only.empty())
         std::erase_if(ways, [&](const Way& way) { return std::ranges::count(settings.only, way.name) == 0; });
-      const std::vector<Rect> footprints = footprints_of(mine.image.rect, link);
+      const std::vector<Rect> footprints = footprints_of(mine.image.rect, communicator);
       {
-        const std::vector<Image> images = gathered(mine.image, footprints, link);
+        const std::vector<Image> images = gathered(mine.image, footprints, communicator);
         std::vector<double> product;
-        if (link.rank() == 0) product = product_of(images, mine.order, pixels);
+        if (communicator.rank() == 0) product = product_of(images, mine.order, pixels);
         for (Way& way : ways) {
           way.prepare(mine.image);
           way.compose();
-          if (link.rank() == 0) way.error = largest_error(way.picture(), product, pixels);
+          if (communicator.rank() == 0) way.error = largest_error(way.image(), product, pixels);
         }
       }
       measure(ways, mine.image, settings.rounds);
-      if (link.rank() != 0) continue;
+      if (communicator.rank() != 0) continue;
       std::size_t covered = 0;
       for (const Rect& footprint : footprints) covered += footprint.pixels();
       for (const Way& way : ways)
-        fmt::print("{}\n", nlohmann::ordered_json{{"ranks", link.size()},
+        fmt::print("{}\n", nlohmann::ordered_json{{"ranks", communicator.size()},
                                                   {"scene", name_of(scene)},
                                                   {"pixels", pixels},
                                                   {"covered", covered},
@@ -290,16 +297,16 @@ int main(int argc, char** argv) {
   CLI::App app{"times exchanges of partial images, and IceT's: one rank of an MPI job"};
   app.add_option("volume", settings.file, "raw bytes, x fastest")->required()->check(CLI::ExistingFile);
   app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 1024));
-  app.add_option("--pixels", settings.pixels, "edges of the pictures")
+  app.add_option("--pixels", settings.pixels, "edges of the images")
       ->delimiter(',')
       ->check(CLI::Range(1, 8192));
   app.add_option("--rounds", settings.rounds, "of which the median counts")->check(CLI::Range(1, 10000));
   app.add_option("--only", settings.only, "these ways, as they are printed");
   CLI11_PARSE(app, argc, argv);
-  compositor::MpiLink link(argc, argv);
+  compositor::MpiCommunicator communicator(argc, argv);
   try {
-    run(settings, link);
+    run(settings, communicator);
   } catch (const std::exception& error) {
-    link.abandon(error.what());
+    communicator.abandon(error.what());
   }
 }

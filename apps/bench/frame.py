@@ -37,22 +37,22 @@ def prefix(way):
 
 def rows():
     volume = cube()
-    folder = viewers.OUT / "bench" / "pictures"
+    folder = viewers.OUT / "bench" / "images"
     folder.mkdir(parents=True, exist_ok=True)
     result = []
     for mode in MODES:
         times = {way: [] for way in WAYS}
-        pictures = {way: folder / f"frame-{mode}-{way.replace(' ', '-')}.png" for way in WAYS}
+        images = {way: folder / f"frame-{mode}-{way.replace(' ', '-')}.png" for way in WAYS}
         for number in range(ROUNDS):
             for way in WAYS:
                 print(f"  {mode}, round {number + 1} of {ROUNDS}, {way}", file=sys.stderr, flush=True)
-                drawn = viewers.bundled_viewer(prefix(way), volume, mode, FRAMES, ORBIT, pictures[way])
+                drawn = viewers.bundled_viewer(prefix(way), volume, mode, FRAMES, ORBIT, images[way])
                 times[way] += drawn[SETTLE:]
         bare = statistics.median(times["bare"])
         for way in WAYS:
             row = {"name": f"frame/{mode}/{way}", "value": statistics.median(times[way]), "unit": "ms"}
             if way != "bare":
                 row |= {"ratio_to": f"frame/{mode}/bare", "ratio": row["value"] / bare,
-                        "rms": viewers.compare(pictures["bare"], pictures[way])["rms"]}
+                        "rms": viewers.compare(images["bare"], images[way])["rms"]}
             result.append(row)
     return result

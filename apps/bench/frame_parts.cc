@@ -22,8 +22,8 @@ namespace {
 
 Rect pixels_of(const volume::VolumeDescription& volume, const volume::RenderRequest& request,
                const TexelBox& cells) {
-  return request.leave_out.footprints ? volume::footprint(request, volume, cells)
-                                      : intersection(request.window, request.viewport);
+  return request.optimizations.footprints ? volume::footprint(request, volume, cells)
+                                          : intersection(request.window, request.viewport);
 }
 
 RankPart cast_part(const volume::VolumeDescription& volume, std::span<const std::byte> texels,
@@ -36,7 +36,7 @@ RankPart cast_part(const volume::VolumeDescription& volume, std::span<const std:
   volume::Image image(part.cast);
   volume::FrameCounts counts;
   volume::raycast(store, request, image, counts);
-  if (request.leave_out.footprints) compositor::crop_to_content(image, request.op);
+  if (request.optimizations.footprints) compositor::crop_to_content(image, request.op);
   part.mask = compositor::mask_of(image.view(), request.op);
   part.samples = counts.samples_taken;
   return part;
@@ -65,23 +65,23 @@ RankPart part_of_rays(const volume::RaySetup& setup, const volume::RenderRequest
   RankPart part;
   part.cast = rect;
   PixelMask mask(rect);
-  volume::RayStrip strip;
+  volume::RayPacket packet;
   const int right = rect.x + rect.width, top = rect.y + rect.height;
-  for (int y = rect.y; y < top; y += volume::strip_height)
+  for (int y = rect.y; y < top; y += volume::packet_height)
     for (int x = rect.x; x < right; x += volume::tile_width) {
       const int width = std::min(volume::tile_width, right - x),
-                height = std::min(volume::strip_height, top - y);
-      if (!set_up_strip(setup, request, x, y, width, height, strip)) continue;
+                height = std::min(volume::packet_height, top - y);
+      if (!set_up_packet(setup, request, x, y, width, height, packet)) continue;
       for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
           const auto ray = std::size_t(row * volume::tile_width + column);
-          const int samples = strip.last[ray] - strip.first[ray] + 1;
+          const int samples = packet.last[ray] - packet.first[ray] + 1;
           if (samples <= 0) continue;
           part.samples += std::uint64_t(samples);
           *mask.at(x + column, y + row) = 1;
         }
     }
-  part.mask = request.leave_out.footprints ? cropped(mask) : std::move(mask);
+  part.mask = request.optimizations.footprints ? cropped(mask) : std::move(mask);
   return part;
 }
 
@@ -117,7 +117,7 @@ FrameParts parts_of_rays(const volume::VolumeDescription& volume, const volume::
 }
 
 compositor::CountedExchange counted(const FrameParts& parts, compositor::Algorithm algorithm,
-                                    compositor::Home home, volume::Operator op, compositor::Layout layout) {
+                                    compositor::Gather gather, volume::Operator op, compositor::Layout layout) {
   std::vector<Rect> footprints;
   std::vector<PixelMask> masks;
   for (const RankPart& part : parts.ranks) {
@@ -125,7 +125,8 @@ compositor::CountedExchange counted(const FrameParts& parts, compositor::Algorit
     masks.push_back(part.mask);
   }
   compositor::Schedule schedule = compositor::schedule(algorithm, parts.order, footprints);
-  compositor::write_home(schedule, std::vector<bool>(parts.ranks.size(), home == compositor::Home::direct));
+  compositor::write_gathered(schedule,
+                             std::vector<bool>(parts.ranks.size(), gather == compositor::Gather::direct));
   return compositor::counted_exchange(schedule, masks, op, layout);
 }
 

@@ -1,4 +1,4 @@
-// What one picture asks of each rank: which pixels its box of the volume reaches, with how many samples. Cast
+// What one image asks of each rank: which pixels its box of the volume reaches, with how many samples. Cast
 // as a node would cast it, or told from the rays alone.
 #pragma once
 
@@ -38,8 +38,8 @@ FrameParts cast_parts(const volume::VolumeDescription& volume, std::span<const s
 FrameParts parts_of_rays(const volume::VolumeDescription& volume, const volume::RenderRequest& request,
                          const volume::KdTree& tree);
 
-/// What the nodes send for this picture, to the byte.
+/// What the nodes send for this image, to the byte.
 compositor::CountedExchange counted(const FrameParts& parts, compositor::Algorithm algorithm,
-                                    compositor::Home home, volume::Operator op, compositor::Layout layout);
+                                    compositor::Gather gather, volume::Operator op, compositor::Layout layout);
 
 }  // namespace understudy::bench

@@ -1,4 +1,4 @@
-// How long a picture takes on many ranks, from what it asks of each (frame_parts.h) and what that costs.
+// How long an image takes on many ranks, from what it asks of each (frame_parts.h) and what that costs.
 //
 // Messages follow LogGP (Alexandrov, Ionescu, Schauser, Scheiman 1995): a rank is busy for `overhead` with each
 // message that it sends or receives; messages leave it, and arrive, no closer to each other than `gap`, nor
@@ -34,7 +34,7 @@ struct Costs {
 
 struct FrameTime {
   double render = 0;    ///< until the last rank has cast its box
-  double exchange = 0;  ///< from there on, until rank 0 has the picture
+  double exchange = 0;  ///< from there on, until rank 0 has the image
 };
 
 FrameTime time_of(const FrameParts& parts, const compositor::CountedExchange& exchange, const Costs& costs);

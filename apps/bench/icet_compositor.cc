@@ -62,13 +62,13 @@ void IcetCompositor::begin(int pixels, std::span<const int> order) {
   icetAddTile(0, 0, pixels, pixels, 0);
   icetPhysicalRenderSize(pixels, pixels);
   icetCompositeOrder(order.data());
-  picture_ = volume::Image({0, 0, pixels, pixels});
+  image_ = volume::Image({0, 0, pixels, pixels});
 }
 
 void IcetCompositor::lay_in(const volume::Image& image) {
   valid_ = image.rect;
   for (int y = valid_.y; y < valid_.y + valid_.height; ++y)
-    std::memcpy(picture_.at(valid_.x, y), image.at(valid_.x, y), 4 * sizeof(float) * std::size_t(valid_.width));
+    std::memcpy(image_.at(valid_.x, y), image.at(valid_.x, y), 4 * sizeof(float) * std::size_t(valid_.width));
 }
 
 volume::ImageView IcetCompositor::compose(const std::string& name) {
@@ -80,13 +80,13 @@ volume::ImageView IcetCompositor::compose(const std::string& name) {
   const std::array<IceTInt, 4> valid{valid_.x, valid_.y, valid_.width, valid_.height};
   const std::array<IceTFloat, 4> black{};
   const IceTImage result =
-      icetCompositeImage(picture_.rgba.data(), nullptr, valid.data(), nullptr, nullptr, black.data());
+      icetCompositeImage(image_.rgba.data(), nullptr, valid.data(), nullptr, nullptr, black.data());
   if (const IceTEnum error = icetGetError(); error != ICET_NO_ERROR)
     throw std::runtime_error("IceT failed with error " + std::to_string(error));
   IceTInt rank = 0;
   icetGetIntegerv(ICET_RANK, &rank);
   if (rank != 0) return {};
-  return {picture_.rect, {icetImageGetColorcf(result), picture_.rgba.size()}};
+  return {image_.rect, {icetImageGetColorcf(result), image_.rgba.size()}};
 }
 
 std::size_t IcetCompositor::bytes_sent() {

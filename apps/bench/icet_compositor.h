@@ -19,14 +19,14 @@ class IcetCompositor {
   IcetCompositor(const IcetCompositor&) = delete;
   IcetCompositor& operator=(const IcetCompositor&) = delete;
 
-  /// Its strategies that keep an order, those that divide the picture with and without interlacing it.
+  /// Its strategies that keep an order, those that divide the image with and without interlacing it.
   static std::vector<std::string> strategies();
 
-  /// What is composed from now on: `order` front first, in a picture of `pixels` x `pixels`.
+  /// What is composed from now on: `order` front first, in an image of `pixels` x `pixels`.
   void begin(int pixels, std::span<const int> order);
-  /// This rank's image, laid into a picture of full size, as IceT takes it.
+  /// This rank's image, laid into an image of full size, as IceT takes it.
   void lay_in(const volume::Image& image);
-  /// Collective. On rank 0 the picture, which is there until the next call; else nothing.
+  /// Collective. On rank 0 the image, which is there until the next call; else nothing.
   volume::ImageView compose(const std::string& strategy);
   /// That IceT itself counted in the last call, on this rank.
   static std::size_t bytes_sent();
@@ -34,7 +34,7 @@ class IcetCompositor {
  private:
   struct Context;
   std::unique_ptr<Context> context_;
-  volume::Image picture_;
+  volume::Image image_;
   volume::Rect valid_;
 };
 

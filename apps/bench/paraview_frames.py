@@ -1,7 +1,7 @@
 """A volume on two ranks: a frame of `understudy render -n 2` beside one of ParaView's pvbatch, in turn.
 
 256^3 bytes on 512^2 pixels, one sample a voxel, the same camera and table; milliseconds of wall time, medians over rounds.
-ParaView casts rays by OpenGL (Mesa's software renderer) or on the CPU: the faster is `paraview`. psnr is that of our picture
+ParaView casts rays by OpenGL (Mesa's software renderer) or on the CPU: the faster is `paraview`. psnr is that of our image
 against ParaView's. pvbatch is the one on PATH, or the program that UNDERSTUDY_PVBATCH names.
 """
 
@@ -32,30 +32,30 @@ TABLES = {"dense": [(0, (0.1, 0.3, 1), 0.002), (255, (1, 0.8, 0.2), 0.03)],
 
 def scene_of(table, mode, folder):
     """What both programs are told, in a file that `understudy render --table` reads as well."""
-    knots = [{"at": at, "colour": colour, "opacity": opacity} for at, colour, opacity in TABLES[table]]
+    control_points = [{"at": at, "colour": colour, "opacity": opacity} for at, colour, opacity in TABLES[table]]
     path = folder / f"paraview-{table}-{mode}.json"
     path.write_text(json.dumps({"volume": str(cube()), "side": SIDE, "scalars": "unsigned char", "pixels": PIXELS, **CAMERA,
-                                "positions": "values", "knots": knots, "mode": MODES[mode], "frames": SETTLE + FRAMES}),
+                                "positions": "values", "knots": control_points, "mode": MODES[mode], "frames": SETTLE + FRAMES}),
                     encoding="utf-8")
     return path
 
 
-def ours(scene, picture):
+def ours(scene, image):
     camera = ",".join(str(CAMERA[key]) for key in ("azimuth", "elevation", "distance"))
-    report = picture.with_suffix(".json")
+    report = image.with_suffix(".json")
     subprocess.run([str(viewers.PROGRAMS / "understudy"), "render", str(cube()), "--volume-size", *[str(SIDE)] * 3,
                     "--type", "u8", "--table", str(scene), "-n", str(RANKS), "--camera", camera, "--size",
-                    f"{PIXELS}x{PIXELS}", "--frames", str(SETTLE + FRAMES), "--out", str(picture), "--report", str(report)],
+                    f"{PIXELS}x{PIXELS}", "--frames", str(SETTLE + FRAMES), "--out", str(image), "--report", str(report)],
                    stdout=subprocess.DEVNULL, check=True, timeout=viewers.RUN_SECONDS)
     return json.loads(report.read_text(encoding="utf-8"))["frames_ms"][SETTLE:]
 
 
-def theirs(program, scene, picture, name_of_display):
+def theirs(program, scene, image, name_of_display):
     environment = os.environ | viewers.SOFTWARE | {"DISPLAY": name_of_display, "OMPI_ALLOW_RUN_AS_ROOT": "1",
                                                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     text = subprocess.run(["mpirun", "-n", str(RANKS), "--oversubscribe", "--bind-to", "none", "--mca",
-                           "mpi_yield_when_idle", "1", program, str(Path(__file__).with_name("paraview_picture.py")),
-                           str(scene), str(picture)], stdout=subprocess.PIPE, text=True, check=True, env=environment,
+                           "mpi_yield_when_idle", "1", program, str(Path(__file__).with_name("paraview_image.py")),
+                           str(scene), str(image)], stdout=subprocess.PIPE, text=True, check=True, env=environment,
                           timeout=viewers.RUN_SECONDS).stdout
     return [float(ms) for ms in re.findall(r"^frame ([0-9.]+) ms$", text, re.MULTILINE)][SETTLE:]
 
@@ -65,20 +65,20 @@ def rows():
     if program is None:
         print("paraview: nothing to compare with; install paraview, or let UNDERSTUDY_PVBATCH name a pvbatch",
               file=sys.stderr)
-    folder = viewers.OUT / "bench" / "pictures"
+    folder = viewers.OUT / "bench" / "images"
     folder.mkdir(parents=True, exist_ok=True)
     result = []
     for table in TABLES:
-        pictures = {way: folder / f"paraview-{table}-{way}.png" for way in ("ours", *MODES)}
-        times = {way: [] for way in pictures}
+        images = {way: folder / f"paraview-{table}-{way}.png" for way in ("ours", *MODES)}
+        times = {way: [] for way in images}
         for number in range(ROUNDS):
             print(f"  {table}, round {number + 1} of {ROUNDS}", file=sys.stderr, flush=True)
-            times["ours"] += ours(scene_of(table, "OpenGL", folder), pictures["ours"])
+            times["ours"] += ours(scene_of(table, "OpenGL", folder), images["ours"])
             if program is None:
                 continue
             with display.VirtualDisplay() as name_of_display:
                 for mode in MODES:
-                    times[mode] += theirs(program, scene_of(table, mode, folder), pictures[mode], name_of_display)
+                    times[mode] += theirs(program, scene_of(table, mode, folder), images[mode], name_of_display)
         name = f"{RANKS} ranks/{table}"
         row = {"name": f"{name}/ours", "value": statistics.median(times["ours"]), "unit": "ms"}
         if program is not None:
@@ -86,6 +86,6 @@ def rows():
             best = min(medians, key=medians.get)
             result.append({"name": f"{name}/paraview", "value": medians[best], "unit": "ms", "by": best, **medians})
             row |= {"ratio_to": f"{name}/paraview", "ratio": row["value"] / medians[best],
-                    "psnr": viewers.compare(pictures[best], pictures["ours"])["psnr"]}
+                    "psnr": viewers.compare(images[best], images["ours"])["psnr"]}
         result.append(row)
     return result

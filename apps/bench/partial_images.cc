@@ -32,7 +32,7 @@ TransferFunction transfer_function(Scene scene) {
   return function;
 }
 
-/// Along z, the volume a little larger than the picture.
+/// Along z, the volume a little larger than the image.
 Matrix4 parallel_view() {
   const double zoom = 2.04;
   return {zoom, 0, 0, -zoom / 2, 0, zoom, 0, -zoom / 2, 0, 0, 2, -1, 0, 0, 0, 1};
@@ -68,7 +68,7 @@ int halve(Partition& partition, int first, int last, int low, int high) {
   return place;
 }
 
-Partition slabs(const VolumeDescription& description, int ranks) {
+Partition slice_ranges(const VolumeDescription& description, int ranks) {
   const TexelBox cells = cell_lattice(description).box();
   Partition partition;
   partition.ranks = ranks;
@@ -118,7 +118,7 @@ PartialImage partial_image(Scene scene, int pixels, std::span<const std::byte> t
   request.steps->metric = {double(side), 0, 0, 0, double(side), 0, 0, 0, double(side)};
   request.classification = transfer_function(scene);
   const KdTree tree =
-      scene == Scene::full ? KdTree(description, slabs(description, ranks)) : KdTree(description, ranks);
+      scene == Scene::full ? KdTree(description, slice_ranges(description, ranks)) : KdTree(description, ranks);
   BrickStore bricks(description, tree.box(rank));
   bricks.add_slices(description.stored, texels);
   bricks.finish();

@@ -12,7 +12,7 @@
 
 namespace understudy::bench {
 
-/// Full: boxes behind each other, and every rank's image covers the whole picture with no pixel untouched.
+/// Full: boxes behind each other, and every rank's image covers the whole image with no pixel untouched.
 /// Sparse: the boxes of the kd-tree from an eye outside, most of the volume clear. Noise: as full, of
 /// independent random numbers.
 enum class Scene { full, sparse, noise };
@@ -24,7 +24,7 @@ struct PartialImage {
   std::vector<int> order;  ///< all ranks, front first
 };
 
-/// A picture of `pixels` x `pixels` under `over`. `texels` are bytes, `side` along each axis, x fastest.
+/// An image of `pixels` x `pixels` under `over`. `texels` are bytes, `side` along each axis, x fastest.
 PartialImage partial_image(Scene scene, int pixels, std::span<const std::byte> texels, int side, int rank,
                            int ranks);
 

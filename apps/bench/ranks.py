@@ -1,5 +1,5 @@
-"""The same scene on one rank and on four: how far the two pictures are apart, in units of 1/255 (RMS over pixels and
-colours of the 8-bit pictures), under a transfer function narrower than a sample and under a smooth one.
+"""The same scene on one rank and on four: how far the two images are apart, in units of 1/255 (RMS over pixels and
+colours of the 8-bit images), under a transfer function narrower than a sample and under a smooth one.
 
 64^3 floats, 256^2 pixels. Where Debian's paraview is installed its pvbatch renders the same scene, from the same camera:
 paraview and python3-vtk9 exclude each other, so the rows of one are missing where those of the other are.
@@ -41,28 +41,28 @@ def scene_of(table, folder):
     """What both programs are told, in a file that `understudy render --table` reads as well."""
     middle, half, opacity = TABLES[table]
     low, high = {"colour": [0.2, 0.4, 1], "opacity": 0}, {"colour": [1, 0.4, 0.2], "opacity": 0}
-    knots = [{"at": 0, **low}, {"at": middle - half, **low}, {"at": middle, "colour": [1, 0.9, 0.5], "opacity": opacity},
+    control_points = [{"at": 0, **low}, {"at": middle - half, **low}, {"at": middle, "colour": [1, 0.9, 0.5], "opacity": opacity},
              {"at": middle + half, **high}, {"at": 1, **high}]
     path = folder / f"{table}.json"
     path.write_text(json.dumps({"volume": str(waves()), "side": SIDE, "pixels": PIXELS, **CAMERA, "positions": "values",
-                                "knots": knots}), encoding="utf-8")
+                                "knots": control_points}), encoding="utf-8")
     return path
 
 
-def ours(scene, method, ranks, picture):
+def ours(scene, method, ranks, image):
     camera = ",".join(str(CAMERA[key]) for key in ("azimuth", "elevation", "distance"))
-    exact = picture.with_suffix(".pfm")
+    exact = image.with_suffix(".pfm")
     subprocess.run([str(viewers.PROGRAMS / "understudy"), "render", str(waves()), "--table", str(scene), "-n", str(ranks),
-                    "--method", method, "--camera", camera, "--size", f"{PIXELS}x{PIXELS}", "--out", str(picture),
+                    "--method", method, "--camera", camera, "--size", f"{PIXELS}x{PIXELS}", "--out", str(image),
                     "--save-float", str(exact)], stdout=subprocess.DEVNULL, check=True)
     return exact
 
 
-def paraview(scene, ranks, picture, name_of_display):
+def paraview(scene, ranks, image, name_of_display):
     environment = os.environ | viewers.SOFTWARE | {"DISPLAY": name_of_display, "OMPI_ALLOW_RUN_AS_ROOT": "1",
                                                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     several = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-    subprocess.run([*several, "pvbatch", str(Path(__file__).with_name("paraview_picture.py")), str(scene), str(picture)],
+    subprocess.run([*several, "pvbatch", str(Path(__file__).with_name("paraview_image.py")), str(scene), str(image)],
                    stdout=subprocess.DEVNULL, check=True, env=environment, timeout=viewers.RUN_SECONDS)
 
 
@@ -72,22 +72,22 @@ def apart(name, one, four):
 
 
 def rows():
-    folder = viewers.OUT / "bench" / "pictures"
+    folder = viewers.OUT / "bench" / "images"
     folder.mkdir(parents=True, exist_ok=True)
     result = []
     for table in TABLES:
         scene = scene_of(table, folder)
         for method in METHODS:
-            pictures = [folder / f"ranks-{table}-{method}-{ranks}.png" for ranks in (1, 4)]
-            floats = [ours(scene, method, ranks, picture) for ranks, picture in zip((1, 4), pictures)]
-            result.append(apart(f"ranks/{table}/{method}", *pictures)
+            images = [folder / f"ranks-{table}-{method}-{ranks}.png" for ranks in (1, 4)]
+            floats = [ours(scene, method, ranks, image) for ranks, image in zip((1, 4), images)]
+            result.append(apart(f"ranks/{table}/{method}", *images)
                           | {"max_before_rounding": viewers.compare(*floats)["max"]})
         if shutil.which("pvbatch") is None:
             print("ranks: no rows for ParaView, install paraview", file=sys.stderr)
             continue
-        pictures = [folder / f"ranks-{table}-paraview-{ranks}.png" for ranks in (1, 4)]
+        images = [folder / f"ranks-{table}-paraview-{ranks}.png" for ranks in (1, 4)]
         with display.VirtualDisplay() as name_of_display:
-            for ranks, picture in zip((1, 4), pictures):
-                paraview(scene, ranks, picture, name_of_display)
-        result.append(apart(f"ranks/{table}/paraview", *pictures))
+            for ranks, image in zip((1, 4), images):
+                paraview(scene, ranks, image, name_of_display)
+        result.append(apart(f"ranks/{table}/paraview", *images))
     return result

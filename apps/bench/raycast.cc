@@ -1,5 +1,5 @@
-// understudy-bench-raycast: ray casting alone, without window, OpenGL or network. One picture is rendered again
-// and again; its time is processor time for each sample that the picture has, left out or not, and beside it
+// understudy-bench-raycast: ray casting alone, without window, OpenGL or network. One image is rendered again
+// and again; its time is processor time for each sample that the image has, left out or not, and beside it
 // stands its error. Prints one JSON object.
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -44,7 +44,7 @@ struct Settings {
   std::vector<double> surfaces;
   bool light = false;
   std::string backend = "cpu";
-  std::string judged;  ///< floats of another renderer's picture; empty: ours is judged
+  std::string judged;  ///< floats of another renderer's image; empty: ours is judged
   int stride = 8;      ///< of the pixels whose error is measured
   bool unjudged = false;
   int magnify = 1;
@@ -205,7 +205,7 @@ nlohmann::ordered_json measure(const Settings& settings) {
   volume.stored = {{0, 0, 0}, settings.size};
   std::vector<std::byte> texels = texels_of(settings);
   const RenderRequest asked = request(settings);
-  volume.margin = margin_needed(volume, asked);
+  volume.ghost_layer = ghost_layer_needed(volume, asked);
   BrickStore store(volume, cell_lattice(volume).box());
   store.add_slices(volume.stored, texels);
   store.finish();
@@ -308,15 +308,15 @@ int main(int argc, char** argv) {
   app.add_option("--type", settings.type, "kind of voxels that the bytes become")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, TexelType>{{"u8", TexelType::u8}, {"u16", TexelType::u16}}));
-  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(1, 16384));
+  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(1, 16384));
   app.add_option("--threads", settings.threads, "most threads")->check(CLI::Range(1, 1024));
-  app.add_option("--frames", settings.frames, "pictures, of whose times the median counts")
+  app.add_option("--frames", settings.frames, "images, of whose times the median counts")
       ->check(CLI::Range(1, 10000));
   app.add_option("--backend", settings.backend, "who casts the rays: gl on EGL, gl-osmesa on OSMesa")
       ->check(CLI::IsMember({"cpu", "gl", "gl-osmesa"}));
   app.add_option("--gpu-memory", settings.gpu_memory.bytes, "bytes of texels that OpenGL may hold at a time");
   app.add_option("--judge", settings.judged,
-                 "a file with another renderer's picture, premultiplied RGBA floats, rows bottom up: errors "
+                 "a file with another renderer's image, premultiplied RGBA floats, rows bottom up: errors "
                  "are its own")
       ->check(CLI::ExistingFile);
   app.add_option("--epsilon", settings.epsilon, "a ray ends when less light than this comes through")

@@ -7,7 +7,7 @@ voxels and of noise.
 error against the same samples in double precision (rms_arithmetic), and against the volume rendering integral, which
 has no samples (rms_total; not of surfaces and light, which the integral does not know). Where the prototype at
 UNDERSTUDY_YARDSTICK (../shared/yardstick beside the checkout, if the variable is not set) can run, its program renders
-the same pictures of the same volume in turn.
+the same images of the same volume in turn.
 """
 
 import json
@@ -99,7 +99,7 @@ def measured(volume, size, options, frames=FRAMES, epsilon=EPSILON):
     return json.loads(text)
 
 
-# VTK's mappers render the same pictures where Debian's python3-vtk9 and xvfb are installed; one round is slow enough.
+# VTK's mappers render the same images where Debian's python3-vtk9 and xvfb are installed; one round is slow enough.
 VTK_CASES = {f"vtk-{mapper}/{table}": (mapper, table) for mapper in ("gpu", "fixed-point") for table in ("dense", "sparse")}
 
 
@@ -107,14 +107,14 @@ def vtk_scene(volume, table):
     """The camera and the tables of raycast.cc: from two edges away, 30 degrees around and 25 above, opened by 40."""
     around, above, first_visible = math.radians(30), math.radians(25), 140
     back = (math.sin(around) * math.cos(above), math.sin(above), math.cos(around) * math.cos(above))
-    knots = []
+    control_points = []
     for i in range(256):
         dense = 0.002 + 0.03 * i / 255
         sparse = 0 if i < first_visible else min(1, 0.02 + 0.3 * (i - first_visible) / 60)
-        knots.append({"at": i / 255, "opacity": sparse if table == "sparse" else dense,
+        control_points.append({"at": i / 255, "opacity": sparse if table == "sparse" else dense,
                       "colour": [0.3 + 0.7 * i / 255, 0.5 + 0.5 * math.sin(i * 0.05), 1 - 0.8 * i / 255]})
     return {"volume": str(volume), "size": [SIDE] * 3, "type": "u8", "spacing": [1] * 3, "value_at_0": 0, "value_at_1": 255,
-            "knots": knots, "unit_distance": 1, "sample_distance": 1, "eye": [SIDE / 2 + 2 * SIDE * b for b in back],
+            "knots": control_points, "unit_distance": 1, "sample_distance": 1, "eye": [SIDE / 2 + 2 * SIDE * b for b in back],
             "centre": [SIDE / 2] * 3, "up": [0, 1, 0], "angle": 40, "near": 0.5 * SIDE, "far": 4 * SIDE, "pixels": 512}
 
 
@@ -123,19 +123,19 @@ def vtk_rows(volume, rows_so_far):
         print("raycast: no rows for VTK, install python3-vtk9 and python3-numpy", file=sys.stderr)
         return []
     ours = {row["name"]: row for row in rows_so_far}
-    picture = viewers.OUT / "bench" / "pictures" / "vtk.f32"
-    picture.parent.mkdir(parents=True, exist_ok=True)
+    image = viewers.OUT / "bench" / "images" / "vtk.f32"
+    image.parent.mkdir(parents=True, exist_ok=True)
     result = []
     with display.VirtualDisplay() as name_of_display:
         environment = os.environ | {"DISPLAY": name_of_display, "LIBGL_ALWAYS_SOFTWARE": "1", "LP_NUM_THREADS": "1"}
         for name, (mapper, table) in VTK_CASES.items():
             print(f"  {name}", file=sys.stderr, flush=True)
-            scene = picture.with_suffix(".json")
+            scene = image.with_suffix(".json")
             scene.write_text(json.dumps(vtk_scene(volume, table)), encoding="utf-8")
             text = subprocess.run(["/usr/bin/python3", str(Path(__file__).with_name("vtk_mappers.py")), str(scene),
-                                   "--mapper", mapper, "--threads", "1", "--frames", "3", "--picture", str(picture)],
+                                   "--mapper", mapper, "--threads", "1", "--frames", "3", "--image", str(image)],
                                   stdout=subprocess.PIPE, text=True, check=True, env=environment).stdout
-            figures = measured(volume, FULL, ["--table", table, "--judge", str(picture)], frames=1)
+            figures = measured(volume, FULL, ["--table", table, "--judge", str(image)], frames=1)
             errors = {key: figures[key] for key in figures if key.startswith(("rms_", "max_"))}
             ns = 1e9 * json.loads(text)["seconds"] / figures["samples"]
             rival = f"cpu/post-classified/{table}"
@@ -146,13 +146,13 @@ def vtk_rows(volume, rows_so_far):
 
 def slice_rows(volume, rows_so_far):
     ours = {row["name"]: row for row in rows_so_far}
-    picture = viewers.OUT / "bench" / "pictures" / "slices.f32"
-    picture.parent.mkdir(parents=True, exist_ok=True)
+    image = viewers.OUT / "bench" / "images" / "slices.f32"
+    image.parent.mkdir(parents=True, exist_ok=True)
     result = []
     for table in ("dense", "sparse"):
         print(f"  viewer-slices/{table}", file=sys.stderr, flush=True)
-        seconds = viewer_slices.seconds_and_picture(Path(volume), vtk_scene(volume, table), picture)
-        figures = measured(volume, FULL, ["--table", table, "--judge", str(picture)], frames=1)
+        seconds = viewer_slices.seconds_and_image(Path(volume), vtk_scene(volume, table), image)
+        figures = measured(volume, FULL, ["--table", table, "--judge", str(image)], frames=1)
         errors = {key: figures[key] for key in figures if key.startswith(("rms_", "max_"))}
         ns = 1e9 * seconds / figures["samples"]
         rival = f"cpu/post-classified/{table}"
@@ -162,7 +162,7 @@ def slice_rows(volume, rows_so_far):
 
 
 def enough_memory(side):
-    """For a cube's bytes, and for bricks that hold 9^3 for every 8^3 of them, and a picture."""
+    """For a cube's bytes, and for bricks that hold 9^3 for every 8^3 of them, and an image."""
     needed = 2.5 * side**3 + 16 * side**2
     free = 1024 * int(re.search(r"MemAvailable:\s+(\d+)", Path("/proc/meminfo").read_text(encoding="ascii")).group(1))
     if needed > 0.9 * free:

@@ -1,7 +1,7 @@
-// understudy-bench-real-ranks: pictures of real node groups on this machine, beside what the model
+// understudy-bench-real-ranks: images of real node groups on this machine, beside what the model
 // (frame_parts.h, frame_time.h) said of them: bytes and messages, to be equal, and times. Prints one JSON
-// object a line. The costs of messages, bytes and blending are those that understudy-bench-link printed; what a
-// sample and a ray cost is measured on one rank.
+// object a line. The costs of messages, bytes and blending are those that understudy-bench-messages printed;
+// what a sample and a ray cost is measured on one rank.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,25 +23,25 @@
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
 #include "volume/orbit_camera.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace {
 
 using namespace understudy;
 using compositor::Algorithm;
-using compositor::Home;
+using compositor::Gather;
 
 struct Settings {
   int most_ranks = 8;
   int side = 128;
   int pixels = 512;
-  int pictures = 8;
+  int images = 8;
   int rounds = 1;
   int cores = int(std::max(1U, std::thread::hardware_concurrency()));
   std::string costs;
 };
 
-/// A volume and one picture of it.
+/// A volume and one image of it.
 struct Scene {
   std::string name;
   compositor::LoadRequest load;
@@ -61,24 +61,24 @@ Scene scene_of(const Settings& settings, volume::VolumeId id, const std::string&
   volume::TexelStream stream(volume::open_synthetic(scene.load.file), {}, description.stored);
   description.type = stream.mapping().type;
   while (!stream.done()) {
-    const auto slab = stream.next(std::size_t(16) << 20);
-    scene.texels.insert(scene.texels.end(), slab.texels.begin(), slab.texels.end());
+    const auto slice_range = stream.next(std::size_t(16) << 20);
+    scene.texels.insert(scene.texels.end(), slice_range.texels.begin(), slice_range.texels.end());
   }
   const auto request = [&](double step) {
     volume::RenderRequest made =
         volume::orbit_request(description, {1, 1, 1}, {}, settings.pixels, settings.pixels, step);
-    made.classification = volume::sampled(volume::knots_named("grey"), 0, 1, step);
+    made.classification = volume::sampled(volume::control_points_named("grey"), 0, 1, step);
     return made;
   };
   scene.request = request(1);
   scene.sparser = request(4);
   // Nothing is left out of the volume that is nowhere empty, so that its time is that of all samples.
-  // What opaque tiles save depends on when their notes come.
+  // What opaque tiles save depends on when their control messages come.
   scene.request.termination = scene.sparser.termination = 0;
   return scene;
 }
 
-/// The shortest of several pictures, in milliseconds.
+/// The shortest of several images, in milliseconds.
 struct Measured {
   double render = std::numeric_limits<double>::max();
   double exchange = render;
@@ -86,9 +86,9 @@ struct Measured {
   volume::FrameCounts counts;
 };
 
-void draw(compositor::LoadingService& service, const volume::RenderRequest& request, int pictures,
+void draw(compositor::LoadingService& service, const volume::RenderRequest& request, int images,
           Measured& measured) {
-  for (int picture = 0; picture < pictures; ++picture) {
+  for (int image = 0; image < images; ++image) {
     const auto start = std::chrono::steady_clock::now();
     measured.counts = service.render(request).counts;
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
@@ -101,12 +101,12 @@ void draw(compositor::LoadingService& service, const volume::RenderRequest& requ
 struct Way {
   int ranks = 1;
   Algorithm algorithm{};
-  Home home{};
+  Gather gather{};
   auto operator<=>(const Way&) const = default;
 };
 
-const char* name_of(Home home) {
-  return home == Home::direct ? "direct" : "gathered";
+const char* name_of(Gather gather) {
+  return gather == Gather::direct ? "direct" : "root";
 }
 
 struct WayMeasured {
@@ -120,25 +120,25 @@ void measure(const Settings& settings, const std::vector<Scene>& scenes, const W
   launcher::OwnNodes nodes;
   nodes.placement.ranks = way.ranks;
   nodes.choices.exchange = compositor::name_of(way.algorithm);
-  nodes.choices.home = name_of(way.home);
+  nodes.choices.gather = name_of(way.gather);
   nodes.choices.overlap = nodes.choices.packed = "off";
   launcher::with_own_nodes(nodes, [&](const std::string& socket, const std::stop_token&) {
     constexpr std::chrono::minutes patience{5};
     const auto service =
-        compositor::linked_loading_service(socket, {patience, patience, patience, patience, patience});
+        compositor::remote_loading_service(socket, {patience, patience, patience, patience, patience});
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       const Scene& scene = scenes[i];
       service->begin_load(scene.load);
       while (!std::ranges::all_of(service->continue_load(scene.load.volume.id), &compositor::RankLoad::done)) {
       }
-      draw(*service, scene.request, settings.pictures, measured.scenes[i]);
+      draw(*service, scene.request, settings.images, measured.scenes[i]);
       if (i + 1 == scenes.size() && way.ranks == 1)
-        draw(*service, scene.sparser, settings.pictures, measured.sparser);
+        draw(*service, scene.sparser, settings.images, measured.sparser);
     }
   });
 }
 
-bench::Costs link_costs(const Settings& settings) {
+bench::Costs message_cost(const Settings& settings) {
   bench::Costs costs;
   costs.cores = settings.cores;
   if (settings.costs.empty()) return costs;
@@ -172,12 +172,12 @@ void run(const Settings& settings) {
   // Numbers of ranks follow each other fastest, so that a machine that is busier for a while is so for all.
   for (int round = 0; round < settings.rounds; ++round)
     for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
-      for (const Home home : {Home::direct, Home::gathered})
+      for (const Gather gather : {Gather::direct, Gather::root})
         for (int ranks = 1; ranks <= settings.most_ranks; ++ranks) {
-          const Way way{ranks, Algorithm(a), home};
+          const Way way{ranks, Algorithm(a), gather};
           measure(settings, scenes, way, measured[way]);
         }
-  bench::Costs costs = link_costs(settings);
+  bench::Costs costs = message_cost(settings);
   // Rendering does not depend on how the parts become one: its shortest time is that of all ways.
   std::map<std::pair<int, std::size_t>, double> render;  // by ranks and scene
   WayMeasured one_rank = measured.begin()->second;
@@ -209,12 +209,12 @@ void run(const Settings& settings) {
         if (way.ranks != ranks) continue;
         const Measured& real = of_way.scenes[i];
         const compositor::CountedExchange counted =
-            bench::counted(parts, way.algorithm, way.home, scene.request.op, compositor::Layout::rgba32f);
+            bench::counted(parts, way.algorithm, way.gather, scene.request.op, compositor::Layout::rgba32f);
         const bench::FrameTime time = bench::time_of(parts, counted, costs);
         fmt::print("{}\n", nlohmann::ordered_json{{"scene", scene.name},
                                                   {"ranks", ranks},
                                                   {"exchange", compositor::name_of(way.algorithm)},
-                                                  {"home", name_of(way.home)},
+                                                  {"home", name_of(way.gather)},
                                                   {"samples", parts.samples()},
                                                   {"samples_counted", real.counts.samples_taken},
                                                   {"messages", counted.messages},
@@ -237,15 +237,14 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"compares the model of pictures on many ranks with real ranks on this machine"};
+  CLI::App app{"compares the model of images on many ranks with real ranks on this machine"};
   app.add_option("--most-ranks", settings.most_ranks)->check(CLI::Range(1, 64));
   app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(16, 512));
-  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 4096));
-  app.add_option("--pictures", settings.pictures, "of each kind; the fastest counts")
-      ->check(CLI::Range(1, 1000));
+  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 4096));
+  app.add_option("--images", settings.images, "of each kind; the fastest counts")->check(CLI::Range(1, 1000));
   app.add_option("--rounds", settings.rounds, "in which all ways follow each other")->check(CLI::Range(1, 100));
   app.add_option("--cores", settings.cores, "that the ranks share")->check(CLI::Range(1, 1024));
-  app.add_option("--costs", settings.costs, "what understudy-bench-link printed");
+  app.add_option("--costs", settings.costs, "what understudy-bench-messages printed");
   CLI11_PARSE(app, argc, argv);
   try {
     run(settings);

@@ -2,8 +2,8 @@
 
 Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that are network namespaces of this machine,
 joined by 1 Gbit/s with 0.5 ms to the other end and back, or by 100 Mbit/s with 20 ms (tests/hosts). Ways: the viewer's own
-OpenGL and nodes there, all of it on a stage there; as it is, or with JPEG pictures while the view turns, or with bytes for
-the nodes' pictures. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
+OpenGL and nodes there, all of it on a GL server there; as it is, or with JPEG images while the view turns, or with bytes for
+the nodes' images. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
 has every line, and each line every way; times and ratios are medians of those of the rounds. What travelled is counted on the
 longer of two runs, less the shorter: upwards before it was compressed, as the volume, which is compressed by what the line
 seemed to be, travels in both runs; downwards as it travelled.
@@ -30,7 +30,7 @@ HOSTS = viewers.ROOT / "tests" / "hosts"
 SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
 LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
-        "stage, quality 80": ["--remote", "--quality", "80"]}
+        "GL server, quality 80": ["--remote", "--quality", "80"]}
 PORT = 7070
 ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run
@@ -44,13 +44,13 @@ def on(host):
 
 @contextlib.contextmanager
 def server(folder, host):
-    """`understudy serve` with two nodes and a stage; where it listens, and the secret."""
+    """`understudy serve` with two nodes and a GL server; where it listens, and the secret."""
     secret = folder / "secret"
     where = f"10.77.0.1:{PORT}" if host else f"127.0.0.1:{PORT}"
     with open(folder / "serve.log", "w+", encoding="utf-8") as log:
         process = subprocess.Popen(
             [*on(host), str(viewers.PROGRAMS / "understudy"), "serve", "-n", "2", "--socket", str(folder / "nodes.sock"),
-             "--listen", where, "--secret-file", str(secret), "--stage"], stdout=log, stderr=subprocess.STDOUT,
+             "--listen", where, "--secret-file", str(secret), "--gl-server"], stdout=log, stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL, env={**os.environ, **viewers.SOFTWARE, "DISPLAY": ""})
         try:
             until = time.monotonic() + 30
@@ -83,7 +83,7 @@ class Client:
     def travelled(self):
         """Bytes up and down, and round trips, of the last run."""
         report = viewers.read_report(self.folder / "report.json")
-        link, remote = report.get("link"), report.get("remote_link")
+        link, remote = report.get("link"), report.get("server_connection")
         return {"up": link["up"]["payload_bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
                 "round_trips": remote["round_trips"] if remote else link["up"]["messages"] if link else 0,
                 "frames": remote["frames"] if remote else report["frames"]}

@@ -1,4 +1,4 @@
-// understudy-bench-scaling: what a picture would cost on 1 to 1,024 ranks. Partition, rays, footprints and the
+// understudy-bench-scaling: what an image would cost on 1 to 1,024 ranks. Partition, rays, footprints and the
 // bytes of every message are those of the nodes (frame_parts.h); time alone is modelled (frame_time.h). Prints
 // one JSON object a line.
 #include <fmt/format.h>
@@ -26,16 +26,16 @@
 #include "volume/orbit_camera.h"
 #include "volume/partition.h"
 #include "volume/raycast/expected_samples.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace {
 
 using namespace understudy;
 
 struct Settings {
-  int side = 512;                ///< voxels, along each axis
-  bool weak = false;             ///< `side` is for one rank; the volume grows with their number
-  bool growing_picture = false;  ///< so does `pixels`, with the volume's side
+  int side = 512;              ///< voxels, along each axis
+  bool weak = false;           ///< `side` is for one rank; the volume grows with their number
+  bool growing_image = false;  ///< so does `pixels`, with the volume's side
   int pixels = 1024;
   int most_ranks = 1024;
   int cast_ranks = 0;  ///< up to so many ranks boxes are cast
@@ -46,7 +46,7 @@ struct Settings {
   double gigabits = 100;
 };
 
-/// What is drawn: texels, where there are any, and one picture.
+/// What is drawn: texels, where there are any, and one image.
 struct Scene {
   volume::VolumeDescription description;
   std::vector<std::byte> texels;
@@ -57,7 +57,7 @@ struct Scene {
 Scene dense_cube(const Settings& settings, int ranks) {
   const double growth = settings.weak ? std::cbrt(double(ranks)) : 1;
   const int side = int(std::lround(settings.side * growth));
-  const int pixels = settings.growing_picture ? int(std::lround(settings.pixels * growth)) : settings.pixels;
+  const int pixels = settings.growing_image ? int(std::lround(settings.pixels * growth)) : settings.pixels;
   Scene scene;
   scene.description.id = 1;
   scene.description.size = {side, side, side};
@@ -85,11 +85,11 @@ Scene volume_in_file(const Settings& settings) {
   volume::TexelStream stream(std::move(file), {}, description.stored);
   description.type = stream.mapping().type;
   while (!stream.done()) {
-    const auto slab = stream.next(std::size_t(16) << 20);
-    scene.texels.insert(scene.texels.end(), slab.texels.begin(), slab.texels.end());
+    const auto slice_range = stream.next(std::size_t(16) << 20);
+    scene.texels.insert(scene.texels.end(), slice_range.texels.begin(), slice_range.texels.end());
   }
   scene.request = volume::orbit_request(description, of_file.spacing, {}, settings.pixels, settings.pixels, 1);
-  scene.request.classification = volume::sampled(volume::knots_named(settings.table), 0, 1, 1);
+  scene.request.classification = volume::sampled(volume::control_points_named(settings.table), 0, 1, 1);
   return scene;
 }
 
@@ -138,7 +138,7 @@ nlohmann::ordered_json exchange_row(const Settings& settings, const bench::Frame
                                     compositor::Algorithm algorithm, double& render_ms) {
   // Rank 0 has the application's machine to itself.
   const compositor::CountedExchange counted = bench::counted(
-      parts, algorithm, compositor::Home::gathered, volume::Operator::over, compositor::Layout::rgba32f);
+      parts, algorithm, compositor::Gather::root, volume::Operator::over, compositor::Layout::rgba32f);
   const bench::FrameTime time = bench::time_of(parts, counted, settings.costs);
   render_ms = 1e3 * time.render;
   std::uint64_t busiest = 0;
@@ -188,15 +188,15 @@ nlohmann::ordered_json simulate(const Settings& settings, const Scene& scene, in
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App app{"models pictures of a dense cube, or of a volume in a file, on 1 to 1,024 ranks"};
+  CLI::App app{"models images of a dense cube, or of a volume in a file, on 1 to 1,024 ranks"};
   app.add_option("--side", settings.side, "voxels along each axis")->check(CLI::Range(8, 8192));
   CLI::Option* weak = app.add_flag("--weak", settings.weak, "that many for each rank");
-  app.add_flag("--growing-picture", settings.growing_picture, "with the volume")->needs(weak);
-  app.add_option("--pixels", settings.pixels, "edge of the picture")->check(CLI::Range(16, 8192));
+  app.add_flag("--growing-image", settings.growing_image, "with the volume")->needs(weak);
+  app.add_option("--pixels", settings.pixels, "edge of the image")->check(CLI::Range(16, 8192));
   app.add_option("--most-ranks", settings.most_ranks, "powers of two up to here")->check(CLI::Range(1, 1024));
   app.add_option("--cast-ranks", settings.cast_ranks, "up to so many, boxes are really cast");
   app.add_option("--volume", settings.volume, "a file, always cast, instead of the cube")->excludes(weak);
-  app.add_option("--table", settings.table, "its transfer function: " + volume::built_in_knots());
+  app.add_option("--table", settings.table, "its transfer function: " + volume::built_in_control_points());
   app.add_flag("--by-cost", settings.by_cost, "boxes that cost the same, instead of as many blocks");
   app.add_option("--sample", settings.costs.per_sample, "seconds, of a node's whole processor");
   app.add_option("--latency", settings.costs.latency, "L, seconds");

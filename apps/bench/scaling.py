@@ -1,8 +1,8 @@
-"""Pictures on 1 to 1,024 ranks, on paper, and on 1 to 8 real ranks of this machine beside what the paper says of them.
+"""Images on 1 to 1,024 ranks, on paper, and on 1 to 8 real ranks of this machine beside what the paper says of them.
 
 On paper partition, rays and the bytes of every message are the nodes' own and time is modelled (frame_time.h): a node samples
 in SAMPLE_NS, the line between nodes carries 100 Gbit/s, a small message takes 5 us. Strong: the same cube on more ranks; weak:
-a cube that grows with them, and once with it the picture. `value` is rendering on the slowest rank and then the cheapest
+a cube that grows with them, and once with it the image. `value` is rendering on the slowest rank and then the cheapest
 exchange; beside it the speed-up over all samples on one rank, its part that every rank gives (efficiency), and what travels.
 
 The check runs first. Bytes and messages must be equal; of times both are there, and their ratio. Plots and tables go to
@@ -20,7 +20,7 @@ SAMPLE_NS = 2.0
 EXCHANGES = ("serial", "tree", "direct-send", "binary-swap", "radix-k")
 SIDES = (512, 1024, 2048, 4096, 8192)
 CUBES = {**{f"strong/{side}": ["--side", str(side)] for side in SIDES}, "weak/512": ["--side", "512", "--weak"],
-         "weak/512-growing": ["--side", "512", "--weak", "--growing-picture", "--pixels", "512"]}
+         "weak/512-growing": ["--side", "512", "--weak", "--growing-image", "--pixels", "512"]}
 PARTITIONS = {"blocks": [], "cost": ["--by-cost"]}
 CAST = {"side": 256, "ranks": 8}
 VESSELS = viewers.ROOT.parent / "shared" / "data" / "aneurism_256x256x256_uint8.raw.gz"
@@ -33,45 +33,45 @@ def lines_of(program, options):
     return [json.loads(line) for line in text.splitlines()]
 
 
-def link_costs():
+def message_cost():
     """What messages, bytes and blending cost between two ranks of this machine, as real_ranks.cc takes it."""
     environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     return subprocess.run(["mpirun", "-n", "2", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1",
                            "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
-                           str(viewers.PROGRAMS / "understudy-bench-link")],
+                           str(viewers.PROGRAMS / "understudy-bench-messages")],
                           stdout=subprocess.PIPE, text=True, check=True, env=environment).stdout.strip()
 
 
 def checked(folder):
     """Rows of real ranks. Raises RuntimeError where a byte or a message is not as predicted."""
-    costs, *pictures = lines_of("understudy-bench-real-ranks", ["--most-ranks", REAL_RANKS, "--costs", link_costs()])
+    costs, *images = lines_of("understudy-bench-real-ranks", ["--most-ranks", REAL_RANKS, "--costs", message_cost()])
     for key in ("bytes", "messages", "samples"):
-        wrong = [picture for picture in pictures if picture[key] != picture[f"{key}_counted"]]
+        wrong = [image for image in images if image[key] != image[f"{key}_counted"]]
         if wrong:
-            raise RuntimeError(f"{key} of {len(wrong)} pictures on real ranks are not those predicted: {wrong[0]}")
-    print(f"scaling: {len(pictures)} pictures on real ranks: bytes, messages and samples are those predicted")
+            raise RuntimeError(f"{key} of {len(wrong)} images on real ranks are not those predicted: {wrong[0]}")
+    print(f"scaling: {len(images)} images on real ranks: bytes, messages and samples are those predicted")
     print("scaling: " + ", ".join(f"{key} {value:.3g}" for key, value in costs.items()))
-    (folder / "real.json").write_text(json.dumps({"costs": costs, "pictures": pictures}), encoding="utf-8")
-    (folder / "real.md").write_text(real_table(pictures), encoding="utf-8")
-    return [{"name": f"scaling/real/{picture['scene']}/{picture['exchange']}/{picture['home']}/{picture['ranks']} ranks",
-             "value": picture["frame_ms_measured"], "unit": "ms", "predicted_ms": picture["frame_ms"],
-             "measured_to_predicted": picture["frame_ms_measured"] / picture["frame_ms"],
-             **{key: picture[key] for key in ("render_ms", "render_ms_measured", "exchange_ms", "exchange_ms_measured",
+    (folder / "real.json").write_text(json.dumps({"costs": costs, "images": images}), encoding="utf-8")
+    (folder / "real.md").write_text(real_table(images), encoding="utf-8")
+    return [{"name": f"scaling/real/{image['scene']}/{image['exchange']}/{image['home']}/{image['ranks']} ranks",
+             "value": image["frame_ms_measured"], "unit": "ms", "predicted_ms": image["frame_ms"],
+             "measured_to_predicted": image["frame_ms_measured"] / image["frame_ms"],
+             **{key: image[key] for key in ("render_ms", "render_ms_measured", "exchange_ms", "exchange_ms_measured",
                                               "bytes", "bytes_counted", "messages", "messages_counted")}}
-            for picture in pictures]
+            for image in images]
 
 
-def real_table(pictures):
+def real_table(images):
     """By number of ranks: direct-send, written home; in brackets the ratios of all exchanges and both ways home."""
     lines = ["| ranks | messages | bytes | render ms: predicted | measured | ratio | exchange ms: predicted | measured | ratio "
              "| frame ms: predicted | measured | ratio |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for ranks in range(1, REAL_RANKS + 1):
-        chosen = [picture for picture in pictures if picture["ranks"] == ranks and picture["scene"] == "lobes"]
-        usual = next(picture for picture in chosen if (picture["exchange"], picture["home"]) == ("direct-send", "direct"))
+        chosen = [image for image in images if image["ranks"] == ranks and image["scene"] == "lobes"]
+        usual = next(image for image in chosen if (image["exchange"], image["home"]) == ("direct-send", "direct"))
         cells = [str(ranks), str(usual["messages"]), str(usual["bytes"])]
         for key in ("render_ms", "exchange_ms", "frame_ms"):
             predicted, measured = usual[key], usual[f"{key}_measured"]
-            ratios = sorted(picture[f"{key}_measured"] / picture[key] for picture in chosen if picture[key] > 0)
+            ratios = sorted(image[f"{key}_measured"] / image[key] for image in chosen if image[key] > 0)
             among = f" ({ratios[0]:.2f} to {ratios[-1]:.2f})" if ratios and ratios[0] < ratios[-1] else ""
             cells += [f"{predicted:.2f}", f"{measured:.2f}", f"{measured / predicted:.2f}{among}" if predicted else "-"]
         lines.append(f"| {' | '.join(cells)} |")

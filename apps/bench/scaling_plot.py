@@ -77,7 +77,7 @@ def traffic(axes, frames, most):
 
 
 def times(axes, frames, most):
-    """Where a picture's time goes."""
+    """Where an image's time goes."""
     axes.plot(ranks_of(frames), [frame["render_ms"] for frame in frames], color="0.3", label="rendering", linewidth=1.6)
     frames = [frame for frame in frames if frame["ranks"] > 1]
     for name, colour in EXCHANGES.items():
@@ -88,7 +88,7 @@ def times(axes, frames, most):
     on_ranks(axes, "ms", most)
 
 
-def picture(path, title, cases, frames, of):
+def image(path, title, cases, frames, of):
     figure, ((a, b), (c, d)) = plt.subplots(2, 2, figsize=(9, 7), constrained_layout=True)
     figure.suptitle(title, fontsize=11)
     most = max(ranks_of(frames))
@@ -110,15 +110,15 @@ def main(runs, folder):
     shades = plt.get_cmap("viridis")
     strong = {f"{side}³": (by_partition(runs, f"strong/{side}"), shades(0.9 * i / max(1, len(sides) - 1)))
               for i, side in enumerate(sides)}
-    picture(folder / "strong.png", "One dense cube on more and more ranks (1024² pixels)", strong, runs["strong/2048/cost"],
+    image(folder / "strong.png", "One dense cube on more and more ranks (1024² pixels)", strong, runs["strong/2048/cost"],
             "2048³ by cost")
-    weak = {"picture of 1024²": (by_partition(runs, "weak/512"), "tab:blue"),
-            "picture grows from 512²": (by_partition(runs, "weak/512-growing"), "tab:orange")}
-    picture(folder / "weak.png", "512³ dense voxels for each rank", weak, runs["weak/512-growing/cost"],
-            "growing picture, by cost")
+    weak = {"image of 1024²": (by_partition(runs, "weak/512"), "tab:blue"),
+            "image grows from 512²": (by_partition(runs, "weak/512-growing"), "tab:orange")}
+    image(folder / "weak.png", "512³ dense voxels for each rank", weak, runs["weak/512-growing/cost"],
+            "growing image, by cost")
     if "sparse/vessels/cost" in runs:
         sparse = {"aneurism, 256³": (by_partition(runs, "sparse/vessels"), "tab:red")}
-        picture(folder / "sparse.png", "Vessels, 99 % empty (1024² pixels)", sparse, runs["sparse/vessels/cost"], "by cost")
+        image(folder / "sparse.png", "Vessels, 99 % empty (1024² pixels)", sparse, runs["sparse/vessels/cost"], "by cost")
 
 
 main(json.load(sys.stdin), Path(sys.argv[1]))

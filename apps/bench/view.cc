@@ -1,4 +1,4 @@
-// A viewer without eyes that turns a volume: what lies between the hand and the picture. JSON lines for
+// A viewer without eyes that turns a volume: what lies between the hand and the image. JSON lines for
 // view.py.
 #include <fmt/format.h>
 
@@ -24,38 +24,38 @@ double at_share(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
 }
 
-/// A way that a picture takes: what is asked for beside a little turn of the camera.
+/// A way that an image takes: what is asked for beside a little turn of the camera.
 struct Way {
   const char* name;
   Json request;
-  bool tells_time;  ///< as a page does, so that pictures become smaller where they are slow
+  bool tells_time;  ///< as a page does, so that images become smaller where they are slow
 };
 
-void measure(WebClient& client, const Way& way, int pictures) {
+void measure(WebClient& client, const Way& way, int images) {
   constexpr int warming = 10;
   std::vector<double> all_ms;
   double bytes = 0, cast_ms = 0, pack_ms = 0, pixels = 0;
   Json request = way.request;
-  for (int i = 0; i < pictures + warming; ++i) {
+  for (int i = 0; i < images + warming; ++i) {
     request["rotate"] = {{0, 0}, {0.02, 0.005}};
     const Clock::time_point start = Clock::now();
-    const WebClient::Message message = client.picture(request);
+    const WebClient::Message message = client.image(request);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     if (way.tells_time) request["took_ms"] = ms;
     if (i < warming) continue;
     all_ms.push_back(ms);
-    bytes += double(message.picture.size());
-    cast_ms += double(message.json.at("ms").at("picture"));
+    bytes += double(message.image.size());
+    cast_ms += double(message.json.at("ms").at("image"));
     pack_ms += double(message.json.at("ms").at("pack"));
     pixels += double(message.json.at("width")) * double(message.json.at("height"));
   }
   std::puts(Json{{"way", way.name},
                  {"median_ms", at_share(all_ms, 0.5)},
                  {"late_ms", at_share(all_ms, 0.95)},
-                 {"cast_ms", cast_ms / pictures},
-                 {"pack_ms", pack_ms / pictures},
-                 {"bytes", bytes / pictures},
-                 {"pixels", pixels / pictures}}
+                 {"cast_ms", cast_ms / images},
+                 {"pack_ms", pack_ms / images},
+                 {"bytes", bytes / images},
+                 {"pixels", pixels / images}}
                 .dump()
                 .c_str());
 }
@@ -63,12 +63,12 @@ void measure(WebClient& client, const Way& way, int pictures) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Turns a volume that `understudy view --web` shows, and measures from request to picture."};
-  int port = 0, pictures = 100, rounds = 3;
+  CLI::App app{"Turns a volume that `understudy view --web` shows, and measures from request to image."};
+  int port = 0, images = 100, rounds = 3;
   std::string secret;
   app.add_option("PORT", port)->required();
   app.add_option("SECRET", secret)->required();
-  app.add_option("--pictures", pictures, "of each way in each round")->check(CLI::Range(1, 10000));
+  app.add_option("--images", images, "of each way in each round")->check(CLI::Range(1, 10000));
   app.add_option("--rounds", rounds)->check(CLI::Range(1, 100));
   CLI11_PARSE(app, argc, argv);
   WebClient client(port);
@@ -77,7 +77,7 @@ int main(int argc, char** argv) try {
   for (int round = 0; round < rounds; ++round)
     for (const Way& way : {Way{"jpeg", {{"still", false}, {"took_ms", 0}}, false},
                            Way{"lossless", {{"still", true}}, false}, Way{"moving", {{"still", false}}, true}})
-      measure(client, way, pictures);
+      measure(client, way, images);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "understudy-bench-view: %s\n", error.what());
   return 1;

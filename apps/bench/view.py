@@ -1,6 +1,6 @@
-"""From a turn of the camera to the picture of it, through `understudy view --web`, on the CT of an engine at 512^2.
+"""From a turn of the camera to the image of it, through `understudy view --web`, on the CT of an engine at 512^2.
 
-A small client speaks WebSocket as the page does, one request at a time, and does not unpack pictures. Rows are
+A small client speaks WebSocket as the page does, one request at a time, and does not unpack images. Rows are
 NODES/WAY/median, late (95th percentile), bytes: lossless is PNG, jpeg JPEG of all pixels, moving what a page gets while
 the hand moves: as many pixels as 50 ms allow. Ways are measured in turn, a value is the median over the rounds.
 """

@@ -1,4 +1,4 @@
-"""The bundled viewer's slices on Mesa's llvmpipe: what a program that is not helped pays for the picture of `raycast.py`."""
+"""The bundled viewer's slices on Mesa's llvmpipe: what a program that is not helped pays for the image of `raycast.py`."""
 
 import json
 import os
@@ -39,7 +39,7 @@ def colours(screenshot):
     return subprocess.run(["convert", str(screenshot), "-depth", "8", "rgb:-"], stdout=subprocess.PIPE, check=True).stdout
 
 
-def write_premultiplied(on_black, on_white, pixels, picture):
+def write_premultiplied(on_black, on_white, pixels, image):
     """RGBA floats, rows bottom up. What white adds to black is what the volume lets through."""
     floats = array("f")
     for row in range(pixels - 1, -1, -1):
@@ -47,22 +47,22 @@ def write_premultiplied(on_black, on_white, pixels, picture):
             rgb = on_black[3 * pixel:3 * pixel + 3]
             through = (sum(on_white[3 * pixel:3 * pixel + 3]) - sum(rgb)) / 3
             floats.extend([channel / 255 for channel in rgb] + [1 - through / 255])
-    picture.write_bytes(floats.tobytes())
+    image.write_bytes(floats.tobytes())
 
 
-def seconds_and_picture(volume, scene, picture):
-    """Of one frame; `scene` as raycast.py describes it to VTK. The picture is written where raycast.cc can judge it."""
+def seconds_and_image(volume, scene, image):
+    """Of one frame; `scene` as raycast.py describes it to VTK. The image is written where raycast.cc can judge it."""
     side, pixels = scene["size"][0], scene["pixels"]
-    upright, table = picture.with_name(f"upright.{side}x{side}x{side}"), picture.with_suffix(".json")
+    upright, table = image.with_name(f"upright.{side}x{side}x{side}"), image.with_suffix(".json")
     turned_upright(volume, upright, side)
     table.write_text(json.dumps({"knots": scene["knots"]}), encoding="utf-8")
     diagonals = 2 / 3**0.5  # two edges
     command = [str(viewers.PROGRAMS / "understudy-viewer"), str(upright), "--offscreen", "--mode", "table", "--table",
                str(table), "--no-frame", "--azimuth", "30", "--elevation", "25", "--distance", f"{diagonals:.17g}",
                "--field-of-view", str(scene["angle"]), "--window-size", str(pixels), str(pixels)]
-    black, white = picture.with_suffix(".black.png"), picture.with_suffix(".white.png")
+    black, white = image.with_suffix(".black.png"), image.with_suffix(".white.png")
     fewer = drawn(command, FRAMES, "1", white)
     more = drawn(command, 2 * FRAMES, "0", black)
-    write_premultiplied(colours(black), colours(white), pixels, picture)
+    write_premultiplied(colours(black), colours(white), pixels, image)
     upright.unlink()
     return (more - fewer) / FRAMES

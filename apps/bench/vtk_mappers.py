@@ -1,9 +1,9 @@
 """A scene by one of VTK's two volume mappers, for comparison: run by /usr/bin/python3, which knows Debian's python3-vtk9.
-Writes a picture of floats and prints how long a frame took. `raycast.py` and `understudy study` call it.
+Writes an image of floats and prints how long a frame took. `raycast.py` and `understudy study` call it.
 
-The scene is a JSON file: volume (raw), size, type (u8, u16 or f32), spacing, knots (at between value_at_0 and value_at_1 as
+The scene is a JSON file: volume (raw), size, type (u8, u16 or f32), spacing, control points (at between value_at_0 and value_at_1 as
 0 and 1, plain colour, and opacity of one unit_distance), sample_distance, eye, centre, up, angle, near, far, and pixels. VTK's box
-ends at the outermost voxels' centres, its pictures have 8 bits.
+ends at the outermost voxels' centres, its images have 8 bits.
 """
 
 import argparse
@@ -22,10 +22,10 @@ TYPES = {"u8": numpy.uint8, "u16": numpy.uint16, "f32": numpy.float32}
 def transfer_function(scene):
     colours, opacities = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     low, high = scene["value_at_0"], scene["value_at_1"]
-    for knot in scene["knots"]:
-        value = low + knot["at"] * (high - low)
-        opacities.AddPoint(value, knot["opacity"])
-        colours.AddRGBPoint(value, *knot["colour"])
+    for point in scene["knots"]:
+        value = low + point["at"] * (high - low)
+        opacities.AddPoint(value, point["opacity"])
+        colours.AddRGBPoint(value, *point["colour"])
     return colours, opacities
 
 
@@ -81,7 +81,7 @@ def processor_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
-def picture_of(window):
+def image_of(window):
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)
     grab.SetInputBufferTypeToRGBA()
@@ -96,14 +96,14 @@ def main():
     parser.add_argument("--mapper", choices=("gpu", "fixed-point"), required=True)
     parser.add_argument("--threads", type=int, default=0, help="of the fixed-point mapper; 0: as many as it likes")
     parser.add_argument("--frames", type=int, default=5)
-    parser.add_argument("--picture", required=True, help="floats, RGBA, rows bottom up")
+    parser.add_argument("--image", required=True, help="floats, RGBA, rows bottom up")
     arguments = parser.parse_args()
     with open(arguments.scene, encoding="utf-8") as file:
         scene = json.load(file)
     volume, voxels = volume_of(scene, arguments.mapper, arguments.threads)
     window = window_with(volume, scene)
     window.Render()
-    picture_of(window)
+    image_of(window)
     processor, wall = [], []
     for _ in range(arguments.frames):
         volume.GetMapper().Modified()
@@ -112,7 +112,7 @@ def main():
         window.WaitForCompletion()
         processor.append(processor_seconds() - before)
         wall.append(time.monotonic() - begin)
-    picture_of(window).tofile(arguments.picture)
+    image_of(window).tofile(arguments.image)
     del voxels
     middle = len(wall) // 2
     json.dump({"seconds": sorted(processor)[middle], "wall_seconds": sorted(wall)[middle]}, sys.stdout)

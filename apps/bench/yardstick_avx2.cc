@@ -24,12 +24,12 @@ int main(int count, char** words) {
   minmax(scene, occupied);
   distmap(scene, occupied);
   const NV bricks = build(scene);
-  std::vector<float> pictures(4 * std::size_t(scene.W) * std::size_t(scene.W));
+  std::vector<float> images(4 * std::size_t(scene.W) * std::size_t(scene.W));
   auto* const table = static_cast<float*>(std::aligned_alloc(64, 64 * 70));  // 256 entries and an empty one
   std::memset(table, 0, 64 * 70);
   for (int i = 0; i < 256; ++i)
     for (int k = 0; k < 4; ++k) table[4 * i + k] = k == 3 ? -scene.tff[i][3] : scene.tff[i][k];
-  const Ctx context{&scene, &bricks, &occupied, table, nullptr, pictures.data()};
+  const Ctx context{&scene, &bricks, &occupied, table, nullptr, images.data()};
   std::vector<double> times;
   for (int frame = 0; frame < frames; ++frame) {
     const double before = ucpu();

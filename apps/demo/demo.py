@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """./run demo: a CT of an engine through two viewers, with and without render nodes under them.
 
-Writes out/demo/: pictures, difference maps, report.json and index.html. Prints the same figures as a table.
+Writes out/demo/: images, difference maps, report.json and index.html. Prints the same figures as a table.
 """
 
 import json
@@ -26,7 +26,7 @@ ENGINE_SIZE = (256, 256, 110)
 class Shot:
     """One way to run a viewer, and what came of it."""
     way: str
-    picture: Path
+    image: Path
     frame_ms: float
     report: dict = field(default_factory=dict)
     difference: dict = field(default_factory=dict)
@@ -55,13 +55,13 @@ def ways(names, report_stem):
             yield name, viewers.understudy(*nodes[name], "--report", report), report
 
 
-def take(way, picture, report, frame_ms, bare):
-    shot = Shot(way, picture, frame_ms)
+def take(way, image, report, frame_ms, bare):
+    shot = Shot(way, image, frame_ms)
     if report:
         shot.report = viewers.read_report(report)
     if bare:
-        shot.difference_map = picture.with_name(picture.stem + "-difference.png")
-        shot.difference = viewers.compare(bare.picture, picture, shot.difference_map)
+        shot.difference_map = image.with_name(image.stem + "-difference.png")
+        shot.difference = viewers.compare(bare.image, image, shot.difference_map)
     print(f"  {way:10} {frame_ms:8.1f} ms a frame"
           + (f", {shot.substituted()} volume draws substituted, RMS {shot.difference['rms']:.4f}" if bare else ""),
           flush=True)
@@ -72,9 +72,9 @@ def bundled_scene(volume, mode):
     scene = Scene(f"understudy-viewer --mode {mode}", MODES[mode], [])
     print(scene.name, flush=True)
     for way, prefix, report in ways(["bare", "embedded", "4 ranks"], f"viewer-{mode}"):
-        picture = FOLDER / f"viewer-{mode}-{way.replace(' ', '-')}.png"
-        times = viewers.bundled_viewer(prefix, volume, mode, FRAMES, ORBIT, picture)
-        scene.shots.append(take(way, picture, report, viewers.steady_median(times),
+        image = FOLDER / f"viewer-{mode}-{way.replace(' ', '-')}.png"
+        times = viewers.bundled_viewer(prefix, volume, mode, FRAMES, ORBIT, image)
+        scene.shots.append(take(way, image, report, viewers.steady_median(times),
                                 scene.shots[0] if scene.shots else None))
     return scene
 
@@ -84,10 +84,10 @@ def osgvolume_scene(volume):
     print(scene.name, flush=True)
     with VirtualDisplay() as display:
         for way, prefix, report in ways(["bare", "4 ranks"], "osgvolume"):
-            picture = FOLDER / f"osgvolume-{way.replace(' ', '-')}.png"
+            image = FOLDER / f"osgvolume-{way.replace(' ', '-')}.png"
             frame_ms = viewers.osgvolume_frame_ms(prefix, volume, ENGINE_SIZE, display)
-            viewers.photograph_window([*prefix, *viewers.osgvolume(volume, ENGINE_SIZE)], display, picture)
-            scene.shots.append(take(way, picture, report, frame_ms, scene.shots[0] if scene.shots else None))
+            viewers.photograph_window([*prefix, *viewers.osgvolume(volume, ENGINE_SIZE)], display, image)
+            scene.shots.append(take(way, image, report, frame_ms, scene.shots[0] if scene.shots else None))
     return scene
 
 
@@ -109,7 +109,7 @@ def summary(scenes):
     """report.json: the figures of the table, and every run's own report."""
     return {"volume": str(viewers.ENGINE),
             "scenes": [{"viewer": scene.name,
-                        "runs": [{"run": shot.way, "picture": shot.picture.name, "frame_ms": shot.frame_ms,
+                        "runs": [{"run": shot.way, "image": shot.image.name, "frame_ms": shot.frame_ms,
                                   "difference_to_bare": shot.difference or None, "report": shot.report or None}
                                  for shot in scene.shots]}
                        for scene in scenes]}

@@ -1,4 +1,4 @@
-"""The demo's page: one file with its pictures inside, so that it can be sent and kept."""
+"""The demo's page: one file with its images inside, so that it can be sent and kept."""
 
 import base64
 from html import escape
@@ -36,7 +36,7 @@ def difference_caption(shot):
 
 def section(scene):
     bare = scene.shots[0]
-    figures = [figure(shot.picture, caption(shot, bare)) for shot in scene.shots]
+    figures = [figure(shot.image, caption(shot, bare)) for shot in scene.shots]
     figures += [figure(shot.difference_map, difference_caption(shot)) for shot in scene.shots if shot.difference_map]
     return (f"<section><h2>{escape(scene.name)}</h2><p class='lead'>{escape(scene.what)}</p>"
             f"<div class='row'>{''.join(figures)}</div></section>")
@@ -48,8 +48,8 @@ def html(scenes, table):
 <title>Understudy: the demo</title><style>{STYLE}</style>
 <h1>Understudy</h1>
 <p class="lead">An engine's CT in unmodified viewers: their own drawing (bare), and the same viewers with the volume
-ray-cast by Understudy inside the process (embedded) or on MPI ranks. The maps show where the pictures differ; the bare
-picture is no reference without error: it is blended in 8 bits.</p>
+ray-cast by Understudy inside the process (embedded) or on MPI ranks. The maps show where the images differ; the bare
+image is no reference without error: it is blended in 8 bits.</p>
 {''.join(section(scene) for scene in scenes)}
 <h2>Figures</h2><pre>{escape(table)}</pre>
 </html>

@@ -20,7 +20,7 @@ ENGINE_FOLDER = Path("/usr/share/doc/tachyon/examples/scenes/vol")
 SOFTWARE = {"LIBGL_ALWAYS_SOFTWARE": "1"}
 OSG = {"OSG_WINDOW": "0 0 512 512", "OSG_THREADING": "SingleThreaded"}
 
-PICTURE_SECONDS = 90
+IMAGE_SECONDS = 90
 RUN_SECONDS = 600
 
 
@@ -59,10 +59,10 @@ def run(command, environment=None, seconds=RUN_SECONDS):
     return done.stdout
 
 
-def bundled_viewer(prefix, volume, mode, frames, orbit, picture, extra=()):
+def bundled_viewer(prefix, volume, mode, frames, orbit, image, extra=()):
     """Runs understudy-viewer off screen; the milliseconds of every frame it drew."""
     text = run([*prefix, PROGRAMS / "understudy-viewer", volume, "--offscreen", "--mode", mode, "--frames", frames,
-                "--orbit", orbit, "--screenshot", picture, "--print-times", *extra], SOFTWARE)
+                "--orbit", orbit, "--screenshot", image, "--print-times", *extra], SOFTWARE)
     times = [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
     if len(times) != frames:
         raise ViewerFailed(f"understudy-viewer printed {len(times)} frame times instead of {frames}:\n{text[-2000:]}")
@@ -80,17 +80,17 @@ def osgvolume(volume, size):
             "--raw", *map(str, size), "1", "1", "little", str(volume)]
 
 
-def photograph_window(command, display, picture):
+def photograph_window(command, display, image):
     """Runs a viewer that has no screenshot of its own until its window holds still, saves that, and ends it."""
     environment = {**os.environ, **SOFTWARE, **OSG, "DISPLAY": display}
-    part = Path(picture).with_suffix(".part.png")
-    log = Path(picture).with_suffix(".log")
+    part = Path(image).with_suffix(".part.png")
+    log = Path(image).with_suffix(".log")
     with open(log, "w", encoding="utf-8") as output:
         viewer = subprocess.Popen([str(word) for word in command], env=environment, stdin=subprocess.DEVNULL,
                                   stdout=output, stderr=subprocess.STDOUT)
     try:
         before = None
-        until = time.monotonic() + PICTURE_SECONDS
+        until = time.monotonic() + IMAGE_SECONDS
         while time.monotonic() < until and viewer.poll() is None:
             time.sleep(0.5)
             if subprocess.run(["import", "-window", "root", "-crop", "512x512+0+0", "+repage", str(part)],
@@ -98,7 +98,7 @@ def photograph_window(command, display, picture):
                 continue
             seen = subprocess.run(["identify", "-format", "%# %k", str(part)], stdout=subprocess.PIPE, text=True).stdout
             if seen == before and int(seen.split()[1]) > 16:
-                shutil.move(part, picture)
+                shutil.move(part, image)
                 log.unlink()
                 return
             before = seen
@@ -106,25 +106,25 @@ def photograph_window(command, display, picture):
         part.unlink(missing_ok=True)
         viewer.terminate()
         viewer.wait()
-    raise ViewerFailed(f"{command[0]} showed no picture:\n{log.read_text(encoding='utf-8')[-2000:]}")
+    raise ViewerFailed(f"{command[0]} showed no image:\n{log.read_text(encoding='utf-8')[-2000:]}")
 
 
 def osgvolume_frame_ms(prefix, volume, size, display, frames=20):
     """Milliseconds a frame: osgvolume prints none, so a short run is taken from a longer one. Its view rests, and
-    pictures are cast nevertheless."""
+    images are cast nevertheless."""
     def seconds(count):
         start = time.monotonic()
         run([*prefix, *osgvolume(volume, size)],
             {**SOFTWARE, **OSG, "DISPLAY": display, "OSG_RUN_FRAME_COUNT": str(count),
-             "UNDERSTUDY_NEVER_LEAVE_OUT": "unchanged-pictures"})
+             "UNDERSTUDY_DISABLE_OPTIMIZATION": "unchanged-images"})
         return time.monotonic() - start
     warm_up = 4
     return 1000 * (seconds(warm_up + frames) - seconds(warm_up)) / frames
 
 
-def compare(a, b, picture=None):
-    """{'max', 'rms', 'psnr'} of two pictures; psnr is None when they are equal."""
-    text = run([PROGRAMS / "understudy", "compare", a, b, *(["--map", picture] if picture else [])])
+def compare(a, b, image=None):
+    """{'max', 'rms', 'psnr'} of two images; psnr is None when they are equal."""
+    text = run([PROGRAMS / "understudy", "compare", a, b, *(["--map", image] if image else [])])
     found = dict(re.findall(r"^(max|RMS|PSNR) (\S+)", text, re.MULTILINE))
     psnr = float(found["PSNR"])
     return {"max": float(found["max"]), "rms": float(found["RMS"]), "psnr": None if psnr == float("inf") else psnr}

@@ -2,7 +2,7 @@
 """./run gallery [FOLDER]: volumes in files as `understudy render` shows them, in four kinds.
 
 The engine comes from Debian; FOLDER (../shared/data beside the checkout, where there is one) may hold others. Writes
-out/gallery/: pictures, index.html with all of them, and table.md with command lines, times and errors.
+out/gallery/: images, index.html with all of them, and table.md with command lines, times and errors.
 """
 
 import json
@@ -21,8 +21,8 @@ FOLDER = viewers.OUT / "gallery"
 TABLES = (HERE / "tables").relative_to(viewers.ROOT)
 SIDE = 512
 FRAMES = 5
-FINE = 0.125  # the step of the pictures that errors are measured against
-KINDS = {"iso": "iso-surfaces under a light", "dvr": "direct volume rendering", "both": "both in one picture",
+FINE = 0.125  # the step of the images that errors are measured against
+KINDS = {"iso": "iso-surfaces under a light", "dvr": "direct volume rendering", "both": "both in one image",
          "shaded": "direct volume rendering under a light"}
 
 
@@ -32,8 +32,8 @@ class Volume:
     what: str
     file: str
     view: tuple  # options of every kind
-    iso: tuple  # surfaces of its own picture
-    within: tuple  # surfaces in the picture that shows both
+    iso: tuple  # surfaces of its own image
+    within: tuple  # surfaces in the image that shows both
 
 
 VOLUMES = (
@@ -50,7 +50,7 @@ VOLUMES = (
 
 
 def options(volume, kind):
-    """What `understudy render` is asked for, but for the file and the picture."""
+    """What `understudy render` is asked for, but for the file and the image."""
     def surfaces(chosen):
         return [word for surface in chosen for word in ("--surface", surface)]
 
@@ -68,7 +68,7 @@ def options(volume, kind):
 class Shot:
     volume: Volume
     kind: str
-    picture: Path
+    image: Path
     frame_ms: float
     rms: float
 
@@ -76,22 +76,22 @@ class Shot:
         return f"understudy render ${self.volume.name} {shlex.join(options(self.volume, self.kind))}"
 
 
-def render(file, wanted, picture, *more):
-    report = picture.with_suffix(".json")
-    viewers.run([viewers.PROGRAMS / "understudy", "render", file, *wanted, "--size", f"{SIDE}x{SIDE}", "--out", picture,
-                 "--save-float", picture.with_suffix(".pfm"), "--report", report, *more])
+def render(file, wanted, image, *more):
+    report = image.with_suffix(".json")
+    viewers.run([viewers.PROGRAMS / "understudy", "render", file, *wanted, "--size", f"{SIDE}x{SIDE}", "--out", image,
+                 "--save-float", image.with_suffix(".pfm"), "--report", report, *more])
     return json.loads(report.read_text(encoding="utf-8"))
 
 
 def take(volume, file, kind):
-    picture = FOLDER / f"{volume.name}-{kind}.png"
-    report = render(file, options(volume, kind), picture, "--frames", FRAMES)
+    image = FOLDER / f"{volume.name}-{kind}.png"
+    report = render(file, options(volume, kind), image, "--frames", FRAMES)
     fine = FOLDER / "fine.png"
     render(file, options(volume, kind), fine, "--step", FINE)
-    rms = viewers.compare(picture.with_suffix(".pfm"), fine.with_suffix(".pfm"))["rms"]
-    for scrap in (*FOLDER.glob("fine*"), *FOLDER.glob(f"{picture.stem}*.pfm")):
+    rms = viewers.compare(image.with_suffix(".pfm"), fine.with_suffix(".pfm"))["rms"]
+    for scrap in (*FOLDER.glob("fine*"), *FOLDER.glob(f"{image.stem}*.pfm")):
         scrap.unlink()
-    shot = Shot(volume, kind, picture, min(report["frames_ms"]), rms)
+    shot = Shot(volume, kind, image, min(report["frames_ms"]), rms)
     print(f"  {kind:7} {shot.frame_ms:8.1f} ms a frame, rms {rms:.1e}", flush=True)
     return shot
 
@@ -101,7 +101,7 @@ def file_of(volume, folder):
 
 
 def table(shots):
-    rows = ["| picture | ms a frame | rms | command |", "|---|---|---|---|"]
+    rows = ["| image | ms a frame | rms | command |", "|---|---|---|---|"]
     rows += [f"| {shot.volume.name}, {shot.kind} | {shot.frame_ms:.0f} | {shot.rms:.1e} | `{shot.command()}` |"
              for shot in shots]
     return "\n".join(rows) + "\n"
@@ -110,7 +110,7 @@ def table(shots):
 def html(shots):
     def section(volume):
         own = [shot for shot in shots if shot.volume is volume]
-        figures = [page.figure(shot.picture, f"<b>{KINDS[shot.kind]}</b>, {shot.frame_ms:.0f} ms, rms {shot.rms:.1e}<br>"
+        figures = [page.figure(shot.image, f"<b>{KINDS[shot.kind]}</b>, {shot.frame_ms:.0f} ms, rms {shot.rms:.1e}<br>"
                                              f"<code>{page.escape(shot.command())}</code>") for shot in own]
         return f"<section><h2>{page.escape(volume.what)}</h2><div class='row'>{''.join(figures)}</div></section>"
 
@@ -120,7 +120,7 @@ def html(shots):
 <title>Understudy: gallery</title><style>{page.STYLE}</style>
 <h1>Gallery</h1>
 <p class="lead">Volumes in files, {SIDE} × {SIDE} pixels, by the CPU of this machine in one process, the fastest of {FRAMES}
-frames; the rms error is against the same picture in steps of {FINE} voxels.</p>
+frames; the rms error is against the same image in steps of {FINE} voxels.</p>
 {''.join(map(section, volumes))}
 </html>
 """

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <thread>
 
-#include "compositor/exchange/mpi_link.h"
+#include "compositor/exchange/mpi_communicator.h"
 #include "compositor/node/node.h"
 #include "compositor/service/backend_line.h"
 #include "volume/glsl/backend.h"
@@ -51,8 +51,8 @@ int main(int argc, char** argv) {
   };
   choice("--exchange", set_algorithm, "How partial images become one");
   choice("--pixels", set_layout, "What numbers travel between ranks");
-  choice("--home", set_home, "How the parts of a picture come to the application");
-  choice("--overlap", set_overlap, "Whether pictures are composited while they are drawn");
+  choice("--gather", set_gather, "How the parts of an image come to the application");
+  choice("--overlap", set_overlap, "Whether images are composited while they are drawn");
   choice("--packed", set_packed, "Whether pixels are packed for their way");
   std::string backend = "cpu";
   app.add_option("--backend", backend, "Who casts the rays")->check([](const std::string& name) -> std::string {
@@ -72,25 +72,25 @@ int main(int argc, char** argv) {
       "Who gets how much of a volume: off, muller or predicted");
   CLI11_PARSE(app, argc, argv);
 
-  MpiLink link(argc, argv);
+  MpiCommunicator communicator(argc, argv);
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned share = std::max(1U, cores / unsigned(link.ranks_on_this_machine()));
+  const unsigned share = std::max(1U, cores / unsigned(communicator.ranks_on_this_machine()));
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
   // Mesa's software renderer would take all cores for each rank.
   setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
   volume::glsl::TextureMemoryWish memory;
-  memory.sharers = link.ranks_on_this_machine();
+  memory.sharers = communicator.ranks_on_this_machine();
   if (gpu_memory != "auto") memory.bytes = std::stoull(gpu_memory);
   volume::glsl::BackendChooser chooser(
       *volume::glsl::backend_of(backend),
       [&](const std::string& choice) {
-        fmt::print(stderr, "{}node {}: {}\n", backend_line, link.rank(), choice);
+        fmt::print(stderr, "{}node {}: {}\n", backend_line, communicator.rank(), choice);
         std::fflush(stderr);
       },
       memory);
-  balance.memory_left = [&] { return available_memory() / std::size_t(link.ranks_on_this_machine()); };
+  balance.memory_left = [&] { return available_memory() / std::size_t(communicator.ranks_on_this_machine()); };
   balance.moved = [&](const MoveFigures& move) {
-    if (link.rank() != 0) return;
+    if (communicator.rank() != 0) return;
     fmt::print(
         stderr,
         "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} bytes), "
@@ -100,8 +100,9 @@ int main(int argc, char** argv) {
     std::fflush(stderr);
   };
   try {
-    return run_node(link, control, limits::stall_patience, exchange, chooser.factory(), balance) ? 0 : 1;
+    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance) ? 0
+                                                                                                         : 1;
   } catch (const std::exception& error) {
-    link.abandon(error.what());
+    communicator.abandon(error.what());
   }
 }

@@ -12,13 +12,13 @@
 namespace understudy::launcher {
 namespace {
 
-int compared_channels(const Picture& a, const Picture& b) {
+int compared_channels(const RgbaImage& a, const RgbaImage& b) {
   return a.has_alpha || b.has_alpha ? 4 : 3;
 }
 
-void check_sizes(const Picture& a, const Picture& b) {
+void check_sizes(const RgbaImage& a, const RgbaImage& b) {
   if (a.width == b.width && a.height == b.height) return;
-  throw std::runtime_error(fmt::format("the pictures have different sizes: {} x {} and {} x {} pixels", a.width,
+  throw std::runtime_error(fmt::format("the images have different sizes: {} x {} and {} x {} pixels", a.width,
                                        a.height, b.width, b.height));
 }
 
@@ -28,7 +28,7 @@ double Difference::psnr() const {
   return rms > 0 ? -20 * std::log10(rms) : std::numeric_limits<double>::infinity();
 }
 
-Difference difference(const Picture& a, const Picture& b) {
+Difference difference(const RgbaImage& a, const RgbaImage& b) {
   check_sizes(a, b);
   const int channels = compared_channels(a, b);
   Difference result;
@@ -49,10 +49,10 @@ Difference difference(const Picture& a, const Picture& b) {
   return result;
 }
 
-Picture difference_map(const Picture& a, const Picture& b) {
+RgbaImage difference_map(const RgbaImage& a, const RgbaImage& b) {
   const auto white = static_cast<float>(difference(a, b).max);
   const int channels = compared_channels(a, b);
-  Picture map = a;
+  RgbaImage map = a;
   for (int y = 0; y < a.height; ++y) {
     for (int x = 0; x < a.width; ++x) {
       float apart = 0;
@@ -82,14 +82,14 @@ void add_compare(CLI::App& app, std::function<int()>& chosen) {
     std::string map;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* compare = app.add_subcommand("compare", "how far two pictures (PNG or PFM) are apart");
-  compare->add_option("A", arguments->a, "picture; beside frame.pfm, frame_alpha.pfm is its alpha")->required();
-  compare->add_option("B", arguments->b, "picture of the same size")->required();
+  CLI::App* compare = app.add_subcommand("compare", "how far two images (PNG or PFM) are apart");
+  compare->add_option("A", arguments->a, "image; beside frame.pfm, frame_alpha.pfm is its alpha")->required();
+  compare->add_option("B", arguments->b, "image of the same size")->required();
   compare->add_option("--map", arguments->map, "write the difference as a PNG; white is the largest");
   compare->callback([arguments, &chosen] {
     chosen = [arguments] {
-      const Picture a = read_picture(arguments->a);
-      const Picture b = read_picture(arguments->b);
+      const RgbaImage a = read_image(arguments->a);
+      const RgbaImage b = read_image(arguments->b);
       std::fputs(difference_text(difference(a, b)).c_str(), stdout);
       if (!arguments->map.empty()) write_png(arguments->map, difference_map(a, b));
       return 0;

@@ -126,9 +126,9 @@ Finding look_at_osmesa() {
   if (!osmesa) return {false, "libOSMesa.so.8 is missing"};
   const OSMesaContext context = osmesa.function<decltype(&OSMesaCreateContextExt)>("OSMesaCreateContextExt")(
       OSMESA_RGBA, 24, 0, 0, nullptr);
-  std::array<GLubyte, 16 * 16 * 4> picture{};
+  std::array<GLubyte, 16 * 16 * 4> image{};
   if (context == nullptr || osmesa.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")(
-                                context, picture.data(), GL_UNSIGNED_BYTE, 16, 16) == GL_FALSE) {
+                                context, image.data(), GL_UNSIGNED_BYTE, 16, 16) == GL_FALSE) {
     return {false, "gives no OpenGL context"};
   }
   const auto get_address = osmesa.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
@@ -153,16 +153,16 @@ Finding look_at_nodes() {
   return {true, node.string()};
 }
 
-Finding look_at_doors() {
+Finding look_at_injection_methods() {
   const Installation here = this_installation();
-  for (const std::filesystem::path& part : {here.shim(), here.auditor(), here.door_folder()}) {
+  for (const std::filesystem::path& part : {here.shim(), here.auditor(), here.entry_folder()}) {
     if (!std::filesystem::exists(part)) return {false, part.string() + " was not built"};
   }
   return {true, "audit, preload and folder, in " + here.libraries.string()};
 }
 
 constexpr std::array checks{
-    Check{"doors", look_at_doors, "./run build"},
+    Check{"injection methods", look_at_injection_methods, "./run build"},
     Check{"X", look_at_x,
           "apt install xvfb; Xvfb :99 -screen 0 1280x1024x24 +extension GLX -noreset & export DISPLAY=:99"},
     Check{"GLX", look_at_glx, "apt install libgl1 libglx-mesa0 libgl1-mesa-dri"},

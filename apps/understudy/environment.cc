@@ -19,14 +19,14 @@ Environment current_environment() {
   return environment;
 }
 
-DoorSettings settings_of(Door door, const Installation& installation) {
-  switch (door) {
-    case Door::audit:
+InjectionSettings settings_of(InjectionMethod injection, const Installation& installation) {
+  switch (injection) {
+    case InjectionMethod::audit:
       return {"LD_AUDIT", installation.auditor()};
-    case Door::preload:
+    case InjectionMethod::preload:
       return {"LD_PRELOAD", installation.shim()};
-    case Door::folder:
-      return {"LD_LIBRARY_PATH", installation.door_folder()};
+    case InjectionMethod::folder:
+      return {"LD_LIBRARY_PATH", installation.entry_folder()};
   }
   return {};
 }
@@ -44,7 +44,7 @@ Environment node_environment(Environment environment, const Installation& instal
     std::string kept;
     std::istringstream folders(found->second);
     for (std::string folder; std::getline(folders, folder, ':');) {
-      if (std::filesystem::path(folder).lexically_normal() == installation.door_folder()) continue;
+      if (std::filesystem::path(folder).lexically_normal() == installation.entry_folder()) continue;
       kept += (kept.empty() ? "" : ":") + folder;
     }
     found->second = kept;

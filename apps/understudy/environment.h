@@ -1,4 +1,4 @@
-// The environments of child processes: the viewer's has a door in it, the nodes' has none.
+// The environments of child processes: the viewer's has an injection method in it, the nodes' has none.
 #pragma once
 
 #include <filesystem>
@@ -16,19 +16,20 @@ Environment current_environment();
 
 /// How OpenGL calls reach the shim. Measured over ten ways of loading OpenGL: the auditor catches all of them,
 /// the other two are what a user can do without this program.
-enum class Door { audit, preload, folder };
+enum class InjectionMethod { audit, preload, folder };
 
-struct DoorSettings {
+struct InjectionSettings {
   std::string variable;         ///< LD_AUDIT, LD_PRELOAD or LD_LIBRARY_PATH
   std::filesystem::path value;  ///< what is put in front of it
 };
 
-DoorSettings settings_of(Door door, const Installation& installation);
+InjectionSettings settings_of(InjectionMethod injection, const Installation& installation);
 
 /// Puts `entry` in front of a list with `:` between entries.
 void put_in_front(Environment& environment, const std::string& variable, const std::string& entry);
 
-/// What `understudy-node` and mpirun run in: no door, and none of the options that are meant for the viewer.
+/// What `understudy-node` and mpirun run in: no injection method, and none of the options that are meant for
+/// the viewer.
 Environment node_environment(Environment environment, const Installation& installation);
 
 /// As execve wants it: "NAME=value" each.

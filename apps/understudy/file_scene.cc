@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/understudy/knots_file.h"
+#include "apps/understudy/control_points_file.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/number_list.h"
-#include "apps/understudy/picture.h"
 #include "volume/file/synthetic.h"
 #include "volume/raycast/segment_scene.h"
 
@@ -47,21 +47,21 @@ volume::TexelChoice texels_of(const SceneArguments& arguments) {
   return choice;
 }
 
-PictureSettings picture_of(const SceneArguments& arguments) {
-  PictureSettings picture;
-  picture.knots = read_knots(arguments.table);
+ImageSettings image_of(const SceneArguments& arguments) {
+  ImageSettings image;
+  image.control_points = read_control_points(arguments.table);
   const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4", 1);
-  picture.camera = {camera[0], camera[1], camera[2], camera.size() > 3 ? camera[3] : 0};
+  image.camera = {camera[0], camera[1], camera[2], camera.size() > 3 ? camera[3] : 0};
   const std::vector<double> size = numbers(arguments.size, 'x', 2, "512x512");
   for (const double side : size)
-    if (!(side >= 1 && side <= max_picture_side))
+    if (!(side >= 1 && side <= max_image_side))
       throw std::invalid_argument(
-          fmt::format("a picture of {} pixels; give 1 to {} a side", arguments.size, max_picture_side));
-  picture.width = int(size[0]);
-  picture.height = int(size[1]);
-  picture.step = arguments.step;
-  picture.termination = float(arguments.termination);
-  return picture;
+          fmt::format("an image of {} pixels; give 1 to {} a side", arguments.size, max_image_side));
+  image.width = int(size[0]);
+  image.height = int(size[1]);
+  image.step = arguments.step;
+  image.termination = float(arguments.termination);
+  return image;
 }
 
 }  // namespace
@@ -73,8 +73,9 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
                   "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]")
       ->required();
   subcommand
-      .add_option("--table", arguments.table,
-                  "transfer function: a JSON file of knots, or one of " + volume::built_in_knots())
+      .add_option(
+          "--table", arguments.table,
+          "transfer function: a JSON file of control points, or one of " + volume::built_in_control_points())
       ->capture_default_str();
   add_shading_options(subcommand, arguments.shading);
   subcommand
@@ -83,7 +84,7 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
                   "rolls (180: z is down)")
       ->type_name("A,E,D[,R]")
       ->capture_default_str();
-  subcommand.add_option("--size", arguments.size, "of the picture")->type_name("WxH")->capture_default_str();
+  subcommand.add_option("--size", arguments.size, "of the image")->type_name("WxH")->capture_default_str();
   subcommand.add_option("--step", arguments.step, "between samples, in voxels")->capture_default_str();
   subcommand
       .add_option("--termination", arguments.termination, "a ray ends where less than this shows through")
@@ -112,7 +113,7 @@ volume::Vec3 FileScene::extent() const {
 
 FileScene scene_of(const SceneArguments& arguments) {
   FileScene scene;
-  scene.picture = picture_of(arguments);
+  scene.image = image_of(arguments);
   scene.load.file = volume::is_synthetic(arguments.volume)
                         ? arguments.volume
                         : std::filesystem::absolute(arguments.volume).string();
@@ -126,21 +127,21 @@ FileScene scene_of(const SceneArguments& arguments) {
   scene.load.volume.size = scene.file.size;
   scene.load.volume.type = scene.mapping.type;
   scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
-  scene.picture.shading = shading_of(arguments.shading, scene.extent());
+  scene.image.shading = shading_of(arguments.shading, scene.extent());
   // Segments and gradients reach beyond a node's own cells, by no more than the volume has.
-  scene.load.volume.margin =
-      volume::margin_needed(scene.load.volume, unclassified_request(scene, scene.picture));
-  if (scene.load.volume.margin > *std::ranges::max_element(scene.file.size))
+  scene.load.volume.ghost_layer =
+      volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, scene.image));
+  if (scene.load.volume.ghost_layer > *std::ranges::max_element(scene.file.size))
     throw std::invalid_argument(
         fmt::format("a step of {} voxels is longer than the volume; give a smaller one", arguments.step));
   return scene;
 }
 
-volume::RenderRequest unclassified_request(const FileScene& scene, const PictureSettings& picture) {
-  volume::RenderRequest request = volume::orbit_request(scene.load.volume, scene.file.spacing, picture.camera,
-                                                        picture.width, picture.height, picture.step);
-  request.termination = picture.termination;
-  const Shading& shading = picture.shading;
+volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image) {
+  volume::RenderRequest request = volume::orbit_request(scene.load.volume, scene.file.spacing, image.camera,
+                                                        image.width, image.height, image.step);
+  request.termination = image.termination;
+  const Shading& shading = image.shading;
   request.method = shading.method;
   request.tolerance = shading.tolerance;
   request.cut_at_bricks = shading.cut_at_bricks;
@@ -150,13 +151,13 @@ volume::RenderRequest unclassified_request(const FileScene& scene, const Picture
   return request;
 }
 
-volume::RenderRequest request_of(const FileScene& scene, const PictureSettings& picture,
+volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values) {
-  volume::RenderRequest request = unclassified_request(scene, picture);
+  volume::RenderRequest request = unclassified_request(scene, image);
   // A volume of one value has no range: the tables' least value is that one.
   const double low = values.low <= values.high ? values.low : 0.0;
   const double high = values.low < values.high ? values.high : low + 1;
-  const std::vector<double> surfaces = surface_values(picture.shading, low, high);
+  const std::vector<double> surfaces = surface_values(image.shading, low, high);
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
   if (request.light) {
@@ -164,13 +165,13 @@ volume::RenderRequest request_of(const FileScene& scene, const PictureSettings& 
     const double range = std::abs(scene.mapping.normalised(high) - scene.mapping.normalised(low));
     request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
   }
-  if (!picture.shading.shows_volume) {
+  if (!image.shading.shows_volume) {
     request.classification = volume::TransferFunction{0, 1, {{}, {}}};
     return request;
   }
   const bool segments = request.method == volume::Method::pre_integrated;
-  volume::TransferFunction table =
-      sampled(segments ? spanning(picture.knots, low, high) : picture.knots, low, high, picture.step);
+  volume::TransferFunction table = sampled(
+      segments ? spanning(image.control_points, low, high) : image.control_points, low, high, image.step);
   table.low = float(scene.mapping.normalised(table.low));
   table.high = float(scene.mapping.normalised(table.high));
   if (table.low > table.high) {  // texels fall where values rise

@@ -1,4 +1,4 @@
-// A volume in a file and the picture that is wanted of it, as commands without an application take them on
+// A volume in a file and the image that is wanted of it, as commands without an application take them on
 // their command lines.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include "volume/file/volume_file.h"
 #include "volume/orbit_camera.h"
 #include "volume/request.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace understudy::launcher {
 
@@ -34,9 +34,9 @@ struct SceneArguments {
 
 void add_scene_options(CLI::App& subcommand, SceneArguments& arguments);
 
-/// What a picture of a volume shows, from where, and how finely.
-struct PictureSettings {
-  volume::TransferKnots knots;
+/// What an image of a volume shows, from where, and how finely.
+struct ImageSettings {
+  volume::TransferControlPoints control_points;
   Shading shading;
   volume::OrbitCamera camera;
   int width = 512;
@@ -49,21 +49,21 @@ struct FileScene {
   compositor::LoadRequest load;
   volume::FileDescription file;
   volume::TexelMapping mapping;
-  PictureSettings picture;
+  ImageSettings image;
 
   /// Of the volume, in the unit of its spacing.
   volume::Vec3 extent() const;
 };
 
-/// Everything that can be known to be wrong before a byte of the volume is read. The volume's margin is wide
-/// enough for the picture. Throws std::invalid_argument and volume::FileError.
+/// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is
+/// wide enough for the image. Throws std::invalid_argument and volume::FileError.
 FileScene scene_of(const SceneArguments& arguments);
 
 /// All but the classification, and the surfaces' values. Throws std::invalid_argument.
-volume::RenderRequest unclassified_request(const FileScene& scene, const PictureSettings& picture);
+volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image);
 
 /// Once it is known which values the volume has. Throws std::invalid_argument.
-volume::RenderRequest request_of(const FileScene& scene, const PictureSettings& picture,
+volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
                                  const volume::TexelFigures& values);
 
 /// The values in the volume and how they became texels, summed over the ranks.

@@ -20,11 +20,11 @@ void turn_over(spu::Extent2D extent, std::span<const std::uint8_t> rgba, std::ve
 
 }  // namespace
 
-spu::PictureChange FrameChanges::next(std::uint64_t drawable, spu::Extent2D extent,
-                                      std::span<const std::uint8_t> rgba) {
+spu::ImageChange FrameChanges::next(std::uint64_t drawable, spu::Extent2D extent,
+                                    std::span<const std::uint8_t> rgba) {
   turn_over(extent, rgba, now_);
   Last& last = last_[drawable];
-  spu::PictureChange change{.drawable = drawable, .extent = extent};
+  spu::ImageChange change{.drawable = drawable, .extent = extent};
   const auto width = std::size_t(extent.width);
   const auto height = std::size_t(extent.height);
   const auto row = [&](std::vector<std::uint32_t>& pixels, std::size_t y) { return pixels.data() + y * width; };

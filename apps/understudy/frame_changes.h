@@ -1,4 +1,4 @@
-// What is different in a drawable's picture from one frame to the next.
+// What is different in a drawable's image from one frame to the next.
 #pragma once
 
 #include <cstdint>
@@ -6,16 +6,16 @@
 #include <span>
 #include <vector>
 
-#include "spu/link/stage_protocol.h"
+#include "spu/remote/gl_server_protocol.h"
 
 namespace understudy::launcher {
 
 class FrameChanges {
  public:
-  /// The smallest rectangle that holds all that changed since the last picture of this drawable; all of it for
+  /// The smallest rectangle that holds all that changed since the last image of this drawable; all of it for
   /// another extent. `rgba` has rows from the bottom, as OpenGL reads them. The pixels are those of this
   /// object, until the next call.
-  spu::PictureChange next(std::uint64_t drawable, spu::Extent2D extent, std::span<const std::uint8_t> rgba);
+  spu::ImageChange next(std::uint64_t drawable, spu::Extent2D extent, std::span<const std::uint8_t> rgba);
 
  private:
   struct Last {

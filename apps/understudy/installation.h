@@ -14,7 +14,7 @@ struct Installation {
   std::filesystem::path node() const { return programs / "understudy-node"; }
   std::filesystem::path shim() const { return libraries / "libunderstudy.so"; }
   std::filesystem::path auditor() const { return libraries / "libunderstudy-audit.so"; }
-  std::filesystem::path door_folder() const { return libraries / "door"; }
+  std::filesystem::path entry_folder() const { return libraries / "entry"; }
 };
 
 /// Found from /proc/self/exe, so that a moved build folder works. Throws std::runtime_error without /proc.

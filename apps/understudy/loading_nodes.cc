@@ -21,7 +21,7 @@ constexpr std::chrono::minutes patience{10};
 
 ServiceMaker linked_to(const std::string& address) {
   return [address] {
-    return compositor::linked_loading_service(address, {patience, patience, patience, patience, patience});
+    return compositor::remote_loading_service(address, {patience, patience, patience, patience, patience});
   };
 }
 
@@ -40,7 +40,7 @@ void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
       ->type_name("WHERE")
       ->excludes(nodes)
       ->excludes(subcommand.get_option("--hostfile"));
-  add_link_options(subcommand, arguments.link);
+  add_connection_options(subcommand, arguments.connection);
   add_backend_option(subcommand, arguments.choices.backend);
   add_gpu_memory_option(subcommand, arguments.choices.gpu_memory);
   add_exchange_options(subcommand, arguments.choices);
@@ -62,8 +62,8 @@ std::vector<std::string> with_loading_nodes(
         {placement, arguments.choices},
         [&](const std::string& socket, const std::stop_token& stop) { job(linked_to(socket), stop); });
   if (compositor::tcp_address_of(arguments.connect)) {
-    with_link(arguments.link, arguments.connect, arguments.choices.pixels,
-              [&](const std::string& socket) { job(linked_to(socket), {}); });
+    with_connection(arguments.connection, arguments.connect, arguments.choices.pixels,
+                    [&](const std::string& socket) { job(linked_to(socket), {}); });
     return {};
   }
   job(arguments.connect.empty() ? ServiceMaker(compositor::embedded_loading_service)

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/understudy/node_choices.h"
-#include "apps/understudy/porter.h"
+#include "apps/understudy/relay.h"
 #include "compositor/service/loading_service.h"
 
 namespace understudy::launcher {
@@ -19,8 +19,8 @@ namespace understudy::launcher {
 struct LoadingNodes {
   std::optional<int> nodes;
   std::filesystem::path hostfile;
-  std::string connect;  ///< nodes that run already
-  LinkPlan link;        ///< if they are on another machine
+  std::string connect;        ///< nodes that run already
+  ConnectionPlan connection;  ///< if they are on another machine
   NodeChoices choices;
 };
 

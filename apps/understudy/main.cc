@@ -6,15 +6,15 @@
 
 #include "apps/understudy/compare.h"
 #include "apps/understudy/doctor.h"
-#include "apps/understudy/gate.h"
+#include "apps/understudy/gl_server.h"
+#include "apps/understudy/listener.h"
 #include "apps/understudy/play.h"
-#include "apps/understudy/porter.h"
 #include "apps/understudy/print.h"
+#include "apps/understudy/relay.h"
 #include "apps/understudy/render.h"
 #include "apps/understudy/replay.h"
 #include "apps/understudy/run.h"
 #include "apps/understudy/serve.h"
-#include "apps/understudy/stage.h"
 #include "apps/understudy/study/study.h"
 #include "apps/understudy/trim.h"
 #include "apps/understudy/units.h"
@@ -35,9 +35,9 @@ int main(int argc, char** argv) try {
   launcher::add_print(app, chosen);
   launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
-  launcher::add_stage(app, chosen);
-  launcher::add_gate(app, chosen);
-  launcher::add_porter(app, chosen);
+  launcher::add_gl_server_command(app, chosen);
+  launcher::add_listener(app, chosen);
+  launcher::add_relay(app, chosen);
   launcher::add_render(app, chosen);
   launcher::add_view_program(app, argv, chosen);
   launcher::add_study(app, chosen);

@@ -7,17 +7,17 @@
 namespace understudy::launcher {
 
 struct NodeChoices {
-  std::string exchange = "auto";  ///< how partial pictures become one
+  std::string exchange = "auto";  ///< how partial images become one
   std::string pixels = "float";   ///< what travels between ranks
-  std::string home = "direct";    ///< how the parts of a picture come to the viewer
-  std::string overlap = "auto";   ///< whether pictures are composited while they are drawn
+  std::string gather = "direct";  ///< how the parts of an image come to the viewer
+  std::string overlap = "auto";   ///< whether images are composited while they are drawn
   std::string packed = "auto";    ///< whether pixels are packed for their way
   std::string backend = "cpu";    ///< who casts rays
   std::string gpu_memory = "auto";
   std::string balance = "off";  ///< who gets how much of a volume
 
   std::vector<std::string> words() const {
-    return {"--exchange", exchange, "--pixels",  pixels,  "--home",       home,       "--packed",  packed,
+    return {"--exchange", exchange, "--pixels",  pixels,  "--gather",     gather,     "--packed",  packed,
             "--overlap",  overlap,  "--backend", backend, "--gpu-memory", gpu_memory, "--balance", balance};
   }
 };

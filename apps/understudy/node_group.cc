@@ -19,7 +19,7 @@ namespace understudy::launcher {
 namespace {
 
 constexpr std::chrono::milliseconds housekeeping{
-    1000};  ///< the broker drops silent strangers at such intervals
+    1000};  ///< the broker drops silent pending clients at such intervals
 constexpr int patience_with_nodes_ms = 2000;
 constexpr int patience_with_mpirun_ms = 5000;
 constexpr std::chrono::seconds patience_with_lost_group{5};

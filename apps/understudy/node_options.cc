@@ -29,12 +29,12 @@ void add_option_of_the_table(CLI::App& subcommand, const std::string& flag, std:
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices) {
   add_option_of_the_table(subcommand, "--exchange", choices.exchange);
   add_option_of_the_table(subcommand, "--pixels", choices.pixels);
-  add_option_of_the_table(subcommand, "--home", choices.home);
+  add_option_of_the_table(subcommand, "--gather", choices.gather);
   add_option_of_the_table(subcommand, "--overlap", choices.overlap);
 }
 
-void add_stage_option(CLI::App& subcommand, std::string& opengl) {
-  add_option_of_the_table(subcommand, "--stage-opengl", opengl);
+void add_gl_server_option(CLI::App& subcommand, std::string& opengl) {
+  add_option_of_the_table(subcommand, "--server-opengl", opengl);
 }
 
 void add_polygons_option(CLI::App& subcommand, std::string& polygons) {

@@ -1,5 +1,5 @@
-// Options of commands that start nodes: `--exchange`, `--pixels`, `--home` and `--overlap`, how partial
-// pictures become one, `--hostfile`, where the ranks are, and `--stage-opengl`.
+// Options of commands that start nodes: `--exchange`, `--pixels`, `--gather` and `--overlap`, how partial
+// images become one, `--hostfile`, where the ranks are, and `--server-opengl`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,11 +13,11 @@ namespace understudy::launcher {
 /// As spu/options.h has them; their variables count too, for viewers that start nodes of their own.
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
-/// `--polygons`, of those who start a stage.
+/// `--polygons`, of those who start a GL server.
 void add_polygons_option(CLI::App& subcommand, std::string& polygons);
 
-/// What a stage beside the nodes draws with, as spu/options.h has it.
-void add_stage_option(CLI::App& subcommand, std::string& opengl);
+/// What a GL server beside the nodes draws with, as spu/options.h has it.
+void add_gl_server_option(CLI::App& subcommand, std::string& opengl);
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile);
 

@@ -27,8 +27,8 @@ class OffscreenContexts : public spu::WindowSystem {
 
 bool is_core(const spu::RecordedContext& context);
 
-/// `library` as --stage-opengl has it (spu/options.h): egl, osmesa, or auto, which is OSMesa where EGL makes no
-/// context, and says so. The libraries are opened here and not at the program's start, so that viewers are
+/// `library` as --server-opengl has it (spu/options.h): egl, osmesa, or auto, which is OSMesa where EGL makes
+/// no context, and says so. The libraries are opened here and not at the program's start, so that viewers are
 /// launched without them. Throws std::runtime_error with what to install.
 std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view library);
 

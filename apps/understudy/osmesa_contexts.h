@@ -1,6 +1,6 @@
 // Contexts on OSMesa, Mesa's renderer on the CPU that needs neither EGL nor a kernel's graphics driver.
 //
-// OSMesa knows no drawables: every context has a framebuffer of its own, and memory that it copies pictures to.
+// OSMesa knows no drawables: every context has a framebuffer of its own, and memory that it copies images to.
 // Here drawables are shared as on other window systems: what one shows moves to the context that draws into it
 // next, with depth and stencil, but not what accumulates. Their one colour buffer looks like a back buffer
 // (spu/player/one_buffer.h), and always has alpha: OSMesa draws wrongly into pixels of three bytes.
@@ -13,7 +13,7 @@
 
 #include "apps/understudy/offscreen_contexts.h"
 #include "spu/player/one_buffer.h"
-#include "spu/player/shown_picture.h"
+#include "spu/player/shown_image.h"
 
 namespace understudy::launcher {
 
@@ -36,7 +36,7 @@ class OsmesaContexts final : public OffscreenContexts {
 
   struct Drawable {
     spu::Extent2D extent;
-    std::vector<std::uint8_t> memory;             ///< that OSMesa copies pictures to
+    std::vector<std::uint8_t> memory;             ///< that OSMesa copies images to
     std::uint64_t holder = 0;                     ///< context whose framebuffer has the contents; 0: none
     std::optional<spu::WindowContents> contents;  ///< while there is no holder; none: it is new
   };

@@ -10,9 +10,9 @@
 #include <stdexcept>
 
 #include "apps/understudy/offscreen_contexts.h"
-#include "apps/understudy/read_picture.h"
+#include "apps/understudy/read_image.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_picture.h"
+#include "spu/player/shown_image.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
@@ -56,10 +56,10 @@ class Playing {
       : plan_(plan),
         reader_(plan.trace),
         progress_(plan.trace),
-        windows_(open_offscreen_contexts(options.stage_opengl)),
+        windows_(open_offscreen_contexts(options.server_opengl)),
         player_(*windows_, options) {
     player_.on_frame = [this](const spu::ShownFrame& frame) { frame_shown(frame); };
-    player_.on_read = [this](const spu::Decoder::ReadPicture& picture) { picture_read(picture); };
+    player_.on_read = [this](const spu::Decoder::ReadImage& image) { image_read(image); };
   }
 
   Played run() {
@@ -109,19 +109,19 @@ class Playing {
       ++played_.frames;
       if (!plan_.save_frames.empty() && shown.extent.width > 0 && shown.extent.height > 0) {
         write_png(plan_.save_frames / fmt::format("frame_{:04}.png", frame_),
-                  picture_of(shown_picture(player_.driver(), shown.extent), shown.extent));
+                  image_of(shown_image(player_.driver(), shown.extent), shown.extent));
       }
     }
     ++frame_;
   }
 
-  void picture_read(const spu::Decoder::ReadPicture& read) {
+  void image_read(const spu::Decoder::ReadImage& read) {
     if (!plan_.frames.contains(frame_)) return;
-    const std::optional<Picture> picture = picture_of(read);
-    if (!picture) return;
+    const std::optional<RgbaImage> image = image_of(read);
+    if (!image) return;
     ++played_.reads;
     if (plan_.save_frames.empty()) return;
-    write_png(plan_.save_frames / fmt::format("read_{:04}.png", played_.reads), *picture);
+    write_png(plan_.save_frames / fmt::format("read_{:04}.png", played_.reads), *image);
   }
 
   const PlayPlan plan_;

@@ -26,12 +26,12 @@ FrameRange parse_frame_range(const std::string& text);
 struct PlayPlan {
   std::filesystem::path trace;
   FrameRange frames;                  ///< the ones that are saved and counted; playing ends behind them
-  std::filesystem::path save_frames;  ///< a folder for pictures; empty: none are saved
+  std::filesystem::path save_frames;  ///< a folder for images; empty: none are saved
 };
 
 struct Played {
   std::uint64_t frames = 0;  ///< within the range
-  std::uint64_t reads = 0;   ///< pictures that the application read back, within the range
+  std::uint64_t reads = 0;   ///< images that the application read back, within the range
   std::uint64_t errors = 0;  ///< records that could not be played
 };
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "apps/understudy/file_scene.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/load_progress.h"
 #include "apps/understudy/loading_nodes.h"
-#include "apps/understudy/picture.h"
 #include "apps/understudy/render_report.h"
 
 namespace understudy::launcher {
@@ -41,21 +41,21 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 /// Over black, or as it is with its alpha.
-Picture picture_of(const volume::ImageView& image, const volume::Rect& window, bool with_alpha) {
-  Picture picture;
-  picture.width = window.width;
-  picture.height = window.height;
-  picture.has_alpha = with_alpha;
-  picture.rgba.assign(4 * window.pixels(), 0.0F);
+RgbaImage image_of(const volume::ImageView& image, const volume::Rect& window, bool with_alpha) {
+  RgbaImage file_image;
+  file_image.width = window.width;
+  file_image.height = window.height;
+  file_image.has_alpha = with_alpha;
+  file_image.rgba.assign(4 * window.pixels(), 0.0F);
   for (int y = 0; y < image.rect.height; ++y)
     for (int x = 0; x < image.rect.width; ++x) {
       const float* const from =
           &image.rgba[4 * (std::size_t(y) * std::size_t(image.rect.width) + std::size_t(x))];
-      std::copy_n(from, 4, picture.pixel(image.rect.x + x, window.height - 1 - (image.rect.y + y)));
+      std::copy_n(from, 4, file_image.pixel(image.rect.x + x, window.height - 1 - (image.rect.y + y)));
     }
   if (!with_alpha)
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 1;
-  return picture;
+    for (std::size_t i = 3; i < file_image.rgba.size(); i += 4) file_image.rgba[i] = 1;
+  return file_image;
 }
 
 RenderFigures render_with(LoadingService& service, const FileScene& scene, const RenderArguments& arguments) {
@@ -63,9 +63,9 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   figures.file = scene.load.file;
   figures.description = scene.file;
   figures.mapping = scene.mapping;
-  figures.width = scene.picture.width;
-  figures.height = scene.picture.height;
-  figures.step = scene.picture.step;
+  figures.width = scene.image.width;
+  figures.height = scene.image.height;
+  figures.step = scene.image.step;
   figures.nodes = service.nodes();
 
   auto start = Clock::now();
@@ -85,16 +85,16 @@ RenderFigures render_with(LoadingService& service, const FileScene& scene, const
   }
   figures.load_ms = milliseconds_since(start);
 
-  figures.request = request_of(scene, scene.picture, texel_figures(figures.ranks));
+  figures.request = request_of(scene, scene.image, texel_figures(figures.ranks));
   for (int frame = 0; frame < arguments.frames; ++frame) {
     start = Clock::now();
     const compositor::Rendered rendered = service.render(figures.request);
     figures.frame_ms.push_back(milliseconds_since(start));
     figures.counts = rendered.counts;
     if (frame + 1 < arguments.frames) continue;
-    write_png(arguments.out, picture_of(rendered.image, figures.request.window, false));
+    write_png(arguments.out, image_of(rendered.image, figures.request.window, false));
     if (!arguments.save_float.empty())
-      write_pfm(arguments.save_float, picture_of(rendered.image, figures.request.window, true));
+      write_pfm(arguments.save_float, image_of(rendered.image, figures.request.window, true));
   }
   figures.ranks = service.continue_load(scene.load.volume.id);
   return figures;
@@ -110,7 +110,7 @@ int render(const RenderArguments& arguments) {
     });
   } catch (const compositor::ServiceLost& lost) {
     throw std::runtime_error(
-        fmt::format("no picture was made: render again, or in this process, without nodes ({})", lost.what()));
+        fmt::format("no image was made: render again, or in this process, without nodes ({})", lost.what()));
   }
   figures.backends = backends;
   for (const std::string& choice : backends) fmt::print(stderr, "understudy: {}\n", choice);
@@ -123,14 +123,12 @@ int render(const RenderArguments& arguments) {
 
 void add_render(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<RenderArguments>();
-  CLI::App* render_command = app.add_subcommand("render", "a picture of a volume in a file, without a viewer");
+  CLI::App* render_command = app.add_subcommand("render", "an image of a volume in a file, without a viewer");
   add_scene_options(*render_command, arguments->scene);
   add_loading_nodes(*render_command, arguments->nodes);
-  render_command->add_option("--out", arguments->out, "the picture, over black")
-      ->type_name("P.png")
-      ->required();
+  render_command->add_option("--out", arguments->out, "the image, over black")->type_name("P.png")->required();
   render_command
-      ->add_option("--save-float", arguments->save_float, "the picture before it is rounded, and its alpha")
+      ->add_option("--save-float", arguments->save_float, "the image before it is rounded, and its alpha")
       ->type_name("F.pfm");
   render_command->add_option("--report", arguments->report, "figures as JSON")->type_name("F.json");
   render_command->add_option("--frames", arguments->frames, "render as often, for the time")

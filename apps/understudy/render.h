@@ -1,4 +1,4 @@
-// `understudy render VOLUME [-n N] --out P.png`: one picture of a volume in a file, by nodes or in this
+// `understudy render VOLUME [-n N] --out P.png`: one image of a volume in a file, by nodes or in this
 // process, without a viewer and without OpenGL.
 #pragma once
 

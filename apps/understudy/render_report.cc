@@ -36,7 +36,7 @@ std::string over_ranks(const std::vector<compositor::RankLoad>& ranks, Figure fi
 }
 
 /// Surfaces by their values.
-Json picture_json(const RenderFigures& figures) {
+Json image_json(const RenderFigures& figures) {
   const volume::RenderRequest& request = figures.request;
   Json surfaces = Json::array();
   const double units = figures.mapping.normalised(figures.mapping.offset + figures.mapping.scale);
@@ -102,7 +102,7 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
                       {"values", texels.low <= texels.high ? Json{texels.low, texels.high} : Json()},
                       {"largest_conversion_error", texels.largest_error},
                       {"not_numbers", texels.not_numbers}};
-  report["picture"] = picture_json(figures);
+  report["image"] = image_json(figures);
   report["nodes"] = figures.nodes;
   report["backends"] = figures.backends;
   report["time_ms"] = {{"open", figures.open_ms},

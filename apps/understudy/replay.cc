@@ -29,7 +29,7 @@ struct ReplayArguments {
 /// The player is a process of its own, as a viewer is: nodes are looked after while it plays, and whatever a
 /// driver does to it, the figures remain.
 int replay(const ReplayArguments& replay, RunArguments arguments) {
-  arguments.door.reset();
+  arguments.injection.reset();
   if (replay.native) arguments.settings["UNDERSTUDY_CHAIN"] = "driver";
   if (!replay.chain.empty())
     arguments.settings["UNDERSTUDY_CHAIN"] = spu::resolved_chain(replay.chain, std::filesystem::current_path());
@@ -55,7 +55,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   subcommand
       ->add_option("--save-frames", own->save_frames,
                    "save what the viewer showed (frame_0001.png, …) and what it read back (read_0001.png, …), "
-                   "with 8 bits; UNDERSTUDY_SAVE_FRAMES saves the nodes' float pictures, as in `run`")
+                   "with 8 bits; UNDERSTUDY_SAVE_FRAMES saves the nodes' float images, as in `run`")
       ->type_name("DIR");
   CLI::Option* native = subcommand->add_flag("--native", own->native, "the driver alone: what the viewer drew");
   subcommand->add_option("--chain", own->chain, "the units to play on [UNDERSTUDY_CHAIN]")
@@ -66,7 +66,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
-  add_link_options(*subcommand, arguments->link);
+  add_connection_options(*subcommand, arguments->connection);
   subcommand->callback([own, arguments, &chosen] {
     if (!own->frames.empty()) parse_frame_range(own->frames);
     chosen = [own, arguments] { return replay(*own, *arguments); };

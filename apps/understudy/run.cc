@@ -19,16 +19,16 @@
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
 #include "apps/understudy/child_process.h"
+#include "apps/understudy/connection_figures.h"
 #include "apps/understudy/environment.h"
+#include "apps/understudy/gl_server.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/installation.h"
-#include "apps/understudy/link_figures.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
-#include "apps/understudy/porter.h"
+#include "apps/understudy/relay.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
-#include "apps/understudy/stage.h"
 #include "apps/understudy/trace_option.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/tcp/address.h"
@@ -42,13 +42,13 @@ namespace understudy::launcher {
 namespace {
 
 constexpr int not_executable = 126;
-constexpr int stage_patience_ms = 5000;
-/// Of a viewer whose calls a stage makes: nothing is recognised in its own process. A chain that is to stand
-/// there ends in link.
-constexpr const char* remote_chain = "pack link";
+constexpr int server_patience_ms = 5000;
+/// Of a viewer whose calls a GL server makes: nothing is recognised in its own process. A chain that is to
+/// stand there ends in connection.
+constexpr const char* remote_chain = "pack remote";
 
 bool stands_in_viewer(const std::string& chain) {
-  return spu::parse_chain(chain).back().name == "link";
+  return spu::parse_chain(chain).back().name == "connection";
 }
 
 void say(const std::string& line) {
@@ -86,32 +86,32 @@ Environment viewer_environment(const RunArguments& arguments, const spu::Options
     environment.erase("UNDERSTUDY_CONNECT");
     if (!options.connect.empty()) environment["UNDERSTUDY_CONNECT"] = absolute_or_empty(options.connect);
   }
-  if (!arguments.door) return environment;
-  const DoorSettings door = settings_of(*arguments.door, installation);
-  if (std::filesystem::exists(door.value)) {
-    put_in_front(environment, door.variable, door.value);
+  if (!arguments.injection) return environment;
+  const InjectionSettings injection = settings_of(*arguments.injection, installation);
+  if (std::filesystem::exists(injection.value)) {
+    put_in_front(environment, injection.variable, injection.value);
   } else {
     say(fmt::format("{} is missing, so the viewer runs without Understudy; build it with ./run build",
-                    door.value.string()));
+                    injection.value.string()));
   }
   return environment;
 }
 
-/// The stage has the options of this run and no door; the viewer hands it everything. Returns what must stay
-/// alive.
-std::unique_ptr<ChildProcess> put_on_stage(const Installation& installation, Environment& viewer,
-                                           const Environment& without_door, const RunFolder& folder,
-                                           const std::string& viewer_chain) {
-  const std::filesystem::path socket = folder.path() / "stage.sock";
-  auto stage = start_stage(installation, socket, without_door);
+/// The GL server has the options of this run and no injection method; the viewer hands it everything. Returns
+/// what must stay alive.
+std::unique_ptr<ChildProcess> put_on_gl_server(const Installation& installation, Environment& viewer,
+                                               const Environment& without_injection, const RunFolder& folder,
+                                               const std::string& viewer_chain) {
+  const std::filesystem::path socket = folder.path() / "gl_server.sock";
+  auto server = start_gl_server(installation, socket, without_injection);
   viewer["UNDERSTUDY_REMOTE"] = socket;
   viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
-  return stage;
+  return server;
 }
 
 /// Of a viewer whose calls are made on another machine.
-void put_on_stage_elsewhere(Environment& viewer, const std::filesystem::path& socket,
-                            const std::string& viewer_chain) {
+void put_on_gl_server_elsewhere(Environment& viewer, const std::filesystem::path& socket,
+                                const std::string& viewer_chain) {
   viewer["UNDERSTUDY_REMOTE"] = socket;
   viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
   viewer.erase("UNDERSTUDY_CONNECT");
@@ -119,30 +119,31 @@ void put_on_stage_elsewhere(Environment& viewer, const std::filesystem::path& so
 
 /// How to get at what --connect names, if that is on another machine. Throws std::runtime_error for an address
 /// that is none, and for one without a secret.
-std::optional<LinkPlan> link_of(const RunArguments& arguments, const spu::Options& options) {
+std::optional<ConnectionPlan> link_of(const RunArguments& arguments, const spu::Options& options) {
   if (options.connect.empty() || options.disable) return {};
   const auto address = compositor::tcp_address_of(options.connect);
   if (!address) return {};
-  if (arguments.link.secret_file.empty())
+  if (arguments.connection.secret_file.empty())
     throw std::runtime_error(
         fmt::format("--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, "
                     "copied to this machine",
                     options.connect));
-  LinkPlan plan = arguments.link;
+  ConnectionPlan plan = arguments.connection;
   plan.address = address->text();
-  plan.wishes.to = arguments.remote ? compositor::LinkedTo::stage : compositor::LinkedTo::nodes;
+  plan.connection_request.to =
+      arguments.remote ? compositor::Destination::gl_server : compositor::Destination::nodes;
   compositor::ExchangeSettings settings;
   compositor::set_layout(settings, options.pixels);
-  plan.wishes.pixels = settings.layout;
+  plan.connection_request.pixels = settings.layout;
   return plan;
 }
 
 /// Nodes elsewhere may come, and a wrong secret may be put right, while the viewer draws by itself.
-void tell_whether_link_is_there(const LinkPlan& link) {
+void tell_whether_connection_is_there(const ConnectionPlan& connection) {
   try {
-    try_link(link);
+    try_connection(connection);
   } catch (const std::runtime_error& error) {
-    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until then", link.address,
+    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until then", connection.address,
                     error.what()));
   }
 }
@@ -202,15 +203,15 @@ Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
 
 /// The report, with what only the launcher knows: who cast the rays, and what went over TCP.
 std::string with_the_launchers(const std::string& report, const std::vector<std::string>& backends,
-                               const nlohmann::ordered_json& link) {
+                               const nlohmann::ordered_json& connection) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
   json[spu::report_key::backends] = backends;
-  json[spu::report_key::link] = link;
+  json[spu::report_key::connection] = connection;
   return json.dump(1, ' ') + "\n";
 }
 
 void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
-  const nlohmann::ordered_json link = link_figures(folder.path());
+  const nlohmann::ordered_json connection = connection_figures(folder.path());
   const std::vector<spu::MappedCounters> counters = spu::read_counters(folder.path());
   std::vector<const spu::ProcessCounters*> processes;
   processes.reserve(counters.size());
@@ -219,12 +220,12 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
   if (options.explain) {
     std::fputs(spu::explanation_text(processes).c_str(), stderr);
     for (const std::string& choice : backends) say(choice);
-    if (!link.is_null()) say(link_text(link));
+    if (!connection.is_null()) say(link_text(connection));
   }
   std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
   if (options.report.empty()) return;
   try {
-    spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, link));
+    spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, connection));
   } catch (const std::exception& error) {
     say(error.what());
   }
@@ -260,20 +261,20 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     return usage_error;
   }
   if (options.polygons != "root" && !arguments.remote) {
-    say("--polygons strips is for viewers whose windows are drawn elsewhere; add --remote");
+    say("--tiles on is for viewers whose windows are drawn elsewhere; add --remote");
     return usage_error;
   }
-  std::optional<LinkPlan> link;
+  std::optional<ConnectionPlan> connection;
   try {
-    link = link_of(arguments, options);
+    connection = link_of(arguments, options);
     // The viewer has no other OpenGL, and is better not started than without any.
-    if (link && arguments.remote) try_link(*link);
+    if (connection && arguments.remote) try_connection(*connection);
   } catch (const std::runtime_error& error) {
     say(error.what());
-    return link ? 1 : usage_error;
+    return connection ? 1 : usage_error;
   }
-  if (!link && !arguments.link.secret_file.empty())
-    say("--secret-file is for --connect HOST:PORT; nodes and stages of this machine need no secret");
+  if (!connection && !arguments.connection.secret_file.empty())
+    say("--secret-file is for --connect HOST:PORT; nodes and GL servers of this machine need no secret");
   const bool may_have_nodes = options.connect.empty() && !options.disable;
   Placement placement;
   try {
@@ -295,7 +296,7 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
                          folder.path(),
                          {.exchange = options.exchange,
                           .pixels = options.pixels,
-                          .home = options.home,
+                          .gather = options.gather,
                           .overlap = options.overlap,
                           .backend = arguments.backend,
                           .gpu_memory = arguments.gpu_memory,
@@ -312,38 +313,39 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   if (!plan && !arguments.hostfile.empty())
     say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
                     arguments.hostfile.string()));
-  const bool plays_here = arguments.remote ? !link : !arguments.door;
-  if (!plays_here && arguments.settings.contains("UNDERSTUDY_STAGE_OPENGL"))
-    say(
-        fmt::format("--stage-opengl {} is for a stage of this run (--remote); for one elsewhere give it to "
-                    "understudy serve --stage",
-                    options.stage_opengl));
-  if (link && options.polygons != "root")
+  const bool plays_here = arguments.remote ? !connection : !arguments.injection;
+  if (!plays_here && arguments.settings.contains("UNDERSTUDY_SERVER_OPENGL"))
     say(fmt::format(
-        "--polygons {} is for a stage of this run; for one elsewhere give it to understudy serve --stage",
-        options.polygons));
+        "--server-opengl {} is for a GL server of this run (--remote); for one elsewhere give it to "
+        "understudy serve --gl-server",
+        options.server_opengl));
+  if (connection && options.polygons != "root")
+    say(
+        fmt::format("--polygons {} is for a GL server of this run; for one elsewhere give it to understudy "
+                    "serve --gl-server",
+                    options.polygons));
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
-  std::unique_ptr<ChildProcess> porter;
-  const std::filesystem::path link_socket = folder.path() / "link.sock";
-  if (link) {
-    if (!arguments.remote) tell_whether_link_is_there(*link);
-    porter = start_porter(installation, *link, link_socket, folder.path());
-    options.connect = link_socket;
+  std::unique_ptr<ChildProcess> relay;
+  const std::filesystem::path connection_socket = folder.path() / "link.sock";
+  if (connection) {
+    if (!arguments.remote) tell_whether_connection_is_there(*connection);
+    relay = start_relay(installation, *connection, connection_socket, folder.path());
+    options.connect = connection_socket;
   } else if (!options.connect.empty() && !options.disable) {
     tell_whether_nodes_can_answer(options.connect);
   }
   std::optional<ChildProcess> viewer;
   Environment environment = viewer_environment(arguments, options, installation, folder, plan);
-  std::unique_ptr<ChildProcess> stage;
-  if (arguments.remote && link) {
-    put_on_stage_elsewhere(environment, link_socket, viewer_chain);
+  std::unique_ptr<ChildProcess> server;
+  if (arguments.remote && connection) {
+    put_on_gl_server_elsewhere(environment, connection_socket, viewer_chain);
   } else if (arguments.remote) {
-    RunArguments without_door = arguments;
-    without_door.door.reset();
+    RunArguments without_injection = arguments;
+    without_injection.injection.reset();
     try {
-      stage = put_on_stage(installation, environment,
-                           viewer_environment(without_door, options, installation, folder, plan), folder,
-                           viewer_chain);
+      server = put_on_gl_server(installation, environment,
+                                viewer_environment(without_injection, options, installation, folder, plan),
+                                folder, viewer_chain);
     } catch (const std::exception& error) {
       say(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()));
       return 1;
@@ -356,8 +358,8 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
     return error.code() == std::errc::permission_denied ? not_executable : cannot_start_viewer;
   }
   const Ending ending = wait_for(*viewer, nodes.get(), inbox);
-  if (stage) stage->end(stage_patience_ms);
-  if (porter) porter->end(stage_patience_ms);
+  if (server) server->end(server_patience_ms);
+  if (relay) relay->end(server_patience_ms);
   nodes.reset();
   tell_what_happened(options, folder);
   return ending.exit_status();
@@ -410,13 +412,14 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
-  add_link_options(*subcommand, arguments->link);
-  const std::map<std::string, Door> doors{
-      {"audit", Door::audit}, {"preload", Door::preload}, {"folder", Door::folder}};
+  add_connection_options(*subcommand, arguments->connection);
+  const std::map<std::string, InjectionMethod> injection_methods{{"audit", InjectionMethod::audit},
+                                                                 {"preload", InjectionMethod::preload},
+                                                                 {"folder", InjectionMethod::folder}};
   subcommand
-      ->add_option("--door", arguments->door,
+      ->add_option("--injection", arguments->injection,
                    "how OpenGL calls are caught: audit (all of them), preload, folder")
-      ->transform(CLI::CheckedTransformer(doors, CLI::ignore_case).description(""))
+      ->transform(CLI::CheckedTransformer(injection_methods, CLI::ignore_case).description(""))
       ->type_name("audit|preload|folder");
   subcommand
       ->add_option("--trace", arguments->trace,
@@ -426,7 +429,8 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
   subcommand->add_flag(
       "--remote", arguments->remote,
       "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
-      "pictures come back to its windows; with --connect HOST:PORT on that machine (understudy serve --stage)");
+      "images come back to its windows; with --connect HOST:PORT on that machine (understudy serve "
+      "--gl-server)");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

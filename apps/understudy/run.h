@@ -1,6 +1,6 @@
-// `understudy run [options] -- viewer args…`: the viewer as a child process with a door open, nodes behind it
-// when asked for, and the figures of the run at its end. The exit status is the viewer's own (128 + signal when
-// killed).
+// `understudy run [options] -- viewer args…`: the viewer as a child process with an injection method open,
+// nodes behind it when asked for, and the figures of the run at its end. The exit status is the viewer's own
+// (128 + signal when killed).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "apps/understudy/environment.h"
-#include "apps/understudy/porter.h"
+#include "apps/understudy/relay.h"
 
 namespace understudy::launcher {
 
@@ -32,14 +32,15 @@ CommandLine split_at_double_dash(int argc, char** argv);
 
 struct RunArguments {
   std::map<std::string, std::string> settings;  ///< environment variable → value, as given on the command line
-  std::optional<Door> door = Door::audit;       ///< none: the program makes its own chains
-  std::filesystem::path trace;                  ///< empty: nothing is recorded
-  std::string backend = "cpu";                  ///< who casts the nodes' rays
-  std::string gpu_memory = "auto";              ///< what that may take of a graphics card, in bytes
-  std::string balance = "off";                  ///< who of the nodes gets how much of a volume
-  std::filesystem::path hostfile;               ///< where the nodes are; empty: on this machine
-  LinkPlan link;                                ///< how to get at --connect HOST:PORT
-  bool remote = false;                          ///< the viewer's calls are made by a stage, not in its process
+  std::optional<InjectionMethod> injection =
+      InjectionMethod::audit;       ///< none: the program makes its own chains
+  std::filesystem::path trace;      ///< empty: nothing is recorded
+  std::string backend = "cpu";      ///< who casts the nodes' rays
+  std::string gpu_memory = "auto";  ///< what that may take of a graphics card, in bytes
+  std::string balance = "off";      ///< who of the nodes gets how much of a volume
+  std::filesystem::path hostfile;   ///< where the nodes are; empty: on this machine
+  ConnectionPlan connection;        ///< how to get at --connect HOST:PORT
+  bool remote = false;              ///< the viewer's calls are made by a GL server, not in its process
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

@@ -15,13 +15,13 @@
 #include "apps/understudy/backend_option.h"
 #include "apps/understudy/balance_option.h"
 #include "apps/understudy/environment.h"
-#include "apps/understudy/gate.h"
+#include "apps/understudy/gl_server.h"
 #include "apps/understudy/hosts/placement.h"
+#include "apps/understudy/listener.h"
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
-#include "apps/understudy/stage.h"
 #include "compositor/tcp/secret.h"
 #include "spu/options.h"
 
@@ -37,9 +37,9 @@ struct ServeArguments {
   pid_t while_process = 0;  ///< 0: until asked to end
   std::string listen;       ///< host:port for clients of other machines; empty: none
   std::filesystem::path secret_file;
-  bool stage = false;
+  bool server = false;
   std::string polygons = "root";
-  std::string stage_opengl = "auto";
+  std::string server_opengl = "auto";
 };
 
 bool is_over(const ServeArguments& arguments) {
@@ -47,29 +47,30 @@ bool is_over(const ServeArguments& arguments) {
 }
 
 /// What clients of other machines come to.
-struct Doors {
-  std::unique_ptr<ChildProcess> stage;
-  OpenGate gate;
+struct Frontends {
+  std::unique_ptr<ChildProcess> server;
+  OpenListener listener;
 };
 
-/// The stage has the options of this environment, and the nodes' socket.
-std::unique_ptr<ChildProcess> start_stage_of_nodes(const Installation& installation, const NodeGroupPlan& nodes,
-                                                   const std::filesystem::path& socket,
-                                                   const std::string& polygons, const std::string& opengl) {
+/// The GL server has the options of this environment, and the nodes' socket.
+std::unique_ptr<ChildProcess> start_gl_server_of_nodes(const Installation& installation,
+                                                       const NodeGroupPlan& nodes,
+                                                       const std::filesystem::path& socket,
+                                                       const std::string& polygons, const std::string& opengl) {
   Environment environment = current_environment();
   environment.erase("UNDERSTUDY_REMOTE");
   environment.erase("UNDERSTUDY_RUN_DIR");
   environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
   environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
   environment["UNDERSTUDY_POLYGONS"] = polygons;
-  environment["UNDERSTUDY_STAGE_OPENGL"] = opengl;
-  return start_stage(installation, socket, environment);
+  environment["UNDERSTUDY_SERVER_OPENGL"] = opengl;
+  return start_gl_server(installation, socket, environment);
 }
 
-Doors open_doors(const Installation& installation, const ServeArguments& arguments,
-                 const NodeGroupPlan& nodes) {
-  Doors doors;
-  if (arguments.listen.empty()) return doors;
+Frontends open_entries(const Installation& installation, const ServeArguments& arguments,
+                       const NodeGroupPlan& nodes) {
+  Frontends injection_methods;
+  if (arguments.listen.empty()) return injection_methods;
   const auto address = compositor::tcp_address_of(arguments.listen);
   if (!address)
     throw std::runtime_error(
@@ -81,22 +82,22 @@ Doors open_doors(const Installation& installation, const ServeArguments& argumen
   if (made)
     fmt::print("understudy: made the secret {0}; copy it to where viewers are: scp {0} HOST:\n",
                std::filesystem::absolute(arguments.secret_file).string());
-  GatePlan plan{.address = *address,
-                .secret_file = arguments.secret_file,
-                .nodes = nodes.socket,
-                .stage = {},
-                .folder = nodes.folder};
-  if (arguments.stage) {
-    plan.stage = nodes.folder / "stage.sock";
-    doors.stage =
-        start_stage_of_nodes(installation, nodes, plan.stage, arguments.polygons, arguments.stage_opengl);
+  ListenerPlan plan{.address = *address,
+                    .secret_file = arguments.secret_file,
+                    .nodes = nodes.socket,
+                    .server = {},
+                    .folder = nodes.folder};
+  if (arguments.server) {
+    plan.server = nodes.folder / "gl_server.sock";
+    injection_methods.server =
+        start_gl_server_of_nodes(installation, nodes, plan.server, arguments.polygons, arguments.server_opengl);
   }
-  doors.gate = start_gate(installation, plan);
-  return doors;
+  injection_methods.listener = start_listener(installation, plan);
+  return injection_methods;
 }
 
 /// Said, and done without: clients of this machine are served.
-void look_after(Doors& doors) {
+void look_after(Frontends& injection_methods) {
   const auto ended = [](std::unique_ptr<ChildProcess>& process, const char* what) {
     if (!process) return;
     const std::optional<Ending> ending = process->poll_ending();
@@ -104,8 +105,8 @@ void look_after(Doors& doors) {
     fmt::print(stderr, "understudy: {} {}; start serve again\n", what, ending->text());
     process.reset();
   };
-  ended(doors.stage, "the stage, which draws for viewers of other machines,");
-  ended(doors.gate.process, "the gate, which lets clients of other machines in,");
+  ended(injection_methods.server, "the GL server, which draws for viewers of other machines,");
+  ended(injection_methods.listener.process, "the listener, which lets clients of other machines in,");
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -124,24 +125,24 @@ int serve(const ServeArguments& arguments) {
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
   const NodeGroupPlan plan{placement, socket, folder.path(), arguments.choices};
   NodeGroup nodes(installation, plan);
-  Doors doors = open_doors(installation, arguments, plan);
+  Frontends injection_methods = open_entries(installation, arguments, plan);
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
       if (received->number != SIGCHLD) return 0;
       nodes.look_after_children();
-      look_after(doors);
+      look_after(injection_methods);
     }
     nodes.wait_and_serve(inbox.descriptor());
     if (announced || !nodes.ready()) continue;
     announced = true;
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
                nodes.ranks(), socket.string(), socket.string());
-    if (doors.gate.process)
+    if (injection_methods.listener.process)
       fmt::print(
           "understudy: and at {0}; use them with: understudy run {1}--connect {0} --secret-file FILE -- viewer "
           "args…\n",
-          doors.gate.address.text(), doors.stage ? "[--remote] " : "");
+          injection_methods.listener.address.text(), injection_methods.server ? "[--remote] " : "");
     std::fflush(stdout);
   }
   return 0;
@@ -185,10 +186,10 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
           ->type_name("[HOST]:PORT")
           ->needs(secret_file);
   subcommand
-      ->add_flag("--stage", arguments->stage,
+      ->add_flag("--gl-server", arguments->server,
                  "make the calls of viewers without OpenGL, too (understudy run --remote --connect HOST:PORT)")
       ->needs(listen);
-  add_stage_option(*subcommand, arguments->stage_opengl);
+  add_gl_server_option(*subcommand, arguments->server_opengl);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

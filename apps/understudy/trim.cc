@@ -10,7 +10,7 @@
 
 #include "apps/understudy/offscreen_contexts.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_picture.h"
+#include "spu/player/shown_image.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
 #include "spu/trim/prefix.h"
@@ -48,7 +48,7 @@ spu::Options bare() {
   return options;
 }
 
-/// A picture as one number: FNV-1a.
+/// An image as one number: FNV-1a.
 std::uint64_t fingerprint(const void* bytes, std::size_t size) {
   const auto* byte = static_cast<const std::uint8_t*>(bytes);
   std::uint64_t sum = 0xcbf2'9ce4'8422'2325U;
@@ -56,44 +56,45 @@ std::uint64_t fingerprint(const void* bytes, std::size_t size) {
   return sum;
 }
 
-/// The pictures of frames that are played natively: what is shown, and what is read back.
-class Pictures {
+/// The images of frames that are played natively: what is shown, and what is read back.
+class Images {
  public:
-  Pictures()
-      : windows_(open_offscreen_contexts(spu::options_from_environment().stage_opengl)),
+  Images()
+      : windows_(open_offscreen_contexts(spu::options_from_environment().server_opengl)),
         player_(*windows_, bare()) {
     player_.on_frame = [this](const spu::ShownFrame& shown) {
-      const auto pixels = spu::shown_picture(player_.driver(), shown.extent);
-      pictures_.push_back(fingerprint(pixels.data(), pixels.size()));
+      const auto pixels = spu::shown_image(player_.driver(), shown.extent);
+      images_.push_back(fingerprint(pixels.data(), pixels.size()));
     };
-    player_.on_read = [this](const spu::Decoder::ReadPicture& read) {
-      pictures_.push_back(fingerprint(read.pixels.data(), read.pixels.size()));
+    player_.on_read = [this](const spu::Decoder::ReadImage& read) {
+      images_.push_back(fingerprint(read.pixels.data(), read.pixels.size()));
     };
   }
 
   spu::Player& player() { return player_; }
   /// What was seen since the last time.
-  std::vector<std::uint64_t> take() { return std::exchange(pictures_, {}); }
+  std::vector<std::uint64_t> take() { return std::exchange(images_, {}); }
 
  private:
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
-  std::vector<std::uint64_t> pictures_;
+  std::vector<std::uint64_t> images_;
 };
 
-std::vector<std::uint64_t> pictures_of(const std::filesystem::path& trace) {
-  Pictures pictures;
+std::vector<std::uint64_t> images_of(const std::filesystem::path& trace) {
+  Images images;
   walk(trace, ~std::uint64_t(0),
-       [&](const spu::Record& record, std::uint64_t) { pictures.player().play(record); });
-  return pictures.take();
+       [&](const spu::Record& record, std::uint64_t) { images.player().play(record); });
+  return images.take();
 }
 
-void write(const TrimPlan& plan, const std::vector<spu::Fate>& fates, const spu::Records& restoration) {
+void write(const TrimPlan& plan, const std::vector<spu::RecordAction>& actions,
+           const spu::Records& restoration) {
   spu::Shortened shortened(plan.out);
   std::size_t number = 0;
   bool cut = false;
   walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
-    if (frame < plan.frames.first) return shortened.take(record, fates[number++]);
+    if (frame < plan.frames.first) return shortened.take(record, actions[number++]);
     if (!cut) shortened.take_all(restoration);
     cut = true;
     shortened.take(record);
@@ -105,17 +106,17 @@ void write(const TrimPlan& plan, const std::vector<spu::Fate>& fates, const spu:
 
 void trim(const TrimPlan& plan) {
   const std::uint64_t first = plan.frames.first;
-  std::vector<spu::Fate> fates;
+  std::vector<spu::RecordAction> actions;
   spu::Records restoration;
   std::vector<std::uint64_t> wanted;
   std::vector<std::string> troubles;
   {
-    Pictures whole;
+    Images whole;
     spu::Prefix prefix(whole.player());
     bool cut = false;
     const auto cut_here = [&] {
       cut = true;
-      fates = prefix.fates();
+      actions = prefix.actions();
       troubles = spu::restore_drawn(whole.player(), prefix.drawn(), restoration);
       whole.take();
     };
@@ -136,14 +137,14 @@ void trim(const TrimPlan& plan) {
   // What was drawn before the cut is brought back only where a frame looks at it.
   const spu::Records nothing;
   for (const spu::Records* brought_back : std::initializer_list<const spu::Records*>{&nothing, &restoration}) {
-    write(plan, fates, *brought_back);
-    if (pictures_of(plan.out) == wanted) return;
+    write(plan, actions, *brought_back);
+    if (images_of(plan.out) == wanted) return;
   }
   std::filesystem::remove(plan.out);
   std::string why;
   for (const std::string& trouble : troubles) why += "; " + trouble;
   throw std::runtime_error(fmt::format(
-      "frames {} and later depend on pictures before them that cannot be brought back{}; trim from an earlier "
+      "frames {} and later depend on images before them that cannot be brought back{}; trim from an earlier "
       "frame",
       first, why));
 }

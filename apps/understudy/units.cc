@@ -10,7 +10,7 @@ namespace {
 std::string about(const spu::UnitDescription& unit) {
   std::string text = fmt::format("{:8} {}", unit.name, unit.help);
   if (unit.needs != nullptr) text += fmt::format("; needs {} before it", unit.needs);
-  if (unit.standing == spu::Standing::repeatable) text += "; may stand several times";
+  if (unit.position == spu::UnitPosition::repeatable) text += "; may stand several times";
   return text + "\n";
 }
 

@@ -24,7 +24,7 @@ struct Matrices {
   Mat4 projection;
 };
 
-/// `width` and `height` of the window in pixels. The orthographic picture has the size of the perspective one
+/// `width` and `height` of the window in pixels. The orthographic image has the size of the perspective one
 /// at the origin.
 Matrices matrices_of(const Camera& camera, int width, int height);
 

@@ -1,4 +1,4 @@
-// Writes down a frame so that somebody else can recompute its picture, in another program and in double
+// Writes down a frame so that somebody else can recompute its image, in another program and in double
 // precision.
 //
 // Pixels: window coordinates of `viewport`, pixel (0, 0) at the lower left, its centre at (0.5, 0.5).

@@ -46,9 +46,9 @@ void Frames::draw_next(Camera camera, int width, int height, const std::function
   // Between drawing and swapping, while the back buffer is still defined; not part of the frame's time.
   const bool wanted = finished() && !options_.screenshot.empty();
   if (wanted || !options_.screenshot_folder.empty()) {
-    const Picture picture = read_back(width, height);
-    if (wanted) write_png(picture, options_.screenshot);
-    if (!options_.screenshot_folder.empty()) write_png(picture, frame_file(options_.screenshot_folder, index));
+    const Image image = read_back(width, height);
+    if (wanted) write_png(image, options_.screenshot);
+    if (!options_.screenshot_folder.empty()) write_png(image, frame_file(options_.screenshot_folder, index));
   }
 
   start = Clock::now();

@@ -33,7 +33,7 @@ void add_frame(const Box& box, OpaqueGeometry& geometry) {
     }
 }
 
-// Light from a fixed side, worked into the colours: the picture stays the same in every drawing mode.
+// Light from a fixed side, worked into the colours: the image stays the same in every drawing mode.
 void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& colour, OpaqueGeometry& geometry) {
   const Vec3 light = normalised({0.4, -0.7, 0.6});
   const Vec3 normal = normalised(cross(b - a, c - a));
@@ -91,7 +91,7 @@ void add_ball(const Box& box, OpaqueGeometry& geometry) {
     }
 }
 
-OpaqueGeometry whole_picture(const Vec3f& colour) {
+OpaqueGeometry whole_image(const Vec3f& colour) {
   OpaqueGeometry geometry;
   for (const Vec3f& corner : {Vec3f{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, -1, 0}, {1, 1, 0}, {-1, 1, 0}})
     geometry.triangles.push_back({corner, colour});

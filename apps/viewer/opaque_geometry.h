@@ -24,7 +24,7 @@ OpaqueGeometry frame_and_axes(const Box& box);
 /// A ball that is partly within the box.
 void add_ball(const Box& box, OpaqueGeometry& geometry);
 
-/// Two triangles over the whole picture, to be drawn with matrices of one.
-OpaqueGeometry whole_picture(const Vec3f& colour);
+/// Two triangles over the whole image, to be drawn with matrices of one.
+OpaqueGeometry whole_image(const Vec3f& colour);
 
 }  // namespace viewer

@@ -68,7 +68,7 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
                  "core), time (a "
                  "new time step every frame), bricks (many small textures), lit (directional light), preint "
                  "(pre-integrated "
-                 "slabs) or stacks (2-D textures)")
+                 "segments) or stacks (2-D textures)")
       ->check(CLI::IsMember({"rgba", "table", "core", "time", "bricks", "lit", "preint", "stacks"}))
       ->capture_default_str();
   app.add_option(
@@ -86,10 +86,10 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--preset", preset, "Transfer function by name or number:" + preset_list())
       ->check(is_preset)
       ->capture_default_str();
-  app.add_option(
-         "--table", table,
-         "Transfer function of your own instead: a JSON file of knots, with values and opacities from 0 to "
-         "1 as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
+  app.add_option("--table", table,
+                 "Transfer function of your own instead: a JSON file of control points, with values and "
+                 "opacities from 0 to "
+                 "1 as {\"control points\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
       ->type_name("FILE");
   app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
   app.add_flag("--second", options.second_volume,
@@ -110,11 +110,11 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--distance", options.camera.distance, "From the eye to the box's centre, in box diagonals")
       ->check(number_between(min_distance, max_distance))
       ->capture_default_str();
-  app.add_option("--field-of-view", options.camera.field_of_view, "Degrees over the picture's shorter side")
+  app.add_option("--field-of-view", options.camera.field_of_view, "Degrees over the image's shorter side")
       ->check(number_between(1.0, 170.0))
       ->capture_default_str();
   app.add_flag("--ortho", options.camera.orthographic, "Orthographic instead of perspective");
-  app.add_option("--window-size", options.window_size, "Picture in pixels")
+  app.add_option("--window-size", options.window_size, "Image in pixels")
       ->check(CLI::Range(1, max_window_edge))
       ->type_name("W H")
       ->capture_default_str();

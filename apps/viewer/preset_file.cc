@@ -11,9 +11,9 @@ namespace viewer {
 
 namespace {
 
-ControlPoint knot_in(const nlohmann::json& knot) {
-  const nlohmann::json& colour = knot.at("colour");
-  return {knot.at("at"), colour.at(0), colour.at(1), colour.at(2), knot.at("opacity")};
+ControlPoint control_point_in(const nlohmann::json& point) {
+  const nlohmann::json& colour = point.at("colour");
+  return {point.at("at"), colour.at(0), colour.at(1), colour.at(2), point.at("opacity")};
 }
 
 bool in_unit_range(double value) {
@@ -24,26 +24,28 @@ bool in_unit_range(double value) {
 
 PresetFile::PresetFile(const std::string& path) : path_(path) {
   const auto fail = [&](const std::string& what) {
-    throw Error(ExitCode::bad_file,
-                fmt::format("{}: {}; write {{\"knots\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
-                            "…]}}, values between 0 and 1, sorted by \"at\"",
-                            path, what));
+    throw Error(
+        ExitCode::bad_file,
+        fmt::format(
+            "{}: {}; write {{\"control points\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
+            "…]}}, values between 0 and 1, sorted by \"at\"",
+            path, what));
   };
   std::ifstream file(path);
   if (!file) fail("cannot be read");
   try {
     const nlohmann::json all = nlohmann::json::parse(file);
-    for (const nlohmann::json& knot : all.at("knots")) points_.push_back(knot_in(knot));
+    for (const nlohmann::json& point : all.at("knots")) points_.push_back(control_point_in(point));
   } catch (const nlohmann::json::exception& error) {
     fail(fmt::format("no transfer function: {}", error.what()));
   }
-  if (points_.size() < 2) fail(fmt::format("{} knots are too few", points_.size()));
+  if (points_.size() < 2) fail(fmt::format("{} control points are too few", points_.size()));
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const ControlPoint& p = points_[i];
     for (const double number : {p.value, p.red, p.green, p.blue, p.opacity})
-      if (!in_unit_range(number)) fail(fmt::format("knot {} holds {}", i + 1, number));
+      if (!in_unit_range(number)) fail(fmt::format("control point {} holds {}", i + 1, number));
     if (i > 0 && p.value < points_[i - 1].value)
-      fail(fmt::format("knot {} lies before the one ahead of it", i + 1));
+      fail(fmt::format("control point {} lies before the one ahead of it", i + 1));
   }
   preset_ = {path_, "from a file", points_};
 }

@@ -122,7 +122,7 @@ void Scene::draw_front_to_back(DrawnFrame& frame) {
   if (!opaque_.triangles.empty()) mode_->draw_opaque(opaque_, frame.matrices);
   glDisable(GL_DEPTH_TEST);
   const Mat4 unit = translation({0, 0, 0});
-  mode_->draw_opaque(whole_picture(to_float(background_)), {unit, unit});
+  mode_->draw_opaque(whole_image(to_float(background_)), {unit, unit});
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }

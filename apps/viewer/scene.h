@@ -30,7 +30,7 @@ struct DrawnVolume {
   Table colours;  ///< as the operator takes them
 };
 
-/// Everything that determined one frame's picture.
+/// Everything that determined one frame's image.
 struct DrawnFrame {
   Camera camera;
   Matrices matrices;

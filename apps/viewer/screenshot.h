@@ -1,4 +1,4 @@
-// Pictures out of the framebuffer and into PNG files.
+// Images out of the framebuffer and into PNG files.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,16 @@
 
 namespace viewer {
 
-struct Picture {
+struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;  ///< top row first
 };
 
 /// The current context's read buffer (the back buffer of a window).
-Picture read_back(int width, int height);
+Image read_back(int width, int height);
 
 /// Throws Error (bad_file) when the file cannot be written.
-void write_png(const Picture& picture, const std::string& path);
+void write_png(const Image& image, const std::string& path);
 
 }  // namespace viewer

@@ -15,19 +15,19 @@
 
 namespace understudy::compositor {
 
-/// What one rank did for a picture.
+/// What one rank did for an image.
 struct RankWork {
   double ms = 0;
   std::uint64_t samples = 0;  ///< that it took
 };
 
-/// What there is to know before a picture is drawn.
+/// What there is to know before an image is drawn.
 struct BalanceInput {
   const volume::Partition& partition;  ///< as it is
   const volume::TexelBox& lattice;
-  /// Of the last picture, which this partition drew; empty: there was none.
+  /// Of the last image, which this partition drew; empty: there was none.
   std::span<const RankWork> work;
-  /// Samples to be expected in the picture to come; all must be finite and not negative.
+  /// Samples to be expected in the image to come; all must be finite and not negative.
   const volume::BlockCosts& costs;
   double ms_per_block = 0;  ///< that travels
   /// Blocks that each rank has memory for; empty: all of them. No plane goes where a rank would hold more.
@@ -38,8 +38,8 @@ class Balancer {
  public:
   virtual ~Balancer() = default;
 
-  /// The partition for the picture to come: the same tree, some of its planes elsewhere. To be called before
-  /// every picture of the volume, in their order.
+  /// The partition for the image to come: the same tree, some of its planes elsewhere. To be called before
+  /// every image of the volume, in their order.
   virtual volume::Partition decide(const BalanceInput& input) = 0;
 
  protected:
@@ -72,17 +72,17 @@ std::unique_ptr<Balancer> muller_balancer(const MullerSettings& settings = {});
 
 /// Predicts every rank's time and puts all planes where these are equal, at once.
 ///
-/// A rank's time is its slowness, in ms per sample, times the expected samples of its blocks, each times a
-/// weight. Slowness follows the median of its last three measurements, at once when that is far off and slowly
-/// otherwise. Weights say how far expectation was off where (opaque things in front, say): those of a rank's
-/// blocks are multiplied until their sum is what the rank really took, and stay with the blocks when the rank
-/// does not.
+/// A rank's time is its relative cost, in ms per sample, times the expected samples of its blocks, each times a
+/// weight. RelativeCost follows the median of its last three measurements, at once when that is far off and
+/// slowly otherwise. Weights say how far expectation was off where (opaque things in front, say): those of a
+/// rank's blocks are multiplied until their sum is what the rank really took, and stay with the blocks when the
+/// rank does not.
 ///
-/// Planes move when that pays: what staying has cost up to now, and will in the next `horizon` pictures, must
+/// Planes move when that pays: what staying has cost up to now, and will in the next `horizon` images, must
 /// be more than what the blocks take to travel. Gains that are within what measured times scatter do not count.
 struct PredictingSettings {
   double horizon = 8;
-  double least_gain = 0.03;  ///< as a part of the picture's time
+  double least_gain = 0.03;  ///< as a part of the image's time
 };
 std::unique_ptr<Balancer> predicting_balancer(const PredictingSettings& settings = {});
 

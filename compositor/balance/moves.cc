@@ -21,8 +21,8 @@ TexelBox blocks_kept(const volume::VolumeDescription& volume, const TexelBox& ce
   const TexelBox lattice = volume::cell_lattice(volume).box();
   TexelBox blocks;
   for (std::size_t k = 0; k < 3; ++k) {
-    const int low = std::max(cells.low[k] - volume.margin, lattice.low[k]) - lattice.low[k];
-    const int high = std::min(cells.high[k] + volume.margin, lattice.high[k]) - lattice.low[k];
+    const int low = std::max(cells.low[k] - volume.ghost_layer, lattice.low[k]) - lattice.low[k];
+    const int high = std::min(cells.high[k] + volume.ghost_layer, lattice.high[k]) - lattice.low[k];
     blocks.low[k] = low / block;
     blocks.high[k] = (high + block - 1) / block;
   }

@@ -18,7 +18,7 @@ struct BlockMove {
   volume::TexelBox blocks;
 };
 
-/// The blocks that a rank with these cells keeps: those that meet them or the volume's margin around them.
+/// The blocks that a rank with these cells keeps: those that meet them or the volume's ghost layer around them.
 volume::TexelBox blocks_kept(const volume::VolumeDescription& volume, const volume::TexelBox& cells);
 
 /// The blocks whose lowest cell is one of these.

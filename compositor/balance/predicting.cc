@@ -18,7 +18,7 @@ using volume::TexelBox;
 namespace {
 
 /// How many ms a sample takes on one rank.
-class Slowness {
+class RelativeCost {
  public:
   bool known() const { return measured_ > 0; }
   double value() const { return value_; }
@@ -61,7 +61,7 @@ class PredictingBalancer : public Balancer {
 
   Partition decide(const BalanceInput& input) override {
     const auto ranks = std::size_t(input.partition.ranks);
-    slowness_.resize(ranks);
+    relative_cost_.resize(ranks);
     if (weights_.size() != input.costs.values().size()) {
       weights_.assign(input.costs.values().size(), 1.0F);
       predicted_.clear();
@@ -72,13 +72,13 @@ class PredictingBalancer : public Balancer {
     BlockCosts costs = input.costs;
     for (std::size_t i = 0; i < weights_.size(); ++i) costs.values()[i] *= double(weights_[i]);
     const CostSums sums(costs);
-    const std::vector<double> slow = all_slownesses();
+    const std::vector<double> slow = all_relative_costs();
     const Partition fair = fair_with_room(input, sums, slow);
     const std::vector<TexelBox> then = boxes_of(fair, input.lattice);
 
     const double stay_ms = slowest(sums, now, slow), move_ms = slowest(sums, then, slow);
     double scatter = 0;
-    for (const Slowness& slowness : slowness_) scatter += slowness.scatter() / double(ranks);
+    for (const RelativeCost& relative_cost : relative_cost_) scatter += relative_cost.scatter() / double(ranks);
     const double gain = stay_ms - move_ms;
     const double cost = double(most_blocks_moved(input.lattice, now, then)) * input.ms_per_block;
     bool moves = false;
@@ -94,7 +94,7 @@ class PredictingBalancer : public Balancer {
   }
 
  private:
-  /// What the last picture's measurements tell.
+  /// What the last image's measurements tell.
   void learn(std::span<const RankWork> work, const BlockCosts& costs, const std::vector<TexelBox>& boxes) {
     double samples = 0, ms = 0;
     for (const RankWork& rank : work) {
@@ -106,10 +106,10 @@ class PredictingBalancer : public Balancer {
     constexpr double of_mean = 0.02;
     const double few = of_mean * samples / double(work.size());
     for (std::size_t rank = 0; rank < work.size(); ++rank) {
-      Slowness& slowness = slowness_[rank];
-      const double usual = slowness.known() ? slowness.value() : ms / samples;
-      if (double(work[rank].samples) > few || !slowness.known())
-        slowness.measure((work[rank].ms + few * usual) / (double(work[rank].samples) + few));
+      RelativeCost& relative_cost = relative_cost_[rank];
+      const double usual = relative_cost.known() ? relative_cost.value() : ms / samples;
+      if (double(work[rank].samples) > few || !relative_cost.known())
+        relative_cost.measure((work[rank].ms + few * usual) / (double(work[rank].samples) + few));
     }
     if (predicted_.size() != work.size()) return;
     for (std::size_t rank = 0; rank < work.size(); ++rank) {
@@ -128,17 +128,17 @@ class PredictingBalancer : public Balancer {
     }
   }
 
-  std::vector<double> all_slownesses() const {
+  std::vector<double> all_relative_costs() const {
     double sum = 0, known = 0;
-    for (const Slowness& slowness : slowness_)
-      if (slowness.known()) {
-        sum += slowness.value();
+    for (const RelativeCost& relative_cost : relative_cost_)
+      if (relative_cost.known()) {
+        sum += relative_cost.value();
         known += 1;
       }
     const double usual = known > 0 && sum > 0 ? sum / known : 1;
     std::vector<double> result;
-    for (const Slowness& slowness : slowness_)
-      result.push_back(slowness.known() && slowness.value() > 0 ? slowness.value() : usual);
+    for (const RelativeCost& relative_cost : relative_cost_)
+      result.push_back(relative_cost.known() && relative_cost.value() > 0 ? relative_cost.value() : usual);
     return result;
   }
 
@@ -242,9 +242,9 @@ class PredictingBalancer : public Balancer {
   static constexpr float least_weight = 1.0F / 64, most_weight = 64;
 
   PredictingSettings settings_;
-  std::vector<Slowness> slowness_;
+  std::vector<RelativeCost> relative_cost_;
   std::vector<float> weights_;     // of the cubes
-  std::vector<double> predicted_;  // samples of each rank in the picture that was decided on last
+  std::vector<double> predicted_;  // samples of each rank in the image that was decided on last
   double lost_ms_ = 0;             // by staying, since planes should have moved
 };
 

@@ -16,7 +16,7 @@ struct Work {
 
 }  // namespace
 
-ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link) {
+ExchangeCost cost(const Schedule& schedule, Layout layout, const MessageCost& message_cost) {
   ExchangeCost result;
   std::vector<std::uint64_t> sent(schedule.position.size(), 0);
   bool written = false;
@@ -51,30 +51,31 @@ ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link)
     }
     double slowest = 0, together = 0;
     for (const Work& mine : work) {
-      const double per_moved = link.per_byte * double(bytes_per_pixel(layout));
-      const double drawn = link.per_pixel * double((mine.contributions > 1 ? mine.blended : 0) + mine.written);
-      slowest = std::max(slowest, link.latency * double(std::max(mine.messages_out, mine.messages_in)) +
+      const double per_moved = message_cost.per_byte * double(bytes_per_pixel(layout));
+      const double drawn =
+          message_cost.per_pixel * double((mine.contributions > 1 ? mine.blended : 0) + mine.written);
+      slowest = std::max(slowest, message_cost.latency * double(std::max(mine.messages_out, mine.messages_in)) +
                                       per_moved * double(std::max(mine.pixels_out, mine.pixels_in)) + drawn);
       // What moves is half the sender's work and half the receiver's.
-      together += link.latency / 2 * double(mine.messages_out + mine.messages_in) +
+      together += message_cost.latency / 2 * double(mine.messages_out + mine.messages_in) +
                   per_moved / 2 * double(mine.pixels_out + mine.pixels_in) + drawn;
     }
-    result.seconds += std::max(slowest, together / link.ranks_at_once);
+    result.seconds += std::max(slowest, together / message_cost.ranks_at_once);
   }
   // Rank 0 then writes all of it.
-  if (!written) result.seconds += link.per_pixel * double(schedule.whole.pixels());
+  if (!written) result.seconds += message_cost.per_pixel * double(schedule.whole.pixels());
   if (!sent.empty()) result.most_pixels_sent = *std::ranges::max_element(sent);
   return result;
 }
 
 Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
-                  const LinkCost& link, const std::vector<bool>& reached_by) {
+                  const MessageCost& message_cost, const std::vector<bool>& reached_by) {
   Schedule best;
   double least = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < algorithm_count; ++i) {
     Schedule candidate = schedule(Algorithm(i), order, footprints);
-    write_home(candidate, reached_by);
-    const double seconds = cost(candidate, layout, link).seconds;
+    write_gathered(candidate, reached_by);
+    const double seconds = cost(candidate, layout, message_cost).seconds;
     if (seconds >= least) continue;
     least = seconds;
     best = std::move(candidate);

@@ -12,9 +12,9 @@
 namespace understudy::compositor {
 
 /// A LogP-like model: a rank spends `latency` on each message, `per_byte` on each byte in the busier direction,
-/// and `per_pixel` on each pixel that it blends or writes into the picture's memory, in seconds. Ranks share
+/// and `per_pixel` on each pixel that it blends or writes into the image's memory, in seconds. Ranks share
 /// processors and lines: what all of them do in a round takes no less than if `ranks_at_once` of them got on.
-struct LinkCost {
+struct MessageCost {
   double latency = 20e-6;
   double per_byte = 0.2e-9;
   double per_pixel = 2e-9;
@@ -23,8 +23,8 @@ struct LinkCost {
 
 /// Whether packed pixels (pixel_numbers.h) arrive sooner: where lines take longer for what packing saves, about
 /// seven bytes a pixel, than the two sides for packing and unpacking, about five nanoseconds.
-constexpr bool packing_pays(const LinkCost& link) {
-  return 7 * link.per_byte > 5e-9;
+constexpr bool packing_pays(const MessageCost& message_cost) {
+  return 7 * message_cost.per_byte > 5e-9;
 }
 
 struct ExchangeCost {
@@ -35,10 +35,10 @@ struct ExchangeCost {
   double seconds = 0;                  ///< rounds one after the other
 };
 
-ExchangeCost cost(const Schedule& schedule, Layout layout, const LinkCost& link);
+ExchangeCost cost(const Schedule& schedule, Layout layout, const MessageCost& message_cost);
 
-/// The schedule that costs least, after write_home(); among equals the first in the order of Algorithm.
+/// The schedule that costs least, after write_gathered(); among equals the first in the order of Algorithm.
 Schedule cheapest(std::span<const Rank> order, std::span<const volume::Rect> footprints, Layout layout,
-                  const LinkCost& link, const std::vector<bool>& reached_by = {});
+                  const MessageCost& message_cost, const std::vector<bool>& reached_by = {});
 
 }  // namespace understudy::compositor

@@ -48,7 +48,7 @@ struct RankTraffic {
   std::uint64_t bytes_sent = 0;
   std::uint64_t bytes_received = 0;
   std::uint64_t pixels_blended = 0;  ///< of all its pieces, where these are more than one
-  std::uint64_t pixels_written = 0;  ///< into the picture's memory
+  std::uint64_t pixels_written = 0;  ///< into the image's memory
 
   RankTraffic& operator+=(const RankTraffic& other);
 };

@@ -39,12 +39,17 @@ void add_around(const Rect& rect, const Rect& hole, std::vector<Rect>& parts) {
 /// One rank's way through a schedule.
 class Player {
  public:
-  Player(Image mine, const Schedule& schedule, volume::Operator op, Layout layout, Link& link,
+  Player(Image mine, const Schedule& schedule, volume::Operator op, Layout layout, Communicator& communicator,
          std::span<float> memory)
-      : image_(std::move(mine)), schedule_(schedule), op_(op), layout_(layout), link_(link), memory_(memory) {}
+      : image_(std::move(mine)),
+        schedule_(schedule),
+        op_(op),
+        layout_(layout),
+        communicator_(communicator),
+        memory_(memory) {}
 
   void play(const Round& round) {
-    const Rank me = link_.rank();
+    const Rank me = communicator_.rank();
     std::vector<const Piece*> given, arriving;
     const Piece* kept = nullptr;
     for (const Piece& piece : round.pieces) {
@@ -64,14 +69,14 @@ class Player {
     for (const Piece* piece : given) {
       if (piece->written) {
         write_part(piece->rect);
-        const std::span<std::byte> shared = link_.shared_room(head_bytes);
+        const std::span<std::byte> shared = communicator_.shared_segment(head_bytes);
         PixelMessage& written =
             messages.emplace_back(shared.empty() ? PixelMessage(head_bytes) : PixelMessage(shared));
         std::ranges::fill(written.room(), std::byte(0));
       } else {
-        messages.push_back(encode_pixels(image_, piece->rect, op_, layout_, schedule_.packed,
-                                         schedule_.clear_pixels_travel,
-                                         link_.shared_room(most_message_bytes(piece->rect, layout_))));
+        messages.push_back(
+            encode_pixels(image_, piece->rect, op_, layout_, schedule_.packed, schedule_.clear_pixels_travel,
+                          communicator_.shared_segment(most_message_bytes(piece->rect, layout_))));
       }
       bytes_to_tell_ += messages.back().size();
     }
@@ -84,10 +89,10 @@ class Player {
     arrived.reserve(arriving.size());
     for (const Piece* piece : arriving) {
       PixelMessage& room = arrived.emplace_back(piece->written ? PixelMessage(head_bytes)
-                                                               : room_for_pixels(piece->rect, layout_));
+                                                               : space_for_pixels(piece->rect, layout_));
       incoming.push_back({piece->from, room.room(), &room.received(), &room.seen()});
     }
-    link_.transfer(outgoing, incoming);
+    communicator_.transfer(outgoing, incoming);
 
     for (const PixelMessage& message : arrived) bytes_to_tell_ += message.told();
     if (me == 0 && std::ranges::any_of(round.pieces, &Piece::written)) {
@@ -111,7 +116,7 @@ class Player {
   }
 
   Exchanged finish() && {
-    if (link_.rank() != 0) return {};
+    if (communicator_.rank() != 0) return {};
     if (memory_.empty()) return {std::move(image_), bytes_to_tell_};
     if (!written_ && !schedule_.whole.empty()) {
       write_part(image_.rect);
@@ -127,7 +132,7 @@ class Player {
     std::optional<PixelReader> arrived;  ///< none: it is the part of this rank's own image
   };
 
-  /// A row of pixels from (x, y) on, in the picture's memory.
+  /// A row of pixels from (x, y) on, in the image's memory.
   std::span<float> in_memory(int x, int y, int pixels) const {
     const Rect& whole = schedule_.whole;
     const std::size_t first = std::size_t(y - whole.y) * std::size_t(whole.width) + std::size_t(x - whole.x);
@@ -185,7 +190,7 @@ class Player {
           other.arrived->blend_row_behind(op_, {image_.at(other.rect.x, y), 4 * std::size_t(other.rect.width)});
   }
 
-  // Row by row, so that what is blended stays in the nearest cache and a picture is written once.
+  // Row by row, so that what is blended stays in the nearest cache and an image is written once.
   void blend_anew(std::span<Contribution> contributions, const Rect& afterwards) {
     const std::size_t floats = 4 * std::size_t(afterwards.width);
     const float neutral = volume::neutral_value(op_);
@@ -228,17 +233,17 @@ class Player {
   const Schedule& schedule_;
   volume::Operator op_;
   Layout layout_;
-  Link& link_;
+  Communicator& communicator_;
   std::span<float> memory_;
-  bool written_ = false;             // the picture is in the memory
+  bool written_ = false;             // the image is in the memory
   std::uint64_t bytes_to_tell_ = 0;  // that rank 0 has not heard of
 };
 
 }  // namespace
 
-Exchanged exchange(Image mine, const Schedule& schedule, volume::Operator op, Layout layout, Link& link,
-                   std::span<float> memory) {
-  Player player(std::move(mine), schedule, op, layout, link, memory);
+Exchanged exchange(Image mine, const Schedule& schedule, volume::Operator op, Layout layout,
+                   Communicator& communicator, std::span<float> memory) {
+  Player player(std::move(mine), schedule, op, layout, communicator, memory);
   for (const Round& round : schedule.rounds) player.play(round);
   return std::move(player).finish();
 }

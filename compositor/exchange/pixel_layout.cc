@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compositor/blend.h"
-#include "compositor/exchange/link.h"
+#include "compositor/exchange/communicator.h"
 #include "volume/raycast/ray_caster.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -95,8 +95,8 @@ struct PixelRun {
   std::uint32_t touched = 0;
 };
 
-LinkLost malformed() {
-  return LinkLost("a message with pixels does not fit its rectangle");
+RankLost malformed() {
+  return RankLost("a message with pixels does not fit its rectangle");
 }
 
 struct Span {
@@ -147,7 +147,7 @@ void PixelMessage::tell(std::uint64_t count) {
 }
 
 std::uint64_t PixelMessage::told() const {
-  if (received_ < head_bytes) throw LinkLost("a message with pixels was cut short");
+  if (received_ < head_bytes) throw RankLost("a message with pixels was cut short");
   std::uint64_t count = 0;
   std::memcpy(&count, bytes_.data() + offsetof(Head, told), sizeof count);
   return count;
@@ -205,7 +205,7 @@ std::size_t most_message_bytes(const Rect& rect, Layout layout) {
   return head_bytes + most_packed_bytes(rect.pixels()) + sizeof(PixelRun) * (rect.pixels() / 2 + 1);
 }
 
-PixelMessage room_for_pixels(const Rect& rect, Layout layout) {
+PixelMessage space_for_pixels(const Rect& rect, Layout layout) {
   return PixelMessage(most_message_bytes(rect, layout));
 }
 

@@ -89,18 +89,18 @@ PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect,
 
 /// The longest message about this rectangle, and room for it.
 std::size_t most_message_bytes(const volume::Rect& rect, Layout layout);
-PixelMessage room_for_pixels(const volume::Rect& rect, Layout layout);
+PixelMessage space_for_pixels(const volume::Rect& rect, Layout layout);
 
 /// Goes through the pixels of a message that has come in such a room, row by row.
 class PixelReader {
  public:
-  /// `message` outlives it. Throws LinkLost when it is no such message.
+  /// `message` outlives it. Throws RankLost when it is no such message.
   PixelReader(const PixelMessage& message, const volume::Rect& rect, Layout layout);
 
   const volume::Rect& rect() const { return rect_; }
 
   /// The next row of the rectangle, which is `row`: sets the pixels that came, and leaves all others alone.
-  /// Throws LinkLost when the message ends before; so do the others.
+  /// Throws RankLost when the message ends before; so do the others.
   void read_row(std::span<float> row);
   /// Blends the next row behind `row`.
   void blend_row_behind(volume::Operator op, std::span<float> row);

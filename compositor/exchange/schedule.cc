@@ -12,8 +12,8 @@ namespace {
 
 using volume::Rect;
 
-/// The k-th of `count` strips of `whole`, cut across its longer side so that none is empty before it must be.
-Rect strip(const Rect& whole, std::size_t k, std::size_t count) {
+/// The k-th of `count` regions of `whole`, cut across its longer side so that none is empty before it must be.
+Rect region_of(const Rect& whole, std::size_t k, std::size_t count) {
   const auto cut = [&](int length, std::size_t at) {
     return int(std::uint64_t(length) * std::uint64_t(at) / std::uint64_t(count));
   };
@@ -86,7 +86,7 @@ void pair_up(Rounds& rounds) {
     rounds.begin();
     std::vector<Rank> winners;
     for (std::size_t i = 0; i < left.size(); i += 2) {
-      // Rank 0 is where the picture must end, so it wins its pair.
+      // Rank 0 is where the image must end, so it wins its pair.
       const bool second_wins = i + 1 < left.size() && left[i + 1] == 0;
       winners.push_back(left[second_wins ? i + 1 : i]);
       rounds.keep(winners.back());
@@ -100,15 +100,15 @@ void pair_up(Rounds& rounds) {
   }
 }
 
-/// Strips to ranks, so that much of what a rank has to show is its own already: the largest overlap first.
-std::vector<Rank> owners_of_strips(const Rounds& rounds) {
+/// Tiles to ranks, so that much of what a rank has to show is its own already: the largest overlap first.
+std::vector<Rank> owners_of_tiles(const Rounds& rounds) {
   const std::vector<Rank>& shown = rounds.shown();
   const std::size_t count = shown.size();
-  std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> overlaps;  // pixels, rank's index, strip
+  std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> overlaps;  // pixels, rank's index, region
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < count; ++k)
       if (const std::size_t pixels =
-              intersection(rounds.held(shown[i]), strip(rounds.whole(), k, count)).pixels();
+              intersection(rounds.held(shown[i]), region_of(rounds.whole(), k, count)).pixels();
           pixels > 0)
         overlaps.emplace_back(pixels, i, k);
   std::ranges::stable_sort(overlaps, std::greater<>{}, [](const auto& entry) { return std::get<0>(entry); });
@@ -132,15 +132,16 @@ std::vector<Rank> owners_of_strips(const Rounds& rounds) {
 void send_directly(Rounds& rounds) {
   const std::size_t count = rounds.shown().size();
   if (count < 2) return;
-  const std::vector<Rank> owners = owners_of_strips(rounds);
+  const std::vector<Rank> owners = owners_of_tiles(rounds);
   rounds.begin();
   for (const Rank from : rounds.shown())
-    for (std::size_t k = 0; k < count; ++k) rounds.give(from, owners[k], strip(rounds.whole(), k, count));
+    for (std::size_t k = 0; k < count; ++k) rounds.give(from, owners[k], region_of(rounds.whole(), k, count));
   rounds.end();
 }
 
 /// `ranks`, front first, exchange in groups of each factor; group members are neighbours first, then as far
-/// apart as the groups before were large. Region r of a group's members is cut into one strip for each of them.
+/// apart as the groups before were large. Region r of a group's members is cut into one region for each of
+/// them.
 void exchange_in_groups(Rounds& rounds, std::span<const Rank> ranks, std::span<const int> factors) {
   std::vector<Rect> regions(ranks.size(), rounds.whole());
   std::size_t stride = 1;
@@ -152,8 +153,8 @@ void exchange_in_groups(Rounds& rounds, std::span<const Rank> ranks, std::span<c
       const std::size_t mine = p / stride % members;
       const std::size_t first = p - mine * stride;
       for (std::size_t j = 0; j < members; ++j)
-        rounds.give(ranks[p], ranks[first + j * stride], strip(regions[p], j, members));
-      cut[p] = strip(regions[p], mine, members);
+        rounds.give(ranks[p], ranks[first + j * stride], region_of(regions[p], j, members));
+      cut[p] = region_of(regions[p], mine, members);
     }
     rounds.end();
     regions = std::move(cut);
@@ -231,7 +232,7 @@ Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<co
   return rounds.finish();
 }
 
-void write_home(Schedule& schedule, const std::vector<bool>& reached_by) {
+void write_gathered(Schedule& schedule, const std::vector<bool>& reached_by) {
   if (schedule.rounds.empty() || reached_by.empty()) return;
   std::vector<Piece>& pieces = schedule.rounds.back().pieces;
   for (auto piece = pieces.begin(); piece != pieces.end(); ++piece)

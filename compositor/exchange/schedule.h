@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compositor/exchange/link.h"
+#include "compositor/exchange/communicator.h"
 #include "volume/image.h"
 
 namespace understudy::compositor {
@@ -24,8 +24,9 @@ std::string_view name_of(Algorithm algorithm);
 struct Piece {
   Rank from = 0;
   Rank to = 0;
-  volume::Rect rect;     ///< not empty; all inside the sender's image
-  bool written = false;  ///< by the sender into the picture's memory: only a note travels; in the last round
+  volume::Rect rect;  ///< not empty; all inside the sender's image
+  bool written =
+      false;  ///< by the sender into the image's memory: only a control message travels; in the last round
   bool operator==(const Piece&) const = default;
 };
 
@@ -40,15 +41,15 @@ struct Schedule {
   std::vector<int> position;
   bool clear_pixels_travel = false;  ///< also those that no sample has reached, to see what they cost
   bool packed = false;               ///< pixels travel packed, which takes time and saves bytes
-  volume::Rect whole;  ///< the picture that rank 0 ends with: the smallest rectangle that holds all footprints.
+  volume::Rect whole;  ///< the image that rank 0 ends with: the smallest rectangle that holds all footprints.
                        ///< Where memory is given for it, any other that holds them will do
 };
 
 /// `order` holds all ranks, front first; `footprints` are by rank, empty where there is nothing to show. Ranks
-/// without footprint take no part, but for rank 0, which receives the picture.
+/// without footprint take no part, but for rank 0, which receives the image.
 ///
 /// serial: all send to rank 0, cost (N - 1)(t + b). tree: neighbours pairwise, log2 N (t + b) (both Magallon,
-/// Hopf, Ertl 2001, section 3). direct_send: one strip a rank (Hsu 1993; Neumann 1994), given to whom it saves
+/// Hopf, Ertl 2001, section 3). direct_send: one region a rank (Hsu 1993; Neumann 1994), given to whom it saves
 /// most bytes. binary_swap: halves with a partner, twice as far away each round (Ma 1994); neighbours of a
 /// count that is no power of two are folded together first. radix_k: direct-send in groups of `factors`, one
 /// factor a round, whose product is the number of ranks that show something (Peterka 2009); without factors
@@ -56,10 +57,10 @@ struct Schedule {
 Schedule schedule(Algorithm algorithm, std::span<const Rank> order, std::span<const volume::Rect> footprints,
                   std::span<const int> factors = {});
 
-/// Marks the last round's pieces whose senders reach the picture's memory (`reached_by`, by rank; empty: none
-/// does) as written there, if all of them lie apart: strips then go home directly from each rank, instead of
-/// being gathered by rank 0 (Mueller, Strengert, Ertl 2006 have both ways).
-void write_home(Schedule& schedule, const std::vector<bool>& reached_by);
+/// Marks the last round's pieces whose senders reach the image's memory (`reached_by`, by rank; empty: none
+/// does) as written there, if all of them lie apart: regions then go directly to the front end from each rank,
+/// instead of being gathered by rank 0 (Mueller, Strengert, Ertl 2006 have both ways).
+void write_gathered(Schedule& schedule, const std::vector<bool>& reached_by);
 
 /// Prime factors of `count`, pairs of twos made fours: rounds of four cost a quarter of the latency of two
 /// rounds of two, and no more bytes.

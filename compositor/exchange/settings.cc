@@ -29,9 +29,9 @@ bool set_layout(ExchangeSettings& settings, std::string_view name) {
   return false;
 }
 
-bool set_home(ExchangeSettings& settings, std::string_view name) {
-  if (name != "direct" && name != "gathered") return false;
-  settings.home = name == "direct" ? Home::direct : Home::gathered;
+bool set_gather(ExchangeSettings& settings, std::string_view name) {
+  if (name != "direct" && name != "root") return false;
+  settings.gather = name == "direct" ? Gather::direct : Gather::root;
   return true;
 }
 

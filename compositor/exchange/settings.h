@@ -13,17 +13,17 @@ namespace understudy::compositor {
 /// 65504; rgba8 to 1/510, in [0, 1].
 enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
 
-/// How the parts of a composited picture come to the application: each rank that reaches the application's
+/// How the parts of a composited image come to the application: each rank that reaches the application's
 /// memory writes its own there, or all send theirs to rank 0.
-enum class Home : std::uint8_t { direct, gathered };
+enum class Gather : std::uint8_t { direct, root };
 
-/// Whether parts of a picture are composited while others are still drawn; automatic: where that is faster.
+/// Whether parts of an image are composited while others are still drawn; automatic: where that is faster.
 enum class Overlap : std::uint8_t { automatic, on, off };
 
 struct ExchangeSettings {
-  std::optional<Algorithm> algorithm;  ///< none: for each picture the one that costs least
+  std::optional<Algorithm> algorithm;  ///< none: for each image the one that costs least
   Layout layout = Layout::rgba32f;
-  Home home = Home::direct;
+  Gather gather = Gather::direct;
   Overlap overlap = Overlap::automatic;
   std::optional<bool> packed;  ///< pixels travel packed; none: where that is faster (packing_pays())
 };
@@ -34,7 +34,7 @@ bool set_algorithm(ExchangeSettings& settings, std::string_view name);
 /// "float", "half" or "byte". False, with `settings` unchanged, for any other.
 bool set_layout(ExchangeSettings& settings, std::string_view name);
 /// "direct" or "gathered". False, with `settings` unchanged, for any other.
-bool set_home(ExchangeSettings& settings, std::string_view name);
+bool set_gather(ExchangeSettings& settings, std::string_view name);
 /// "auto", "on" or "off". False, with `settings` unchanged, for any other.
 bool set_overlap(ExchangeSettings& settings, std::string_view name);
 /// Likewise.

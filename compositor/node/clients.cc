@@ -76,7 +76,7 @@ bool Clients::hear_launcher() {
       const std::uint64_t number = ++last_number_;
       Connection& connection = clients_.try_emplace(number, std::move(message->attached)).first->second;
       try {
-        connection.send(MessageType::welcome, 0, encode(Hello{ranks_}), Connection::now_or_never());
+        connection.send(MessageType::accepted, 0, encode(Hello{ranks_}), Connection::now_or_never());
       } catch (const ConnectionLost&) {
         clients_.erase(number);  // gone while it waited
       }
@@ -95,14 +95,14 @@ std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& co
     std::optional<Message> message = connection.receive_some();
     if (!message) return std::nullopt;
     switch (message->type) {
-      case MessageType::image_memory:
-        return MemoryGiven{number, take_image_memory(connection, std::move(*message))};
+      case MessageType::image_buffer:
+        return MemoryGiven{number, take_image_buffer(connection, std::move(*message))};
       case MessageType::begin_volume:
       case MessageType::begin_change:
       case MessageType::add_texels:
       case MessageType::end_volume:
       case MessageType::forget_volume:
-      case MessageType::pair_table:
+      case MessageType::pre_integration_table:
       case MessageType::render:
       case MessageType::load_volume:
       case MessageType::continue_load:
@@ -121,12 +121,12 @@ std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& co
   return std::nullopt;
 }
 
-ImageMemory Clients::take_image_memory(Connection& connection, Message message) {
+ImageBuffer Clients::take_image_buffer(Connection& connection, Message message) {
   MessageType answer = MessageType::done;
   std::vector<std::byte> payload;
-  ImageMemory memory;
+  ImageBuffer memory;
   try {
-    memory = ImageMemory::map(std::move(message.attached), decode_size(message.payload));
+    memory = ImageBuffer::map(std::move(message.attached), decode_size(message.payload));
   } catch (const std::runtime_error& error) {
     answer = MessageType::refused;
     payload = encode_text(error.what());

@@ -1,6 +1,6 @@
-// Rank 0's side of the link to the applications: the connection to the launcher, which hands over applications,
-// and one connection per application. One thread, one poll; an application that is slow, silent in the middle
-// of a message, or talks nonsense is dropped with one line and never keeps the others waiting.
+// Rank 0's side of the communicator to the applications: the connection to the launcher, which hands over
+// applications, and one connection per application. One thread, one poll; an application that is slow, silent
+// in the middle of a message, or talks nonsense is dropped with one line and never keeps the others waiting.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 #include "compositor/node/heartbeat.h"
 #include "compositor/service/connection.h"
-#include "compositor/service/image_memory.h"
+#include "compositor/service/image_buffer.h"
 
 namespace understudy::compositor {
 
 class Clients {
  public:
-  /// An application's message; image_memory never appears here.
+  /// An application's message; image_buffer never appears here.
   struct Request {
     std::uint64_t client = 0;
     Message message;
@@ -27,10 +27,10 @@ class Clients {
   struct Departed {
     std::uint64_t client = 0;
   };
-  /// An application has given other memory for its pictures; without bytes: it was of no use.
+  /// An application has given other memory for its images; without bytes: it was of no use.
   struct MemoryGiven {
     std::uint64_t client = 0;
-    ImageMemory memory;
+    ImageBuffer memory;
   };
   /// The launcher closed its connection: time to end.
   struct Ended {};
@@ -49,7 +49,7 @@ class Clients {
  private:
   bool hear_launcher();
   std::optional<Event> hear(std::uint64_t number, Connection& connection);
-  static ImageMemory take_image_memory(Connection& connection, Message message);
+  static ImageBuffer take_image_buffer(Connection& connection, Message message);
   void drop(std::uint64_t number, const std::string& why);
 
   Connection launcher_;

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "compositor/exchange/exchange.h"
-#include "compositor/exchange/measure_link.h"
+#include "compositor/exchange/measure_message_cost.h"
 
 namespace understudy::compositor {
 
@@ -12,41 +12,42 @@ Layout Compositing::layout(bool may_travel_as_halves) const {
 }
 
 void Compositing::prepare() {
-  if (!link_cost_) link_cost_ = measure_link(link_);
+  if (!message_cost_) message_cost_ = measure_message_cost(communicator_);
 }
 
-Schedule Compositing::schedule_of(const PictureTask& task, std::span<const volume::Rect> footprints,
+Schedule Compositing::schedule_of(const ImageTask& task, std::span<const volume::Rect> footprints,
                                   const std::vector<bool>& reached_by) const {
-  if (!settings_.algorithm) return cheapest(task.order, footprints, task.layout, *link_cost_, reached_by);
+  if (!settings_.algorithm) return cheapest(task.order, footprints, task.layout, *message_cost_, reached_by);
   Schedule chosen = schedule(*settings_.algorithm, task.order, footprints);
-  write_home(chosen, reached_by);
+  write_gathered(chosen, reached_by);
   return chosen;
 }
 
-std::optional<volume::Rect> Compositing::composite(const PictureTask& task, volume::Image mine,
+std::optional<volume::Rect> Compositing::composite(const ImageTask& task, volume::Image mine,
                                                    std::span<const volume::Rect> footprints,
-                                                   const PictureMemories::Memory& memory,
+                                                   const ImageBuffers::Memory& memory,
                                                    volume::FrameCounts& counts,
                                                    const std::optional<volume::Rect>& whole) {
   Schedule chosen = schedule_of(task, footprints, memory.reached_by);
   if (whole) chosen.whole = *whole;
   if (4 * chosen.whole.pixels() > memory.floats) return std::nullopt;
   chosen.clear_pixels_travel = !task.only_footprints;
-  chosen.packed = settings_.packed.value_or(packing_pays(*link_cost_));
-  const Exchanged exchanged = exchange(std::move(mine), chosen, task.op, task.layout, link_, memory.here);
-  if (link_.rank() == 0) {
+  chosen.packed = settings_.packed.value_or(packing_pays(*message_cost_));
+  const Exchanged exchanged =
+      exchange(std::move(mine), chosen, task.op, task.layout, communicator_, memory.here);
+  if (communicator_.rank() == 0) {
     counts.bytes_exchanged += exchanged.bytes;
-    counts.messages += cost(chosen, task.layout, LinkCost()).messages;
+    counts.messages += cost(chosen, task.layout, MessageCost()).messages;
   }
   return chosen.whole;
 }
 
-void Compositing::add_cost_of_whole_windows(const PictureTask& task, const PictureMemories::Memory& memory,
+void Compositing::add_cost_of_whole_windows(const ImageTask& task, const ImageBuffers::Memory& memory,
                                             volume::FrameCounts& counts) {
   if (task.window != priced_window_ || task.layout != priced_layout_ ||
       memory.reached_by != priced_reached_by_) {
     const std::vector<volume::Rect> windows(task.order.size(), task.window);
-    price_ = cost(schedule_of(task, windows, memory.reached_by), task.layout, LinkCost());
+    price_ = cost(schedule_of(task, windows, memory.reached_by), task.layout, MessageCost());
     priced_window_ = task.window;
     priced_layout_ = task.layout;
     priced_reached_by_ = memory.reached_by;

@@ -1,4 +1,4 @@
-// How the images of all ranks become one picture in the application's memory: which exchange is chosen for it,
+// How the images of all ranks become one image in the application's memory: which exchange is chosen for it,
 // what travels, and what would have without footprints.
 #pragma once
 
@@ -7,18 +7,18 @@
 #include <span>
 #include <vector>
 
+#include "compositor/exchange/communicator.h"
 #include "compositor/exchange/cost.h"
-#include "compositor/exchange/link.h"
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
-#include "compositor/node/picture_memory.h"
+#include "compositor/node/image_buffer.h"
 #include "volume/image.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {
 
-/// Of one picture: the same on all ranks.
-struct PictureTask {
+/// Of one image: the same on all ranks.
+struct ImageTask {
   std::uint64_t client = 0;
   volume::Operator op{};
   volume::Rect window;          ///< that all samples lie in
@@ -29,35 +29,36 @@ struct PictureTask {
 
 class Compositing {
  public:
-  Compositing(Link& link, const ExchangeSettings& settings) : link_(link), settings_(settings) {}
+  Compositing(Communicator& communicator, const ExchangeSettings& settings)
+      : communicator_(communicator), settings_(settings) {}
 
-  /// The layout of a picture whose request may do with half floats.
+  /// The layout of an image whose request may do with half floats.
   Layout layout(bool may_travel_as_halves) const;
 
-  /// Collective, before anything else: measures the link, once.
+  /// Collective, before anything else: measures the communicator, once.
   void prepare();
 
   /// Collective: what the ranks have drawn, `mine` here and `footprints` by rank, goes to the memory. Returns
   /// the rectangle that the memory then holds: `whole` where one is given, with all footprints in it, or the
   /// smallest that holds these. Nothing, on all ranks, where the memory has no room for it. Adds to `counts`,
   /// on rank 0, what travelled.
-  std::optional<volume::Rect> composite(const PictureTask& task, volume::Image mine,
+  std::optional<volume::Rect> composite(const ImageTask& task, volume::Image mine,
                                         std::span<const volume::Rect> footprints,
-                                        const PictureMemories::Memory& memory, volume::FrameCounts& counts,
+                                        const ImageBuffers::Memory& memory, volume::FrameCounts& counts,
                                         const std::optional<volume::Rect>& whole = std::nullopt);
 
-  /// Adds to `counts` what the picture would cost if every rank sent the window whole.
-  void add_cost_of_whole_windows(const PictureTask& task, const PictureMemories::Memory& memory,
+  /// Adds to `counts` what the image would cost if every rank sent the window whole.
+  void add_cost_of_whole_windows(const ImageTask& task, const ImageBuffers::Memory& memory,
                                  volume::FrameCounts& counts);
 
  private:
-  Schedule schedule_of(const PictureTask& task, std::span<const volume::Rect> footprints,
+  Schedule schedule_of(const ImageTask& task, std::span<const volume::Rect> footprints,
                        const std::vector<bool>& reached_by) const;
 
-  Link& link_;
+  Communicator& communicator_;
   ExchangeSettings settings_;
-  std::optional<LinkCost> link_cost_;
-  // What pictures of such a window cost without footprints.
+  std::optional<MessageCost> message_cost_;
+  // What images of such a window cost without footprints.
   volume::Rect priced_window_;
   Layout priced_layout_{};
   std::vector<bool> priced_reached_by_;

@@ -15,9 +15,9 @@
 #include "compositor/crop.h"
 #include "compositor/node/clients.h"
 #include "compositor/node/compositing.h"
+#include "compositor/node/image_buffer.h"
 #include "compositor/node/opaque_tiles.h"
 #include "compositor/node/overlap.h"
-#include "compositor/node/picture_memory.h"
 #include "compositor/node/rebalancer.h"
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
@@ -43,7 +43,7 @@ struct Order {
   std::uint64_t payload_bytes = 0;
   volume::VolumeId volume = 0;
   std::uint64_t boxes = 0;
-  bool overlapped = false;  ///< a picture is composited while it is drawn
+  bool overlapped = false;  ///< an image is composited while it is drawn
 };
 
 // What every rank tells every other about its part in a request.
@@ -51,8 +51,8 @@ struct Outcome {
   bool refused = false;
   volume::Rect footprint;
   volume::FrameCounts counts;
-  std::uint32_t notes = 0;  ///< of opaque tiles, to every rank behind
-  std::uint64_t note_messages = 0, note_bytes = 0;
+  std::uint32_t control_messages = 0;  ///< of opaque tiles, to every rank behind
+  std::uint64_t control_message_count = 0, control_bytes = 0;
   RankLoad load;
 };
 
@@ -70,15 +70,16 @@ struct OwnOutcome : Outcome {
 
 class Node {
  public:
-  Node(Link& link, const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer,
-       const BalanceSettings& balance)
-      : link_(link),
-        renderer_(link.rank(), link.size(), make_renderer),
-        loads_(renderer_, link.rank()),
-        memories_(link, exchange.home),
-        compositing_(link, exchange),
+  Node(Communicator& communicator, const ExchangeSettings& exchange,
+       const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance)
+      : communicator_(communicator),
+        renderer_(communicator.rank(), communicator.size(), make_renderer),
+        loads_(renderer_, communicator.rank()),
+        memories_(communicator, exchange.gather),
+        compositing_(communicator, exchange),
         overlap_(exchange.overlap) {
-    if (balance.balance != Balance::off && link.size() > 1) rebalancer_.emplace(link, renderer_, balance);
+    if (balance.balance != Balance::off && communicator.size() > 1)
+      rebalancer_.emplace(communicator, renderer_, balance);
   }
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
@@ -93,7 +94,7 @@ class Node {
   void receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes);
   void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
   std::vector<Outcome> perform(const Order& order, Bytes payload);
-  void begin_picture(std::uint64_t client);
+  void begin_image(std::uint64_t client);
   void draw(OwnOutcome& mine);
   void draw_in_bands(OwnOutcome& mine);
   void clear_hidden(std::vector<Outcome>& outcomes);
@@ -102,28 +103,29 @@ class Node {
   std::vector<volume::PixelIntegral> compose_integrals();
   std::vector<std::uint64_t> sum_histograms();
 
-  Link& link_;
+  Communicator& communicator_;
   RankRenderer renderer_;
   Loads loads_;
   std::optional<Rebalancer> rebalancer_;  // where there is something to balance
-  PictureMemories memories_;
+  ImageBuffers memories_;
   Compositing compositing_;
   OverlapChoice overlap_;  // rank 0's word counts
   /// By application, and there by place.
-  std::map<std::uint64_t, std::array<volume::PairTable, limits::max_kept_pair_tables>> pair_tables_;
-  std::vector<std::byte> payload_room_;   // the same size on all ranks but 0
+  std::map<std::uint64_t, std::array<volume::PreIntegrationTable, limits::max_kept_pre_integration_tables>>
+      pre_integration_tables_;
+  std::vector<std::byte> payload_space_;  // the same size on all ranks but 0
   std::size_t room_ = 0;                  // that size, known to rank 0 too
   Reason reason_{};                       // of the last refusal
   std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
   // Of the render request in hand.
   VolumeKey rendered_;
   volume::RenderRequest request_;
-  PictureTask task_;
+  ImageTask task_;
   std::vector<volume::Rect> footprints_;  // by rank: what it could show at most
   volume::Rect whole_;                    // what all of them could
-  volume::FrameCounts travelled_;         // while the picture was drawn
+  volume::FrameCounts travelled_;         // while the image was drawn
   volume::Image image_;
-  std::uint32_t pictures_ = 0;  // that were asked for, this one too
+  std::uint32_t images_ = 0;  // that were asked for, this one too
   std::optional<OpaqueTiles> opaque_tiles_;
   // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
   std::vector<IntegralPart> integrals_;
@@ -157,7 +159,7 @@ volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
     total.samples += counts.samples;
     total.samples_taken += counts.samples_taken;
     total.samples_hidden += counts.samples_hidden;
-    total.samples_lesser += counts.samples_lesser;
+    total.dominated_samples += counts.dominated_samples;
     total.blocks += counts.blocks;
     total.blocks_empty += counts.blocks_empty;
     total.nodes_idle += outcome.footprint.empty();
@@ -169,7 +171,7 @@ volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
 bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall_patience) {
   std::optional<Clients> clients;
   try {
-    clients.emplace(control_path, link_.size(), stall_patience);
+    clients.emplace(control_path, communicator_.size(), stall_patience);
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "understudy-node: no launcher: {}\n", error.what());
   }
@@ -180,23 +182,23 @@ bool Node::lead(const std::string& control_path, std::chrono::milliseconds stall
       request(*clients, std::move(*asked));
     } else if (auto* given = std::get_if<Clients::MemoryGiven>(&event)) {
       Order order{.step = Step::share_memory, .client = given->client};
-      link_.broadcast(0, bytes_of(order));
+      communicator_.broadcast(0, bytes_of(order));
       memories_.share(order.client, std::move(given->memory));
     } else {
       Order order{.step = Step::forget_client, .client = std::get<Clients::Departed>(event).client};
-      link_.broadcast(0, bytes_of(order));
+      communicator_.broadcast(0, bytes_of(order));
       forget_client(order.client);
     }
   }
   Order order{.step = Step::end};
-  link_.broadcast(0, bytes_of(order));
+  communicator_.broadcast(0, bytes_of(order));
   return clients.has_value();
 }
 
 void Node::follow() {
   for (;;) {
     Order order;
-    link_.broadcast(0, bytes_of(order));
+    communicator_.broadcast(0, bytes_of(order));
     if (order.step == Step::end) return;
     if (order.step == Step::forget_client) {
       forget_client(order.client);
@@ -212,7 +214,7 @@ void Node::follow() {
       continue;
     }
     if (!receive_payload(order, {})) continue;
-    const std::vector<Outcome> outcomes = perform(order, Bytes(payload_room_).first(order.payload_bytes));
+    const std::vector<Outcome> outcomes = perform(order, Bytes(payload_space_).first(order.payload_bytes));
     if (first_refusal(outcomes)) continue;
     if (order.type == MessageType::render && !order.overlapped) {
       volume::FrameCounts counts;
@@ -228,7 +230,7 @@ void Node::forget_client(std::uint64_t client) {
   if (rebalancer_) rebalancer_->forget_client(client);
   renderer_.forget_client(client);
   memories_.forget_client(client);
-  pair_tables_.erase(client);
+  pre_integration_tables_.erase(client);
 }
 
 // Room for that much of a payload. False, on all ranks, when one of them has none.
@@ -238,12 +240,12 @@ bool Node::make_room(std::uint64_t bytes) {
   if (bytes <= room_) return true;
   std::uint8_t fits = 1;
   try {
-    if (link_.rank() != 0) payload_room_.resize(bytes);
+    if (communicator_.rank() != 0) payload_space_.resize(bytes);
   } catch (const std::bad_alloc&) {
     fits = 0;
   }
-  std::vector<std::uint8_t> all(std::size_t(link_.size()));
-  link_.gather_to_all(bytes_of(fits), std::as_writable_bytes(std::span(all)));
+  std::vector<std::uint8_t> all(std::size_t(communicator_.size()));
+  communicator_.gather_to_all(bytes_of(fits), std::as_writable_bytes(std::span(all)));
   if (std::ranges::count(all, 0) > 0) return false;
   room_ = bytes;
   return true;
@@ -252,13 +254,14 @@ bool Node::make_room(std::uint64_t bytes) {
 // Broadcasts the payload that is `here` on rank 0. False, on all ranks, when one of them has no room for it.
 bool Node::receive_payload(const Order& order, std::span<std::byte> here) {
   if (!make_room(order.payload_bytes)) return false;
-  link_.broadcast(0, link_.rank() == 0 ? here : std::span(payload_room_).first(order.payload_bytes));
+  communicator_.broadcast(
+      0, communicator_.rank() == 0 ? here : std::span(payload_space_).first(order.payload_bytes));
   return true;
 }
 
 // Texels that are `here` on rank 0 go to the ranks that show them.
 std::vector<Outcome> Node::texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here) {
-  link_.broadcast(0, std::as_writable_bytes(boxes));
+  communicator_.broadcast(0, std::as_writable_bytes(boxes));
   const VolumeKey key{order.client, order.volume};
   OwnOutcome mine;
   try {
@@ -272,13 +275,13 @@ std::vector<Outcome> Node::texels(const Order& order, std::span<volume::TexelBox
     return agree(mine, key);
   }
   try {
-    if (link_.rank() == 0) {
+    if (communicator_.rank() == 0) {
       send_shares(key, boxes, here);
     } else {
       receive_shares(key, boxes);
     }
     if (rebalancer_) rebalancer_->texels_changed(key, renderer_.description(key), boxes);
-    renderer_.add_texels(key, shares_, payload_room_);
+    renderer_.add_texels(key, shares_, payload_space_);
   } catch (const RequestRefused& error) {
     mine.refuse(error.what());
   }
@@ -292,18 +295,18 @@ std::size_t bytes_of_boxes(std::span<const volume::TexelBox> boxes, std::size_t 
 }
 
 void Node::receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes) {
-  shares_ = renderer_.shares(key, boxes, link_.rank());
+  shares_ = renderer_.shares(key, boxes, communicator_.rank());
   const std::size_t bytes = bytes_of_boxes(shares_, renderer_.bytes_per_texel(key));
   if (bytes == 0) return;
-  const Incoming share{0, std::span(payload_room_).first(bytes)};
-  link_.transfer({}, {&share, 1});
+  const Incoming share{0, std::span(payload_space_).first(bytes)};
+  communicator_.transfer({}, {&share, 1});
 }
 
 void Node::send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels) {
   const std::size_t texel = renderer_.bytes_per_texel(key);
-  std::vector<std::vector<std::byte>> packed(std::size_t(link_.size()));
+  std::vector<std::vector<std::byte>> packed(std::size_t(communicator_.size()));
   std::vector<Outgoing> outgoing;
-  for (Rank rank = 0; rank < link_.size(); ++rank) {
+  for (Rank rank = 0; rank < communicator_.size(); ++rank) {
     const std::vector<volume::TexelBox> shares = renderer_.shares(key, boxes, rank);
     std::vector<std::byte>& bytes = packed[std::size_t(rank)];
     bytes.resize(bytes_of_boxes(shares, texel));
@@ -324,8 +327,8 @@ void Node::send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, B
       outgoing.push_back({rank, bytes});
     }
   }
-  link_.transfer(outgoing, {});
-  payload_room_ = std::move(packed[0]);
+  communicator_.transfer(outgoing, {});
+  payload_space_ = std::move(packed[0]);
 }
 
 void Node::request(Clients& clients, Clients::Request request) {
@@ -342,19 +345,20 @@ void Node::request(Clients& clients, Clients::Request request) {
                 .payload_bytes = message.texels.size(),
                 .volume = message.volume,
                 .boxes = message.boxes.size()};
-    link_.broadcast(0, bytes_of(order));
+    communicator_.broadcast(0, bytes_of(order));
     const std::vector<Outcome> outcomes = texels(order, message.boxes, message.texels);
     if (first_refusal(outcomes))
       return clients.reply(request, MessageType::refused, encode_text(reason_.data()));
     return clients.reply(request, MessageType::done, {});
   }
   const auto start = Clock::now();
-  Order order{.step = Step::request,
-              .type = request.message.type,
-              .client = request.client,
-              .payload_bytes = request.message.payload.size(),
-              .overlapped = request.message.type == MessageType::render && link_.size() > 1 && overlap_.next()};
-  link_.broadcast(0, bytes_of(order));
+  Order order{
+      .step = Step::request,
+      .type = request.message.type,
+      .client = request.client,
+      .payload_bytes = request.message.payload.size(),
+      .overlapped = request.message.type == MessageType::render && communicator_.size() > 1 && overlap_.next()};
+  communicator_.broadcast(0, bytes_of(order));
   if (!receive_payload(order, request.message.payload))
     return clients.reply(request, MessageType::refused,
                          encode_text("a node has no memory left for this message"));
@@ -387,8 +391,7 @@ void Node::request(Clients& clients, Clients::Request request) {
     counts.composite_ms = milliseconds_since(drawn);
   }
   if (!rect)
-    return clients.reply(request, MessageType::refused,
-                         encode_text("there is no image memory for this picture"));
+    return clients.reply(request, MessageType::refused, encode_text("there is no image memory for this image"));
   compositing_.add_cost_of_whole_windows(task_, memories_.of(task_.client), counts);
   overlap_.took(order.overlapped, counts.samples, milliseconds_since(start), counts.composite_ms);
   rendered.rect = *rect;
@@ -418,8 +421,8 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
       }
       case MessageType::end_volume:
         filling = VolumeKey{order.client, decode_id(payload)};
-        // A slab's worth of memory is not needed again soon.
-        payload_room_ = {};
+        // A slice range's worth of memory is not needed again soon.
+        payload_space_ = {};
         room_ = 0;
         renderer_.end(*filling);
         break;
@@ -445,17 +448,17 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
         mine.load = loads_.figures(key);
         break;
       }
-      case MessageType::pair_table: {
-        KeptPairTable kept = decode_pair_table(payload);
-        pair_tables_[order.client][std::size_t(kept.place)] = std::move(kept.table);
+      case MessageType::pre_integration_table: {
+        KeptPreIntegrationTable kept = decode_pre_integration_table(payload);
+        pre_integration_tables_[order.client][std::size_t(kept.place)] = std::move(kept.table);
         break;
       }
       case MessageType::render: {
-        ++pictures_;
+        ++images_;
         opaque_tiles_.reset();
-        const auto decode = [&] { return decode_request(payload, pair_tables_[order.client]); };
-        request_ = rebalancer_ ? rebalancer_->before_picture(order.client, decode) : decode();
-        begin_picture(order.client);
+        const auto decode = [&] { return decode_request(payload, pre_integration_tables_[order.client]); };
+        request_ = rebalancer_ ? rebalancer_->before_image(order.client, decode) : decode();
+        begin_image(order.client);
         if (!order.overlapped) draw(mine);
         break;
       }
@@ -487,21 +490,21 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
     work.reserve(outcomes.size());
     for (const Outcome& outcome : outcomes)
       work.push_back({outcome.counts.render_ms, outcome.counts.samples_taken});
-    rebalancer_->after_picture(rendered_, work);
+    rebalancer_->after_image(rendered_, work);
   }
   const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
   if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*filling);
   return outcomes;
 }
 
-// What all ranks know of the picture before they draw it.
-void Node::begin_picture(std::uint64_t client) {
+// What all ranks know of the image before they draw it.
+void Node::begin_image(std::uint64_t client) {
   rendered_ = {client, request_.volume};
   task_ = {client,
            request_.op,
            intersection(request_.window, request_.viewport),
            compositing_.layout(request_.may_travel_as_halves),
-           request_.leave_out.footprints,
+           request_.optimizations.footprints,
            renderer_.visibility_order(client, request_)};
   footprints_ = renderer_.footprints(client, request_);
   whole_ = task_.window;
@@ -511,22 +514,22 @@ void Node::begin_picture(std::uint64_t client) {
 }
 
 void Node::draw(OwnOutcome& mine) {
-  if (link_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
-    opaque_tiles_.emplace(link_, pictures_, request_, task_.order, footprints_);
+  if (communicator_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
+    opaque_tiles_.emplace(communicator_, images_, request_, task_.order, footprints_);
   image_ = renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
   mine.footprint = image_.rect;
   if (!opaque_tiles_) return;
-  mine.notes = opaque_tiles_->tell_rest();
-  mine.note_messages = opaque_tiles_->messages();
-  mine.note_bytes = opaque_tiles_->bytes();
+  mine.control_messages = opaque_tiles_->tell_rest();
+  mine.control_message_count = opaque_tiles_->messages();
+  mine.control_bytes = opaque_tiles_->bytes();
 }
 
 // Whatever becomes of this rank's part, the others wait for its word on every band until all have given up.
 void Node::draw_in_bands(OwnOutcome& mine) {
-  const PictureMemories::Memory& memory = memories_.of(task_.client);
+  const ImageBuffers::Memory& memory = memories_.of(task_.client);
   if (!mine.refused && 4 * whole_.pixels() > memory.floats)
-    mine.refuse("there is no image memory for this picture");
-  if (mine.refused) return refuse_to_draw(link_);
+    mine.refuse("there is no image memory for this image");
+  if (mine.refused) return refuse_to_draw(communicator_);
   travelled_ = {};
   const auto draw_band = [&](const volume::Rect& band) -> std::optional<volume::Image> {
     if (mine.refused) return std::nullopt;
@@ -534,7 +537,7 @@ void Node::draw_in_bands(OwnOutcome& mine) {
       volume::FrameCounts counts;
       volume::Image image = renderer_.render(task_.client, request_, counts, nullptr, band);
       mine.footprint = bounding(mine.footprint, image.rect);
-      // The blocks are those of the whole picture each time.
+      // The blocks are those of the whole image each time.
       counts.blocks -= mine.counts.blocks;
       counts.blocks_empty -= mine.counts.blocks_empty;
       mine.counts += counts;
@@ -544,32 +547,33 @@ void Node::draw_in_bands(OwnOutcome& mine) {
       return std::nullopt;
     }
   };
-  draw_and_composite(link_, compositing_, task_, memory, whole_, draw_band, travelled_);
+  draw_and_composite(communicator_, compositing_, task_, memory, whole_, draw_band, travelled_);
 }
 
 // What this rank has drawn behind opaque tiles of others, before it heard of them, must not change footprints:
-// the picture would depend on when notes came.
+// the image would depend on when control messages came.
 void Node::clear_hidden(std::vector<Outcome>& outcomes) {
-  if (std::ranges::all_of(outcomes, [](const Outcome& outcome) { return outcome.notes == 0; })) return;
-  std::vector<std::uint32_t> notes;
-  notes.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) notes.push_back(outcome.notes);
-  opaque_tiles_->clear_hidden(image_, notes);
+  if (std::ranges::all_of(outcomes, [](const Outcome& outcome) { return outcome.control_messages == 0; }))
+    return;
+  std::vector<std::uint32_t> control_messages;
+  control_messages.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) control_messages.push_back(outcome.control_messages);
+  opaque_tiles_->clear_hidden(image_, control_messages);
   crop_to_content(image_, task_.op);
   std::vector<volume::Rect> footprints(outcomes.size());
-  link_.gather_to_all(bytes_of(image_.rect), std::as_writable_bytes(std::span(footprints)));
+  communicator_.gather_to_all(bytes_of(image_.rect), std::as_writable_bytes(std::span(footprints)));
   for (std::size_t rank = 0; rank < outcomes.size(); ++rank) outcomes[rank].footprint = footprints[rank];
 }
 
 // What became of the parts of all ranks. A volume that one rank could not take in is of no use on the others.
 std::vector<Outcome> Node::agree(const OwnOutcome& outcome, const std::optional<VolumeKey>& filling) {
   Outcome mine = outcome;
-  std::vector<Outcome> outcomes(std::size_t(link_.size()));
-  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
+  std::vector<Outcome> outcomes(std::size_t(communicator_.size()));
+  communicator_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
   const Outcome* const refusal = first_refusal(outcomes);
   if (refusal == nullptr) return outcomes;
   reason_ = outcome.reason;
-  link_.broadcast(Rank(refusal - outcomes.data()), bytes_of(reason_));
+  communicator_.broadcast(Rank(refusal - outcomes.data()), bytes_of(reason_));
   if (filling) {
     loads_.forget(*filling);
     if (rebalancer_) rebalancer_->forget(*filling);
@@ -578,16 +582,16 @@ std::vector<Outcome> Node::agree(const OwnOutcome& outcome, const std::optional<
   return outcomes;
 }
 
-// The picture goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
+// The image goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
 // ranks, when there is no room for them. Adds to the counts, on rank 0, what travelled.
 std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts) {
   std::vector<volume::Rect> footprints;
   footprints.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
-  if (link_.rank() == 0) {
+  if (communicator_.rank() == 0) {
     for (const Outcome& outcome : outcomes) {
-      counts.bytes_exchanged += outcome.note_bytes;
-      counts.messages += outcome.note_messages;
+      counts.bytes_exchanged += outcome.control_bytes;
+      counts.messages += outcome.control_message_count;
     }
   }
   return compositing_.composite(task_, std::move(image_), footprints, memories_.of(task_.client), counts);
@@ -595,15 +599,15 @@ std::optional<volume::Rect> Node::composite(const std::vector<Outcome>& outcomes
 
 // The whole integrals, from the parts of all ranks.
 std::vector<volume::PixelIntegral> Node::compose_integrals() {
-  const auto ranks = std::size_t(link_.size());
+  const auto ranks = std::size_t(communicator_.size());
   std::vector<std::uint64_t> known(ranks);
   std::uint64_t mine = integrated_;
-  link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(known)));
+  communicator_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(known)));
   const std::size_t pixels = std::ranges::min(known);
   if (pixels == 0) return {};
   std::vector<IntegralPart> all(ranks * pixels);
-  link_.gather_to_all(std::as_bytes(std::span(integrals_).first(pixels)),
-                      std::as_writable_bytes(std::span(all)));
+  communicator_.gather_to_all(std::as_bytes(std::span(integrals_).first(pixels)),
+                              std::as_writable_bytes(std::span(all)));
   std::vector<std::vector<IntegralPart>> parts;
   for (auto part = all.begin(); part != all.end(); part += std::ptrdiff_t(pixels))
     parts.emplace_back(part, part + std::ptrdiff_t(pixels));
@@ -613,8 +617,8 @@ std::vector<volume::PixelIntegral> Node::compose_integrals() {
 // Of the whole volume, from the parts of all ranks.
 std::vector<std::uint64_t> Node::sum_histograms() {
   const std::size_t bins = histogram_.size();
-  std::vector<std::uint64_t> all(std::size_t(link_.size()) * bins);
-  link_.gather_to_all(std::as_bytes(std::span(histogram_)), std::as_writable_bytes(std::span(all)));
+  std::vector<std::uint64_t> all(std::size_t(communicator_.size()) * bins);
+  communicator_.gather_to_all(std::as_bytes(std::span(histogram_)), std::as_writable_bytes(std::span(all)));
   std::vector<std::uint64_t> sums(bins);
   for (std::size_t i = 0; i < all.size(); ++i) sums[i % bins] += all[i];
   return sums;
@@ -622,11 +626,11 @@ std::vector<std::uint64_t> Node::sum_histograms() {
 
 }  // namespace
 
-bool run_node(Link& link, const std::string& control_path, std::chrono::milliseconds stall_patience,
-              const ExchangeSettings& exchange, const volume::BrickRendererFactory& make_renderer,
-              const BalanceSettings& balance) {
-  Node node(link, exchange, make_renderer, balance);
-  if (link.rank() == 0) return node.lead(control_path, stall_patience);
+bool run_node(Communicator& communicator, const std::string& control_path,
+              std::chrono::milliseconds stall_patience, const ExchangeSettings& exchange,
+              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance) {
+  Node node(communicator, exchange, make_renderer, balance);
+  if (communicator.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;
 }

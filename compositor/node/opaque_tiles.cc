@@ -9,8 +9,9 @@ namespace {
 
 using volume::Rect;
 
-// A note begins with the picture's number; indices of tiles follow, row after row of the window's tiles.
-constexpr std::size_t tiles_per_note = most_note_bytes / sizeof(std::uint32_t) - 1;
+// A control message begins with the image's number; indices of tiles follow, row after row of the window's
+// tiles.
+constexpr std::size_t tiles_per_control_message = most_control_bytes / sizeof(std::uint32_t) - 1;
 
 Rect pixels_of_tile(int column, int row) {
   return {volume::occlusion_tile * column, volume::occlusion_tile * row, volume::occlusion_tile,
@@ -23,19 +24,19 @@ bool contains(const Rect& outer, const Rect& inner) {
 
 }  // namespace
 
-OpaqueTiles::OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderRequest& request,
+OpaqueTiles::OpaqueTiles(Communicator& communicator, std::uint32_t number, const volume::RenderRequest& request,
                          std::span<const Rank> order, std::span<const Rect> footprints)
-    : link_(link),
+    : communicator_(communicator),
       number_(number),
       window_(intersection(request.window, request.viewport)),
       tiles_(volume::tiles_touched(window_)),
       hidden_(tiles_.pixels()),
-      notes_heard_(footprints.size()) {
+      control_heard_(footprints.size()) {
   // Notes go where footprints share a tile.
-  const Rect mine = volume::tiles_touched(footprints[std::size_t(link.rank())]);
+  const Rect mine = volume::tiles_touched(footprints[std::size_t(communicator.rank())]);
   std::vector<Rank>* side = &nearer_;
   for (const Rank rank : order) {
-    if (rank == link.rank())
+    if (rank == communicator.rank())
       side = &farther_;
     else if (!intersection(mine, volume::tiles_touched(footprints[std::size_t(rank)])).empty())
       side->push_back(rank);
@@ -43,11 +44,11 @@ OpaqueTiles::OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderR
 }
 
 bool OpaqueTiles::hides(const Rect& pixels) {
-  // Only one thread may use the link.
+  // Only one thread may use the communicator.
   if (std::this_thread::get_id() == thread_) {
-    while (const std::optional<Note> note = link_.take_note()) hear(*note);
-    constexpr std::size_t worth_a_note = 8;
-    tell(worth_a_note);
+    while (const std::optional<ControlMessage> control = communicator_.take_control_message()) hear(*control);
+    constexpr std::size_t worth_a_control_message = 8;
+    tell(worth_a_control_message);
   }
   if (nearer_.empty()) return false;
   const Rect touched = volume::tiles_touched(intersection(pixels, window_));
@@ -75,36 +76,36 @@ void OpaqueTiles::tell(std::size_t least) {
     if (covered_.size() < std::max<std::size_t>(least, 1)) return;
     tiles.swap(covered_);
   }
-  for (std::size_t i = 0; i < tiles.size(); i += tiles_per_note) {
-    std::vector<std::uint32_t> note{number_};
-    const auto some = std::span(tiles).subspan(i, std::min(tiles_per_note, tiles.size() - i));
-    note.insert(note.end(), some.begin(), some.end());
-    for (const Rank rank : farther_) link_.post(rank, std::as_bytes(std::span(note)));
-    ++notes_told_;
-    bytes_told_ += std::as_bytes(std::span(note)).size();
+  for (std::size_t i = 0; i < tiles.size(); i += tiles_per_control_message) {
+    std::vector<std::uint32_t> control{number_};
+    const auto some = std::span(tiles).subspan(i, std::min(tiles_per_control_message, tiles.size() - i));
+    control.insert(control.end(), some.begin(), some.end());
+    for (const Rank rank : farther_) communicator_.send_control(rank, std::as_bytes(std::span(control)));
+    ++control_told_;
+    bytes_told_ += std::as_bytes(std::span(control)).size();
   }
 }
 
-void OpaqueTiles::hear(const Note& note) {
-  std::vector<std::uint32_t> words(note.bytes.size() / sizeof(std::uint32_t));
-  std::memcpy(words.data(), note.bytes.data(), sizeof(std::uint32_t) * words.size());
-  // Of a picture that was refused somewhere notes may be left.
+void OpaqueTiles::hear(const ControlMessage& control) {
+  std::vector<std::uint32_t> words(control.bytes.size() / sizeof(std::uint32_t));
+  std::memcpy(words.data(), control.bytes.data(), sizeof(std::uint32_t) * words.size());
+  // Of an image that was refused somewhere control messages may be left.
   if (words.empty() || words.front() != number_) return;
-  ++notes_heard_[std::size_t(note.from)];
+  ++control_heard_[std::size_t(control.from)];
   for (const std::uint32_t index : std::span(words).subspan(1))
     if (index < hidden_.size()) hidden_[index].store(1, std::memory_order_relaxed);
 }
 
 std::uint32_t OpaqueTiles::tell_rest() {
   tell(1);
-  return notes_told_;
+  return control_told_;
 }
 
-void OpaqueTiles::clear_hidden(volume::Image& image, std::span<const std::uint32_t> notes_of_ranks) {
+void OpaqueTiles::clear_hidden(volume::Image& image, std::span<const std::uint32_t> control_messages_of_ranks) {
   const auto missing = [&](Rank rank) {
-    return notes_heard_[std::size_t(rank)] < notes_of_ranks[std::size_t(rank)];
+    return control_heard_[std::size_t(rank)] < control_messages_of_ranks[std::size_t(rank)];
   };
-  while (std::ranges::any_of(nearer_, missing)) hear(link_.wait_for_note());
+  while (std::ranges::any_of(nearer_, missing)) hear(communicator_.wait_for_control_message());
   const Rect touched = volume::tiles_touched(intersection(image.rect, window_));
   for (int row = touched.y; row < touched.y + touched.height; ++row)
     for (int column = touched.x; column < touched.x + touched.width; ++column) {

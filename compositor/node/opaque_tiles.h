@@ -1,7 +1,7 @@
-// Ranks nearer to the eye tell those behind them, while all of them draw, which tiles of the picture are
-// already opaque: what lies there behind them is neither drawn nor sent. Nobody waits for a note while drawing,
-// so one that comes late saves less; but what has been drawn in vain is cleared before pictures are exchanged,
-// so that the picture does not depend on when notes came.
+// Ranks nearer to the eye tell those behind them, while all of them draw, which tiles of the image are
+// already opaque: what lies there behind them is neither drawn nor sent. Nobody waits for a control message
+// while drawing, so one that comes late saves less; but what has been drawn in vain is cleared before images
+// are exchanged, so that the image does not depend on when control messages came.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/exchange/link.h"
+#include "compositor/exchange/communicator.h"
 #include "volume/image.h"
 #include "volume/occlusion.h"
 #include "volume/request.h"
@@ -20,23 +20,24 @@ namespace understudy::compositor {
 
 class OpaqueTiles final : public volume::Occlusion {
  public:
-  /// Of one picture: the `number`-th, by the same count on all ranks. `order` holds all ranks, front first, and
+  /// Of one image: the `number`-th, by the same count on all ranks. `order` holds all ranks, front first, and
   /// `footprints`, by rank, what each could show at most; both are the same on all ranks. Made on the thread
-  /// that `link` belongs to.
-  OpaqueTiles(Link& link, std::uint32_t number, const volume::RenderRequest& request,
+  /// that `communicator` belongs to.
+  OpaqueTiles(Communicator& communicator, std::uint32_t number, const volume::RenderRequest& request,
               std::span<const Rank> order, std::span<const volume::Rect> footprints);
 
   bool hides(const volume::Rect& pixels) override;
   void cover(const volume::Rect& pixels) override;
   bool from_the_end() const override { return nearer_.size() % 2 == 1; }
 
-  /// When this rank has drawn: tells what it has not told yet. Returns how many notes each rank behind it got.
+  /// When this rank has drawn: tells what it has not told yet. Returns how many control messages each rank
+  /// behind it got.
   std::uint32_t tell_rest();
-  /// Of all notes that this rank has sent.
-  std::uint64_t messages() const { return std::uint64_t(notes_told_) * farther_.size(); }
+  /// Of all control messages that this rank has sent.
+  std::uint64_t messages() const { return std::uint64_t(control_told_) * farther_.size(); }
   std::uint64_t bytes() const { return bytes_told_ * farther_.size(); }
   /// When all ranks have, with what their tell_rest() returned: clears the pixels of `image` that are hidden.
-  void clear_hidden(volume::Image& image, std::span<const std::uint32_t> notes_of_ranks);
+  void clear_hidden(volume::Image& image, std::span<const std::uint32_t> control_messages_of_ranks);
 
  private:
   using Tiles = std::vector<std::atomic<std::uint8_t>>;
@@ -45,9 +46,9 @@ class OpaqueTiles final : public volume::Occlusion {
     return std::size_t(row - tiles_.y) * std::size_t(tiles_.width) + std::size_t(column - tiles_.x);
   }
   void tell(std::size_t least);
-  void hear(const Note& note);
+  void hear(const ControlMessage& control);
 
-  Link& link_;
+  Communicator& communicator_;
   std::thread::id thread_ = std::this_thread::get_id();
   std::uint32_t number_;
   volume::Rect window_;
@@ -56,9 +57,9 @@ class OpaqueTiles final : public volume::Occlusion {
   Tiles hidden_;
   std::mutex mutex_;
   std::vector<std::uint32_t> covered_;  ///< tiles that are not told of yet
-  std::uint32_t notes_told_ = 0;
-  std::uint64_t bytes_told_ = 0;            ///< to every rank behind
-  std::vector<std::uint32_t> notes_heard_;  ///< by rank
+  std::uint32_t control_told_ = 0;
+  std::uint64_t bytes_told_ = 0;              ///< to every rank behind
+  std::vector<std::uint32_t> control_heard_;  ///< by rank
 };
 
 }  // namespace understudy::compositor

@@ -18,15 +18,15 @@ struct BandOutcome {
   Rect footprint;
 };
 
-std::vector<BandOutcome> agree(Link& link, BandOutcome mine) {
-  std::vector<BandOutcome> outcomes(std::size_t(link.size()));
-  link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
+std::vector<BandOutcome> agree(Communicator& communicator, BandOutcome mine) {
+  std::vector<BandOutcome> outcomes(std::size_t(communicator.size()));
+  communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(outcomes)));
   return outcomes;
 }
 
 // The rows of a band, in the memory that holds `whole`.
-PictureMemories::Memory rows_of(const PictureMemories::Memory& memory, const Rect& whole, const Rect& band) {
-  PictureMemories::Memory rows = memory;
+ImageBuffers::Memory rows_of(const ImageBuffers::Memory& memory, const Rect& whole, const Rect& band) {
+  ImageBuffers::Memory rows = memory;
   rows.floats = 4 * band.pixels();
   if (!memory.here.empty())
     rows.here = memory.here.subspan(4 * std::size_t(band.y - whole.y) * std::size_t(whole.width), rows.floats);
@@ -49,15 +49,16 @@ std::vector<Rect> bands_of(const Rect& rect) {
   return bands;
 }
 
-bool draw_and_composite(Link& link, Compositing& compositing, const PictureTask& task,
-                        const PictureMemories::Memory& memory, const Rect& whole,
+bool draw_and_composite(Communicator& communicator, Compositing& compositing, const ImageTask& task,
+                        const ImageBuffers::Memory& memory, const Rect& whole,
                         const std::function<std::optional<Image>(const Rect& band)>& draw,
                         volume::FrameCounts& travelled) {
   const bool has_room = 4 * whole.pixels() <= memory.floats;
   std::atomic<bool> given_up = false;
   const auto composite = [&](const Rect& band, std::optional<Image> drawn) {
     if (given_up) return;
-    const std::vector<BandOutcome> outcomes = agree(link, {!drawn.has_value(), drawn ? drawn->rect : Rect{}});
+    const std::vector<BandOutcome> outcomes =
+        agree(communicator, {!drawn.has_value(), drawn ? drawn->rect : Rect{}});
     if (std::ranges::any_of(outcomes, &BandOutcome::refused)) {
       given_up = true;
       return;
@@ -81,8 +82,8 @@ bool draw_and_composite(Link& link, Compositing& compositing, const PictureTask&
   return !given_up;
 }
 
-void refuse_to_draw(Link& link) {
-  agree(link, {true, {}});
+void refuse_to_draw(Communicator& communicator) {
+  agree(communicator, {true, {}});
 }
 
 bool OverlapChoice::next() const {
@@ -91,8 +92,8 @@ bool OverlapChoice::next() const {
   if (wish_ != Overlap::automatic) return wish_ == Overlap::on;
   if (!apart_.seconds_per_sample || composite_share_ < least_share) return false;
   if (!overlapped_.seconds_per_sample) return true;
-  if (apart_.pictures_ago >= try_again_after) return false;
-  if (overlapped_.pictures_ago >= try_again_after) return true;
+  if (apart_.images_ago >= try_again_after) return false;
+  if (overlapped_.images_ago >= try_again_after) return true;
   return *overlapped_.seconds_per_sample < *apart_.seconds_per_sample;
 }
 
@@ -104,8 +105,8 @@ void OverlapChoice::took(bool overlapped, std::uint64_t samples, double seconds,
   const double latest = seconds / double(samples);
   const double before = taken.seconds_per_sample.value_or(latest);
   taken.seconds_per_sample = before + weight_of_latest * (latest - before);
-  taken.pictures_ago = 0;
-  ++other.pictures_ago;
+  taken.images_ago = 0;
+  ++other.images_ago;
   if (!overlapped) composite_share_ = composite_seconds / seconds;
 }
 

@@ -1,6 +1,7 @@
-// Compositing while drawing: a picture is drawn in bands of rows, and each band is composited while the next
+// Compositing while drawing: an image is drawn in bands of rows, and each band is composited while the next
 // one is drawn, so that a slow network costs little more than its last band. Nearer ranks do not tell farther
-// ones of opaque tiles meanwhile: all draw the same band at the same time, and notes would come too late.
+// ones of opaque tiles meanwhile: all draw the same band at the same time, and control messages would come too
+// late.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "compositor/exchange/link.h"
+#include "compositor/exchange/communicator.h"
 #include "compositor/node/compositing.h"
-#include "compositor/node/picture_memory.h"
+#include "compositor/node/image_buffer.h"
 #include "volume/image.h"
 #include "volume/request.h"
 
@@ -20,39 +21,39 @@ namespace understudy::compositor {
 /// from its lowest.
 std::vector<volume::Rect> bands_of(const volume::Rect& rect);
 
-/// Draws and composites a picture band by band; collective. `draw` gives this rank's image of a band, or
+/// Draws and composites an image band by band; collective. `draw` gives this rank's image of a band, or
 /// nothing where it cannot go on: then all ranks give up after the same band. `whole` is the rectangle that the
-/// memory holds afterwards, the same on all ranks; all that is drawn lies in it. Returns whether the picture is
-/// there; adds to `travelled` as Compositing::composite() does. The link is used by other threads than the
-/// caller's meanwhile, one at a time. Throws what an exchange throws: then this rank is out of step with the
-/// others, and must not go on.
-bool draw_and_composite(Link& link, Compositing& compositing, const PictureTask& task,
-                        const PictureMemories::Memory& memory, const volume::Rect& whole,
+/// memory holds afterwards, the same on all ranks; all that is drawn lies in it. Returns whether the image is
+/// there; adds to `travelled` as Compositing::composite() does. The communicator is used by other threads than
+/// the caller's meanwhile, one at a time. Throws what an exchange throws: then this rank is out of step with
+/// the others, and must not go on.
+bool draw_and_composite(Communicator& communicator, Compositing& compositing, const ImageTask& task,
+                        const ImageBuffers::Memory& memory, const volume::Rect& whole,
                         const std::function<std::optional<volume::Image>(const volume::Rect& band)>& draw,
                         volume::FrameCounts& travelled);
 
 /// What a rank does instead that cannot even begin.
-void refuse_to_draw(Link& link);
+void refuse_to_draw(Communicator& communicator);
 
-/// Whether the next picture is drawn in bands: measured, not predicted. What is not done is tried now and then,
+/// Whether the next image is drawn in bands: measured, not predicted. What is not done is tried now and then,
 /// where compositing takes a part of the time that is worth it.
 class OverlapChoice {
  public:
   explicit OverlapChoice(Overlap wish) : wish_(wish) {}
 
   bool next() const;
-  /// `seconds` from the order to the picture, of these `composite_seconds` after the slowest rank had drawn.
+  /// `seconds` from the order to the image, of these `composite_seconds` after the slowest rank had drawn.
   void took(bool overlapped, std::uint64_t samples, double seconds, double composite_seconds);
 
  private:
   struct Way {
     std::optional<double> seconds_per_sample;
-    int pictures_ago = 0;
+    int images_ago = 0;
   };
 
   Overlap wish_;
   Way apart_, overlapped_;
-  double composite_share_ = 0;  ///< of pictures that were drawn first
+  double composite_share_ = 0;  ///< of images that were drawn first
 };
 
 }  // namespace understudy::compositor

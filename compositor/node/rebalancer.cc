@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_cubes = std::size_t(1) << 15;  // 128 KiB of costs travel before a picture
+constexpr std::size_t most_cubes = std::size_t(1) << 15;  // 128 KiB of costs travel before an image
 
 /// The finest costs of which there are not too many.
 int cost_edge(const TexelBox& lattice) {
@@ -71,18 +71,18 @@ double deviation(std::span<const RankWork> work) {
 
 }  // namespace
 
-Rebalancer::Rebalancer(Link& link, RankRenderer& renderer, BalanceSettings settings)
-    : link_(link), renderer_(renderer), settings_(std::move(settings)) {}
+Rebalancer::Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings)
+    : communicator_(communicator), renderer_(renderer), settings_(std::move(settings)) {}
 
 bool Rebalancer::all_agree(bool mine) {
   const auto vote = std::uint8_t(mine);
-  std::vector<std::uint8_t> votes(std::size_t(link_.size()));
-  link_.gather_to_all(std::as_bytes(std::span(&vote, 1)), std::as_writable_bytes(std::span(votes)));
+  std::vector<std::uint8_t> votes(std::size_t(communicator_.size()));
+  communicator_.gather_to_all(std::as_bytes(std::span(&vote, 1)), std::as_writable_bytes(std::span(votes)));
   return std::ranges::count(votes, 0) == 0;
 }
 
-volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
-                                                 const std::function<volume::RenderRequest()>& decode) {
+volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
+                                               const std::function<volume::RenderRequest()>& decode) {
   // Nothing that may fail on one rank alone stands between two calls in which all take part.
   std::optional<volume::RenderRequest> request;
   std::optional<BlockCosts> costs;
@@ -117,7 +117,7 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
     mine.resize(most);
     all.resize(most * boxes.size());
     std::size_t next = 0;
-    for_each_place(cubes_touched(*costs, boxes[std::size_t(link_.rank())]),
+    for_each_place(cubes_touched(*costs, boxes[std::size_t(communicator_.rank())]),
                    [&](const BlockPlace& cube) { mine[next++] = float(costs->values()[costs->index(cube)]); });
   } catch (...) {
     trouble = std::current_exception();
@@ -127,10 +127,10 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
   if (!agreed) return std::move(*request);  // another rank refuses it
 
   if (volume->most_blocks.empty()) {
-    link_.gather_to_all(bytes_of(most_here), std::as_writable_bytes(std::span(most_blocks)));
+    communicator_.gather_to_all(bytes_of(most_here), std::as_writable_bytes(std::span(most_blocks)));
     volume->most_blocks = std::move(most_blocks);
   }
-  link_.gather_to_all(std::as_bytes(std::span(mine)), std::as_writable_bytes(std::span(all)));
+  communicator_.gather_to_all(std::as_bytes(std::span(mine)), std::as_writable_bytes(std::span(all)));
   std::ranges::fill(costs->values(), 0.0);
   for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
     const float* value = all.data() + rank * mine.size();
@@ -143,12 +143,13 @@ volume::RenderRequest Rebalancer::before_picture(std::uint64_t client,
         {now, costs->lattice(), volume->work, *costs, volume->ms_per_block, volume->most_blocks});
     volume->work.clear();  // learned from
     if (next != now) move({client, request->volume}, *volume, *request, next);
-  } catch (const LinkLost&) {
+  } catch (const RankLost&) {
     throw;
   } catch (const std::bad_alloc&) {
-    link_.abandon("no memory is left to take over blocks of another rank: use more nodes, or --balance off");
+    communicator_.abandon(
+        "no memory is left to take over blocks of another rank: use more nodes, or --balance off");
   } catch (const std::exception& error) {
-    link_.abandon(error.what());
+    communicator_.abandon(error.what());
   }
   return std::move(*request);
 }
@@ -162,7 +163,7 @@ std::size_t Rebalancer::most_blocks_here(const BrickStore& bricks) const {
   return bricks.blocks() + settings_.memory_left() / (copies * block_bytes);
 }
 
-void Rebalancer::after_picture(VolumeKey key, std::span<const RankWork> work) {
+void Rebalancer::after_image(VolumeKey key, std::span<const RankWork> work) {
   if (const auto volume = volumes_.find(key); volume != volumes_.end())
     volume->second.work.assign(work.begin(), work.end());
 }
@@ -181,7 +182,7 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
   const std::size_t most_moved = most_blocks_moved(bricks.lattice().box(), before, after);
   std::map<BlockPlace, std::vector<std::byte>> received;
   send_blocks(volume, bricks, before, after, received, figures);
-  const auto me = std::size_t(link_.rank());
+  const auto me = std::size_t(communicator_.rank());
   for (const TexelBox& given :
        difference(blocks_kept(description, before[me]), blocks_kept(description, after[me])))
     for_each_place(given, [&](const BlockPlace& place) { volume.given_away.put(place, bricks.packed(place)); });
@@ -189,8 +190,9 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
   volume.most_blocks.clear();  // asked for anew
   figures.ms = ms_since(start);
   // The slowest rank's, so that all reckon with the same.
-  std::vector<double> times(std::size_t(link_.size()));
-  link_.gather_to_all(std::as_bytes(std::span(&figures.ms, 1)), std::as_writable_bytes(std::span(times)));
+  std::vector<double> times(std::size_t(communicator_.size()));
+  communicator_.gather_to_all(std::as_bytes(std::span(&figures.ms, 1)),
+                              std::as_writable_bytes(std::span(times)));
   const double ms = *std::ranges::max_element(times);
   if (most_moved > 0) {
     const double now = ms / double(most_moved);
@@ -204,8 +206,8 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
 void Rebalancer::send_blocks(Volume& volume, const BrickStore& bricks, std::span<const TexelBox> before,
                              std::span<const TexelBox> after,
                              std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures) {
-  const auto ranks = std::size_t(link_.size());
-  const int me = link_.rank();
+  const auto ranks = std::size_t(communicator_.size());
+  const int me = communicator_.rank();
   std::vector<std::vector<BlockPlace>> to(ranks), from(ranks);
   for (const BlockMove& move : moves(bricks.description(), before, after)) {
     if (move.to == me)
@@ -219,7 +221,7 @@ void Rebalancer::send_blocks(Volume& volume, const BrickStore& bricks, std::span
   std::vector<Outgoing> outgoing;
   std::vector<Incoming> incoming;
   const auto transfer = [&] {
-    link_.transfer(outgoing, incoming);
+    communicator_.transfer(outgoing, incoming);
     outgoing.clear();
     incoming.clear();
   };

@@ -1,4 +1,4 @@
-// Keeps the ranks of a node group equally busy: before a picture all ranks decide, each for itself and all
+// Keeps the ranks of a node group equally busy: before an image all ranks decide, each for itself and all
 // alike, where the planes of its volume go, and send each other the blocks that change hands.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 #include "compositor/balance/balancer.h"
 #include "compositor/balance/block_cache.h"
-#include "compositor/exchange/link.h"
+#include "compositor/exchange/communicator.h"
 #include "compositor/service/rank_renderer.h"
 #include "volume/request.h"
 
@@ -26,7 +26,7 @@ struct MoveFigures {
   std::size_t blocks_from_cache = 0;  ///< that had been given away and came back
   std::size_t bytes_received = 0;
   double ms = 0;
-  double deviation = 0;  ///< (max - min) / mean of the ranks' times, in the picture before
+  double deviation = 0;  ///< (max - min) / mean of the ranks' times, in the image before
 };
 
 struct BalanceSettings {
@@ -35,21 +35,21 @@ struct BalanceSettings {
   std::function<void(const MoveFigures&)> moved = [](const MoveFigures&) {};
   /// Of blocks that were given away, kept by each rank for each volume.
   std::size_t cache_bytes = std::size_t(64) << 20;
-  /// Bytes that this rank may still fill, asked before a volume's first picture and after each move.
+  /// Bytes that this rank may still fill, asked before a volume's first image and after each move.
   std::function<std::size_t()> memory_left = [] { return std::numeric_limits<std::size_t>::max(); };
 };
 
 class Rebalancer {
  public:
-  Rebalancer(Link& link, RankRenderer& renderer, BalanceSettings settings);
+  Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings);
 
-  /// Collective, before a picture is rendered. Returns what `decode` does; what it throws, or what is wrong
+  /// Collective, before an image is rendered. Returns what `decode` does; what it throws, or what is wrong
   /// with the request here, is thrown once all ranks have been told, and then nothing has moved anywhere. What
   /// fails later, on a rank that others wait for (memory), ends the group.
-  volume::RenderRequest before_picture(std::uint64_t client,
-                                       const std::function<volume::RenderRequest()>& decode);
+  volume::RenderRequest before_image(std::uint64_t client,
+                                     const std::function<volume::RenderRequest()>& decode);
   /// What all ranks did for it.
-  void after_picture(VolumeKey key, std::span<const RankWork> work);
+  void after_image(VolumeKey key, std::span<const RankWork> work);
 
   /// Other texels have come for these boxes of a volume that is complete.
   void texels_changed(VolumeKey key, const volume::VolumeDescription& description,
@@ -73,7 +73,7 @@ class Rebalancer {
   bool all_agree(bool mine);
   std::size_t most_blocks_here(const volume::BrickStore& bricks) const;
 
-  Link& link_;
+  Communicator& communicator_;
   RankRenderer& renderer_;
   BalanceSettings settings_;
   std::map<VolumeKey, Volume> volumes_;

@@ -91,7 +91,7 @@ void Broker::hear_newcomers() {
   for (Peer& peer : newcomers_) {
     try {
       if (const std::optional<Message> hello = peer.connection.receive_some())
-        welcome(std::move(peer), *hello);
+        accepted(std::move(peer), *hello);
       else if (Clock::now() < peer.hello_until)
         still_new.push_back(std::move(peer));
       else
@@ -107,7 +107,7 @@ void Broker::hear_newcomers() {
   newcomers_ = std::move(still_new);
 }
 
-void Broker::welcome(Peer peer, const Message& hello) {
+void Broker::accepted(Peer peer, const Message& hello) {
   if (hello.type == MessageType::hello_nodes) {
     const int ranks = decode_hello(hello.payload).ranks;
     if (!nodes_.empty()) return say_(fmt::format("sent a second node group of {} ranks away", ranks));
@@ -127,7 +127,7 @@ void Broker::welcome(Peer peer, const Message& hello) {
 }
 
 void Broker::hear_waiting() {
-  // An application waits for its welcome without a word; when it stirs it has gone, or speaks out of turn.
+  // An application waits for its acceptance without a word; when it stirs it has gone, or speaks out of turn.
   std::erase_if(waiting_, [](const Connection& client) { return stirs(client); });
 }
 

@@ -69,7 +69,7 @@ class Broker {
   void hear_newcomers();
   void hear_waiting();
   void hear_nodes();
-  void welcome(Peer peer, const Message& hello);
+  void accepted(Peer peer, const Message& hello);
   void hand_over();
   void lose_nodes(const std::string& why);
 

@@ -15,7 +15,7 @@ constexpr std::uint64_t max_slice_bytes = std::uint64_t(1) << 28;   ///< one z-s
 constexpr std::uint64_t max_volume_bytes = std::uint64_t(1) << 38;  ///< stored texels
 constexpr std::size_t max_volumes_per_client = 256;
 
-// Requests and pictures.
+// Requests and images.
 constexpr int max_viewport_extent = 1 << 16;                         ///< pixels along one side
 constexpr int max_viewport_offset = 1 << 20;                         ///< of a viewport's corner from the origin
 constexpr std::uint64_t max_window_pixels = std::uint64_t(1) << 26;  ///< 8192 x 8192
@@ -24,20 +24,20 @@ constexpr int max_ray_offsets = 1 << 20;
 constexpr std::size_t max_integrals = 4096;  ///< pixels of one question
 constexpr double max_integral_ms = 2000;
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
-constexpr int max_kept_pair_tables = 4;  ///< of one application, on each node: 16 MiB each at most
+constexpr int max_kept_pre_integration_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 
 // Messages.
-constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a stranger
+constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a pending client
 constexpr std::uint64_t max_message_bytes = max_slice_bytes + (std::uint64_t(1) << 20);
 constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
-constexpr std::uint64_t max_stage_message_bytes = std::uint64_t(1)
-                                                  << 32;  ///< one call of an application may bring a volume
-constexpr std::uint64_t max_picture_message_bytes =
+constexpr std::uint64_t max_gl_server_message_bytes = std::uint64_t(1)
+                                                      << 32;  ///< one call of an application may bring a volume
+constexpr std::uint64_t max_image_message_bytes =
     20 * max_window_pixels + (std::uint64_t(1) << 20);  ///< over TCP, with its pixels
 constexpr std::size_t read_ahead = std::size_t(1)
                                    << 20;  ///< memory given to a message before its bytes are here
-constexpr std::uint64_t max_slab_bytes = std::uint64_t(1)
-                                         << 23;  ///< several slices or boxes travel together up to this size
+constexpr std::uint64_t max_slice_range_bytes =
+    std::uint64_t(1) << 23;  ///< several slices or boxes travel together up to this size
 constexpr std::size_t max_boxes_per_message = 4096;  ///< of texels
 constexpr int max_ranks = 4096;
 constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
@@ -45,11 +45,11 @@ constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and serve
 // Links over TCP (compositor/tcp).
 constexpr std::size_t min_secret_bytes = 16;
 constexpr std::size_t max_secret_bytes = 4096;
-constexpr std::size_t max_strangers = 256;  ///< that have not proved themselves; the oldest makes room
-constexpr std::size_t max_link_block_bytes = std::size_t(1) << 18;  ///< of a message, before it is compressed
+constexpr std::size_t max_pending_clients = 256;  ///< that have not proved themselves; the oldest makes room
+constexpr std::size_t max_tcp_block_bytes = std::size_t(1) << 18;  ///< of a message, before it is compressed
 
 // Patience. A peer at a Unix socket that is silent between two messages may be so for ever (a viewer that
-// nobody turns); within a message, or when an answer is due, it may not. An end of a link says that it is
+// nobody turns); within a message, or when an answer is due, it may not. An end of a connection says that it is
 // there.
 constexpr milliseconds hello_patience{5'000};      ///< from accept to a complete hello
 constexpr milliseconds alive_interval{1'000};      ///< between two words of rank 0 that it lives
@@ -57,10 +57,12 @@ constexpr milliseconds silence_patience{10'000};   ///< without such a word: ran
 constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose application has gone: the ranks hang
 constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
 constexpr milliseconds stall_patience{10'000};     ///< between two pieces of one message
-constexpr milliseconds send_patience{30'000};      ///< until some more of a message has left, over a link, too
-constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for a picture
-constexpr milliseconds render_patience{20'000};    ///< a picture
-constexpr milliseconds stage_patience{120'000};    ///< a call that a stage makes, with all that went before it
-constexpr milliseconds link_patience{20'000};      ///< with a link over TCP whose other end is silent
+constexpr milliseconds send_patience{
+    30'000};  ///< until some more of a message has left, over a connection, too
+constexpr milliseconds reply_patience{30'000};   ///< an answer to anything but a request for an image
+constexpr milliseconds render_patience{20'000};  ///< an image
+constexpr milliseconds server_patience{
+    120'000};  ///< a call that a GL server makes, with all that went before it
+constexpr milliseconds connection_patience{20'000};  ///< with a connection over TCP whose other end is silent
 
 }  // namespace understudy::compositor::limits

@@ -68,8 +68,8 @@ std::vector<std::byte> encode(std::span<const RankLoad> ranks) {
     for (const double value : {rank.low, rank.high, rank.largest_error}) out.real(value);
     for (const std::array<int, 3>& corner : {rank.cells.low, rank.cells.high})
       for (const int cell : corner) out.integer(cell);
-    out.real(rank.picture_ms);
-    out.integer(std::int64_t(rank.picture_samples));
+    out.real(rank.image_ms);
+    out.integer(std::int64_t(rank.image_samples));
   }
   return out.bytes();
 }
@@ -86,8 +86,8 @@ std::vector<RankLoad> decode_loads(std::span<const std::byte> payload) {
     for (double* value : {&rank.low, &rank.high, &rank.largest_error}) *value = in.real("values of a rank");
     for (std::array<int, 3>* corner : {&rank.cells.low, &rank.cells.high})
       for (int& cell : *corner) cell = in.small("cells of a rank", -1, volume::max_axis_texels + 1);
-    rank.picture_ms = in.real("picture_ms of a rank");
-    rank.picture_samples = in.word("picture_samples of a rank");
+    rank.image_ms = in.real("image_ms of a rank");
+    rank.image_samples = in.word("image_samples of a rank");
   }
   in.end();
   return ranks;

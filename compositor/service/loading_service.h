@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compositor/service.h"
-#include "compositor/service/linked.h"
+#include "compositor/service/remote_service.h"
 #include "volume/brick/histogram.h"
 #include "volume/file/texel_stream.h"
 
@@ -34,9 +34,9 @@ struct RankLoad {
   double largest_error = 0;  ///< between a value and that of its texel
   std::uint64_t not_numbers = 0;
   volume::TexelBox cells;  ///< its own, as the volume is divided now
-  // Of the last picture, where there was one.
-  double picture_ms = 0;
-  std::uint64_t picture_samples = 0;  ///< taken
+  // Of the last image, where there was one.
+  double image_ms = 0;
+  std::uint64_t image_samples = 0;  ///< taken
 
   bool done() const { return texels_done == texels_in_all; }
 };
@@ -59,6 +59,6 @@ class LoadingService : public RenderService {
 std::unique_ptr<LoadingService> embedded_loading_service();
 
 /// The node group behind a launcher's socket. Throws ServiceLost.
-std::unique_ptr<LoadingService> linked_loading_service(const std::string& address, const Patience& patience);
+std::unique_ptr<LoadingService> remote_loading_service(const std::string& address, const Patience& patience);
 
 }  // namespace understudy::compositor

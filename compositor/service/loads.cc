@@ -44,8 +44,8 @@ void Loads::read_on(VolumeKey key) {
     throw RequestRefused(fmt::format("volume {} is not being loaded here", key.volume));
   Load& load = found->second;
   if (!load.stream || load.stream->done()) return;
-  const volume::TexelStream::Slab slab = load.stream->next(part_bytes);
-  renderer_.add_texels(key, {&slab.box, 1}, slab.texels);
+  const volume::TexelStream::SliceSegment slice_range = load.stream->next(part_bytes);
+  renderer_.add_texels(key, {&slice_range.box, 1}, slice_range.texels);
   const volume::TexelFigures& figures = load.stream->figures();
   load.figures.texels_done = load.stream->texels_done();
   load.figures.bytes_read = load.stream->bytes_read();
@@ -68,8 +68,8 @@ RankLoad Loads::figures(VolumeKey key) const {
 void Loads::drew(VolumeKey key, const volume::FrameCounts& counts) {
   const auto found = loads_.find(key);
   if (found == loads_.end()) return;
-  found->second.figures.picture_ms = counts.render_ms;
-  found->second.figures.picture_samples = counts.samples_taken;
+  found->second.figures.image_ms = counts.render_ms;
+  found->second.figures.image_samples = counts.samples_taken;
 }
 
 void Loads::complete(VolumeKey key) {

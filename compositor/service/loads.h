@@ -27,7 +27,7 @@ class Loads {
   /// Throws the same; what had been read is then of no use.
   void read_on(VolumeKey key);
   RankLoad figures(VolumeKey key) const;
-  /// A picture took this rank so much.
+  /// An image took this rank so much.
   void drew(VolumeKey key, const volume::FrameCounts& counts);
   /// Once all ranks are done.
   void complete(VolumeKey key);

@@ -7,7 +7,7 @@
 
 #include "compositor/service/limits.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/raycast/pair_lookup.h"
+#include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -52,10 +52,10 @@ void write_run(Writer& out, const std::vector<T>& values) {
   out.run(std::as_bytes(std::span(values)));
 }
 
-/// In place of a classification's index: a table of pairs that was sent before.
-constexpr int kept_pairs = int(std::variant_size_v<Classification>);
+/// In place of a classification's index: a pre-integration table that was sent before.
+constexpr int kept_tables = int(std::variant_size_v<Classification>);
 
-void write(Writer& out, const PairTable& pairs) {
+void write(Writer& out, const PreIntegrationTable& pairs) {
   out.real(pairs.low);
   out.real(pairs.high);
   out.integer(pairs.edge);
@@ -63,10 +63,10 @@ void write(Writer& out, const PairTable& pairs) {
   out.integer(pairs.multiply_by_alpha);
 }
 
-void write(Writer& out, const Classification& classification, std::optional<int> pairs_at) {
-  if (pairs_at && std::holds_alternative<PairTable>(classification)) {
-    out.integer(kept_pairs);
-    out.integer(*pairs_at);
+void write(Writer& out, const Classification& classification, std::optional<int> table_at) {
+  if (table_at && std::holds_alternative<PreIntegrationTable>(classification)) {
+    out.integer(kept_tables);
+    out.integer(*table_at);
     return;
   }
   out.integer(std::int64_t(classification.index()));
@@ -74,7 +74,7 @@ void write(Writer& out, const Classification& classification, std::optional<int>
     out.real(table->low);
     out.real(table->high);
     write_run(out, table->entries);
-  } else if (const auto* pairs = std::get_if<PairTable>(&classification)) {
+  } else if (const auto* pairs = std::get_if<PreIntegrationTable>(&classification)) {
     write(out, *pairs);
   } else {
     const auto& map = std::get<LinearMap>(classification);
@@ -84,11 +84,11 @@ void write(Writer& out, const Classification& classification, std::optional<int>
   }
 }
 
-PairTable read_pairs(Reader& in) {
-  PairTable pairs;
+PreIntegrationTable read_pairs(Reader& in) {
+  PreIntegrationTable pairs;
   pairs.low = in.real32("classification.low");
   pairs.high = in.real32("classification.high");
-  pairs.edge = in.small("classification.edge", 2, max_pair_edge);
+  pairs.edge = in.small("classification.edge", 2, max_pre_integration_edge);
   const auto entries = std::size_t(pairs.edge) * std::size_t(pairs.edge);
   pairs.entries = in.values<Rgba>("classification.entries", entries);
   if (pairs.entries.size() != entries) in.fail("classification.entries", "do not fill the square of pairs");
@@ -96,12 +96,13 @@ PairTable read_pairs(Reader& in) {
   return pairs;
 }
 
-Classification read_classification(Reader& in, std::span<const PairTable> kept) {
-  const auto kind = in.integer("classification", 0, kept_pairs);
-  if (kind == kept_pairs) {
-    const auto place = std::size_t(in.small("classification.place", 0, limits::max_kept_pair_tables - 1));
+Classification read_classification(Reader& in, std::span<const PreIntegrationTable> kept) {
+  const auto kind = in.integer("classification", 0, kept_tables);
+  if (kind == kept_tables) {
+    const auto place =
+        std::size_t(in.small("classification.place", 0, limits::max_kept_pre_integration_tables - 1));
     if (place >= kept.size() || kept[place].edge == 0)
-      in.fail("classification.place", "holds no table of pairs: send it first");
+      in.fail("classification.place", "holds no pre-integration table: send it first");
     return kept[place];
   }
   if (kind == 2) return read_pairs(in);
@@ -154,21 +155,21 @@ std::optional<RaySteps> read_steps(Reader& in) {
   return steps;
 }
 
-void write(Writer& out, const std::optional<Slab>& slab) {
-  out.integer(slab.has_value());
-  if (!slab) return;
-  out.real(slab->planes);
-  write(out, slab->offset);
-  write(out, slab->reach);
+void write(Writer& out, const std::optional<SliceSegment>& slice_segment) {
+  out.integer(slice_segment.has_value());
+  if (!slice_segment) return;
+  out.real(slice_segment->planes);
+  write(out, slice_segment->offset);
+  write(out, slice_segment->reach);
 }
 
-std::optional<Slab> read_slab(Reader& in) {
+std::optional<SliceSegment> read_slab(Reader& in) {
   if (!in.flag("slab")) return std::nullopt;
-  Slab slab;
-  slab.planes = in.real("slab.planes");
-  read(in, "slab.offset", slab.offset);
-  read(in, "slab.reach", slab.reach);
-  return slab;
+  SliceSegment slice_segment;
+  slice_segment.planes = in.real("slab.planes");
+  read(in, "slab.offset", slice_segment.offset);
+  read(in, "slab.reach", slice_segment.reach);
+  return slice_segment;
 }
 
 void write(Writer& out, const std::optional<Fog>& fog) {
@@ -309,7 +310,7 @@ std::vector<std::byte> encode(const VolumeDescription& volume) {
   for (const float value : volume.border) out.real(value);
   for (const int value : volume.stored.low) out.integer(value);
   for (const int value : volume.stored.high) out.integer(value);
-  out.integer(volume.margin);
+  out.integer(volume.ghost_layer);
   return out.bytes();
 }
 
@@ -328,7 +329,7 @@ VolumeDescription decode_volume(std::span<const std::byte> payload) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume.stored.high[axis] =
         in.small(std::string("stored.high.") + x_y_z[axis], volume.stored.low[axis] + 1, volume.size[axis]);
-  volume.margin = in.small("margin", 0, max_axis_texels);
+  volume.ghost_layer = in.small("margin", 0, max_axis_texels);
   in.end();
   return volume;
 }
@@ -376,23 +377,23 @@ Texels decode_texels(std::span<const std::byte> payload) {
   return texels;
 }
 
-std::vector<std::byte> encode(const KeptPairTable& kept) {
+std::vector<std::byte> encode(const KeptPreIntegrationTable& kept) {
   Writer out;
   out.integer(kept.place);
   write(out, kept.table);
   return out.bytes();
 }
 
-KeptPairTable decode_pair_table(std::span<const std::byte> payload) {
-  Reader in("table of pairs", payload);
-  KeptPairTable kept;
-  kept.place = in.small("place", 0, limits::max_kept_pair_tables - 1);
+KeptPreIntegrationTable decode_pre_integration_table(std::span<const std::byte> payload) {
+  Reader in("pre-integration table", payload);
+  KeptPreIntegrationTable kept;
+  kept.place = in.small("place", 0, limits::max_kept_pre_integration_tables - 1);
   kept.table = read_pairs(in);
   in.end();
   return kept;
 }
 
-std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> pairs_at) {
+std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> table_at) {
   Writer out;
   out.integer(std::int64_t(request.volume));
   out.integer(std::int64_t(request.version));
@@ -414,8 +415,8 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
     write(out, plane.normal);
     out.real(plane.offset);
   }
-  write(out, request.classification, pairs_at);
-  write(out, request.slab);
+  write(out, request.classification, table_at);
+  write(out, request.slice_segment);
   write(out, request.fog);
   out.integer(std::int64_t(request.method));
   out.integer(request.cut_at_bricks);
@@ -425,13 +426,13 @@ std::vector<std::byte> encode(const RenderRequest& request, std::optional<int> p
   out.real(request.termination);
   write(out, request.depth);
   out.integer(request.may_travel_as_halves);
-  for (const bool left_out :
-       {request.leave_out.empty_blocks, request.leave_out.lesser_samples, request.leave_out.footprints})
+  for (const bool left_out : {request.optimizations.empty_bricks, request.optimizations.dominated_samples,
+                              request.optimizations.footprints})
     out.integer(left_out);
   return out.bytes();
 }
 
-RenderRequest decode_request(std::span<const std::byte> payload, std::span<const PairTable> kept) {
+RenderRequest decode_request(std::span<const std::byte> payload, std::span<const PreIntegrationTable> kept) {
   Reader in("render request", payload);
   RenderRequest request;
   request.volume = in.word("volume");
@@ -455,7 +456,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
     plane.offset = in.real("clip_planes.offset");
   }
   request.classification = read_classification(in, kept);
-  request.slab = read_slab(in);
+  request.slice_segment = read_slab(in);
   request.fog = read_fog(in);
   request.method = in.enumerator("method", Method::adaptive);
   request.cut_at_bricks = std::uint8_t(in.integer("cut_at_bricks", 0, 255));
@@ -465,9 +466,9 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.termination = in.real32("termination");
   request.depth = read_depth(in);
   request.may_travel_as_halves = in.flag("may_travel_as_halves");
-  for (bool* left_out :
-       {&request.leave_out.empty_blocks, &request.leave_out.lesser_samples, &request.leave_out.footprints})
-    *left_out = in.flag("leave_out");
+  for (bool* left_out : {&request.optimizations.empty_bricks, &request.optimizations.dominated_samples,
+                         &request.optimizations.footprints})
+    *left_out = in.flag("optimizations");
   in.end();
   return request;
 }
@@ -478,7 +479,7 @@ std::vector<std::byte> encode(const RenderedReply& reply) {
   const FrameCounts& counts = reply.counts;
   for (const std::uint64_t value :
        {counts.rays, counts.rays_terminated, counts.samples, counts.samples_taken, counts.samples_hidden,
-        counts.samples_lesser, counts.blocks, counts.blocks_empty, counts.nodes_idle, counts.bytes_exchanged,
+        counts.dominated_samples, counts.blocks, counts.blocks_empty, counts.nodes_idle, counts.bytes_exchanged,
         counts.bytes_of_whole_windows, counts.messages, counts.messages_of_whole_windows})
     out.integer(std::int64_t(value));
   out.real(counts.render_ms);
@@ -493,7 +494,7 @@ RenderedReply decode_rendered(std::span<const std::byte> payload) {
   FrameCounts& counts = reply.counts;
   for (std::uint64_t* value :
        {&counts.rays, &counts.rays_terminated, &counts.samples, &counts.samples_taken, &counts.samples_hidden,
-        &counts.samples_lesser, &counts.blocks, &counts.blocks_empty, &counts.nodes_idle,
+        &counts.dominated_samples, &counts.blocks, &counts.blocks_empty, &counts.nodes_idle,
         &counts.bytes_exchanged, &counts.bytes_of_whole_windows, &counts.messages,
         &counts.messages_of_whole_windows})
     *value = in.word("counts");

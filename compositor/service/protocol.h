@@ -1,8 +1,8 @@
 // The messages between an application, the launcher and a node group.
 //
 // One message: a header, then `payload_bytes` of fields as in wire.h. An application sends a request and waits
-// for its one reply before the next request. Pictures do not travel in messages: they lie in memory that the
-// application made and whose descriptor it passed along (image_memory).
+// for its one reply before the next request. Images do not travel in messages: they lie in memory that the
+// application made and whose descriptor it passed along (image_buffer).
 #pragma once
 
 #include <cstdint>
@@ -25,16 +25,16 @@ enum class MessageType : std::uint16_t {
   hello_nodes,  ///< payload: Hello
   client,       ///< attached: the connection of an application
   // from an application to rank 0
-  image_memory,  ///< attached: sealed memory for the pictures that follow; payload: its size
+  image_buffer,  ///< attached: sealed memory for the images that follow; payload: its size
   begin_volume,
   begin_change,
   add_texels,
   end_volume,
   forget_volume,
-  pair_table,
+  pre_integration_table,
   render,
   // replies
-  welcome,  ///< payload: Hello
+  accepted,  ///< payload: Hello
   done,
   rendered,
   refused,  ///< payload: the reason
@@ -50,12 +50,12 @@ enum class MessageType : std::uint16_t {
   integrated,  ///< the reply
   // from rank 0 to the launcher, once a second
   alive,  ///< payload: Alive
-  // between an application and a stage, which makes its OpenGL calls (spu/link/stage_protocol.h)
+  // between an application and a GL server, which makes its OpenGL calls (spu/remote/gl_server_protocol.h)
   calls,     ///< from the application
   answered,  ///< a reply
-  picture,   ///< the other
-  refined,   ///< pixels of a picture that came before, as they are: the view rests
-  // between the two ends of a link over TCP
+  image,     ///< the other
+  refined,   ///< pixels of an image that came before, as they are: the view rests
+  // between the two ends of a connection over TCP
   line_alive,  ///< said by who has nothing else to say
   last = line_alive
 };
@@ -94,12 +94,12 @@ struct Texels {
 };
 
 /// A table that the requests that follow may name by its place.
-struct KeptPairTable {
-  int place = 0;  ///< below limits::max_kept_pair_tables
-  volume::PairTable table;
+struct KeptPreIntegrationTable {
+  int place = 0;  ///< below limits::max_kept_pre_integration_tables
+  volume::PreIntegrationTable table;
 };
 
-/// A picture that lies at the beginning of the image memory.
+/// An image that lies at the beginning of the image memory.
 struct RenderedReply {
   volume::Rect rect;
   volume::FrameCounts counts;
@@ -111,9 +111,9 @@ std::vector<std::byte> encode(const volume::VolumeDescription& volume);
 /// Everything but the texels, which follow (and, after them, zeros up to a multiple of eight bytes).
 std::vector<std::byte> encode_texels_head(const Texels& texels);
 std::vector<std::byte> encode(const Change& change);
-std::vector<std::byte> encode(const KeptPairTable& kept);
-/// With `pairs_at`, a table of pairs is not written but named by the place that it was sent to.
-std::vector<std::byte> encode(const volume::RenderRequest& request, std::optional<int> pairs_at = {});
+std::vector<std::byte> encode(const KeptPreIntegrationTable& kept);
+/// With `table_at`, a pre-integration table is not written but named by the place that it was sent to.
+std::vector<std::byte> encode(const volume::RenderRequest& request, std::optional<int> table_at = {});
 std::vector<std::byte> encode(const RenderedReply& reply);
 std::vector<std::byte> encode_id(volume::VolumeId id);
 std::vector<std::byte> encode_size(std::uint64_t bytes);
@@ -125,10 +125,10 @@ Alive decode_alive(std::span<const std::byte> payload);
 volume::VolumeDescription decode_volume(std::span<const std::byte> payload);
 Change decode_change(std::span<const std::byte> payload);
 Texels decode_texels(std::span<const std::byte> payload);
-KeptPairTable decode_pair_table(std::span<const std::byte> payload);
+KeptPreIntegrationTable decode_pre_integration_table(std::span<const std::byte> payload);
 /// `kept` by their places; where there is none its edge is 0.
 volume::RenderRequest decode_request(std::span<const std::byte> payload,
-                                     std::span<const volume::PairTable> kept = {});
+                                     std::span<const volume::PreIntegrationTable> kept = {});
 RenderedReply decode_rendered(std::span<const std::byte> payload);
 volume::VolumeId decode_id(std::span<const std::byte> payload);
 std::uint64_t decode_size(std::span<const std::byte> payload);

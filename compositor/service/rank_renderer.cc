@@ -144,12 +144,12 @@ void RankRenderer::check_texels(VolumeKey key, std::span<const TexelBox> boxes, 
   const TexelBox& stored = volume.bricks.description().stored;
   std::size_t texels = 0;
   for (const TexelBox& box : boxes) {
-    const bool slab = box.low[0] == stored.low[0] && box.low[1] == stored.low[1] &&
-                      box.high[0] == stored.high[0] && box.high[1] == stored.high[1];
-    if (is_empty(box) || !contains(stored, box) || (volume.state == Volume::State::filling && !slab))
+    const bool slice_range = box.low[0] == stored.low[0] && box.low[1] == stored.low[1] &&
+                             box.high[0] == stored.high[0] && box.high[1] == stored.high[1];
+    if (is_empty(box) || !contains(stored, box) || (volume.state == Volume::State::filling && !slice_range))
       throw RequestRefused(fmt::format("texels ({}, {}, {}) to ({}, {}, {}) are no {} of volume {}", box.low[0],
                                        box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
-                                       slab || !contains(stored, box) ? "part" : "slab", key.volume));
+                                       slice_range || !contains(stored, box) ? "part" : "slab", key.volume));
     texels += texels_in(box);
   }
   if (const std::size_t expected = texels * bytes_per_texel(key); bytes != expected)
@@ -228,16 +228,16 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     const VolumeDescription& description = volume.bricks.description();
     validate(description, request);
     if (request.window.pixels() > limits::max_window_pixels)
-      throw RequestRefused(fmt::format("a picture of {} pixels is over the limit of {}",
-                                       request.window.pixels(), limits::max_window_pixels));
-    const Rect everything = request.leave_out.footprints
+      throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", request.window.pixels(),
+                                       limits::max_window_pixels));
+    const Rect everything = request.optimizations.footprints
                                 ? footprint(request, description, volume.tree.box(rank_))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
     volume.renderer->render(request, result, counts, occlusion);
     return result;
   });
-  if (request.leave_out.footprints) crop_to_content(image, request.op);
+  if (request.optimizations.footprints) crop_to_content(image, request.op);
   counts.render_ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return image;

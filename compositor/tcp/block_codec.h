@@ -21,7 +21,7 @@ class BlockCompressor {
   BlockCompressor(const BlockCompressor&) = delete;
   BlockCompressor& operator=(const BlockCompressor&) = delete;
 
-  /// Compresses `from`, which is no longer than limits::max_link_block_bytes, into `to`. False, with `to` in
+  /// Compresses `from`, which is no longer than limits::max_tcp_block_bytes, into `to`. False, with `to` in
   /// any state, where it does not get shorter.
   bool compress(Codec codec, std::span<const std::byte> from, std::vector<std::byte>& to);
 

@@ -13,35 +13,35 @@ namespace {
 using Buffer = std::vector<std::byte>;
 using Nonce = std::array<std::uint8_t, 32>;
 using Mac = std::array<unsigned char, crypto_auth_BYTES>;
-static_assert(sizeof(Mac) == link_proof_bytes);
+static_assert(sizeof(Mac) == proof_bytes);
 
 constexpr std::array<char, 8> magic = {'U', 'N', 'D', 'E', 'R', 'L', 'N', 'K'};
 
 struct Hello {
   std::array<char, 8> magic_number = magic;
-  std::uint32_t version = link_version;
+  std::uint32_t version = tcp_protocol_version;
   std::uint8_t to = 0;
   std::uint8_t pixels = 0;
   std::uint8_t jpeg_quality = 0;
   std::uint8_t only_asks = 0;
   Nonce nonce{};
 };
-static_assert(sizeof(Hello) == link_hello_bytes);
+static_assert(sizeof(Hello) == hello_bytes);
 
 struct Challenge {
   std::array<char, 8> magic_number = magic;
-  std::uint32_t version = link_version;
+  std::uint32_t version = tcp_protocol_version;
   std::uint32_t unused = 0;
   Nonce nonce{};
 };
-static_assert(sizeof(Challenge) == link_challenge_bytes);
+static_assert(sizeof(Challenge) == challenge_bytes);
 
 struct VerdictWords {
   std::uint32_t verdict = 0;
   std::uint32_t unused = 0;
   Mac proof{};
 };
-static_assert(sizeof(VerdictWords) == link_verdict_bytes);
+static_assert(sizeof(VerdictWords) == verdict_bytes);
 
 template <class Words>
 Buffer buffer_of(const Words& words) {
@@ -80,15 +80,15 @@ bool same(const Mac& a, const Mac& b) {
   return ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-constexpr std::string_view from_client = "understudy link: client";
-constexpr std::string_view from_server = "understudy link: server";
+constexpr std::string_view from_client = "understudy connection: client";
+constexpr std::string_view from_server = "understudy connection: server";
 
 }  // namespace
 
 ServerHandshake::ServerHandshake(const Secret& secret) : secret_(&secret) {}
 
 std::size_t ServerHandshake::wants() const {
-  return step_ == Step::hello ? link_hello_bytes : step_ == Step::proof ? link_proof_bytes : 0;
+  return step_ == Step::hello ? hello_bytes : step_ == Step::proof ? proof_bytes : 0;
 }
 
 std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> message) {
@@ -97,17 +97,18 @@ std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> messag
     if (hello.magic_number != magic) throw HandshakeFailed("it is no program of Understudy");
     Challenge challenge;
     challenge.nonce = fresh_nonce();
-    if (hello.version != link_version) {
+    if (hello.version != tcp_protocol_version) {
       last_words_ = buffer_of(challenge);
       throw HandshakeFailed(
-          fmt::format("it speaks version {} of the link, this is version {}: use one version of "
+          fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
                       "Understudy on both machines",
-                      hello.version, link_version));
+                      hello.version, tcp_protocol_version));
     }
-    if (hello.to > std::uint8_t(LinkedTo::last) || hello.pixels > std::uint8_t(Layout::rgba8) ||
+    if (hello.to > std::uint8_t(Destination::last) || hello.pixels > std::uint8_t(Layout::rgba8) ||
         hello.jpeg_quality > 100)
       throw HandshakeFailed("it wants what there is not");
-    wishes_ = {LinkedTo(hello.to), Layout(hello.pixels), hello.jpeg_quality, hello.only_asks != 0};
+    connection_request_ = {Destination(hello.to), Layout(hello.pixels), hello.jpeg_quality,
+                           hello.only_asks != 0};
     said_.assign(message.begin(), message.end());
     Buffer words = buffer_of(challenge);
     said_.insert(said_.end(), words.begin(), words.end());
@@ -119,27 +120,28 @@ std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> messag
   std::memcpy(theirs.data(), message.data(), sizeof theirs);
   if (!same(theirs, proof(*secret_, from_client, said_))) {
     // Without a proof: it shows nothing of the secret to whoever has not got it.
-    last_words_ = buffer_of(VerdictWords{std::uint32_t(LinkVerdict::wrong_secret)});
+    last_words_ = buffer_of(VerdictWords{std::uint32_t(AdmissionVerdict::wrong_secret)});
     throw HandshakeFailed("its secret is not the one of --secret-file here: give both machines the same file");
   }
   step_ = Step::proved;
   return {};
 }
 
-std::vector<std::byte> ServerHandshake::verdict(LinkVerdict verdict) const {
+std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const {
   VerdictWords words{std::uint32_t(verdict)};
   words.proof = proof(*secret_, from_server, said_, words.verdict);
   return buffer_of(words);
 }
 
-ClientHandshake::ClientHandshake(const Secret& secret, const LinkWishes& wishes, std::uint32_t version)
+ClientHandshake::ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
+                                 std::uint32_t version)
     : secret_(&secret), version_(version) {
   Hello hello;
   hello.version = version;
-  hello.to = std::uint8_t(wishes.to);
-  hello.pixels = std::uint8_t(wishes.pixels);
-  hello.jpeg_quality = std::uint8_t(wishes.jpeg_quality);
-  hello.only_asks = std::uint8_t(wishes.only_asks);
+  hello.to = std::uint8_t(connection_request.to);
+  hello.pixels = std::uint8_t(connection_request.pixels);
+  hello.jpeg_quality = std::uint8_t(connection_request.jpeg_quality);
+  hello.only_asks = std::uint8_t(connection_request.only_asks);
   hello.nonce = fresh_nonce();
   hello_ = buffer_of(hello);
 }
@@ -150,7 +152,7 @@ std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challe
     throw HandshakeFailed("it is no understudy serve --listen: look at host and port");
   if (words.version != version_)
     throw HandshakeFailed(
-        fmt::format("it speaks version {} of the link, this is version {}: use one version of "
+        fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
                     "Understudy on both machines",
                     words.version, version_));
   said_ = hello_;
@@ -160,16 +162,16 @@ std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challe
 
 void ClientHandshake::finish(std::span<const std::byte> verdict) const {
   const auto words = words_of<VerdictWords>(verdict);
-  if (words.verdict == std::uint32_t(LinkVerdict::wrong_secret))
+  if (words.verdict == std::uint32_t(AdmissionVerdict::wrong_secret))
     throw HandshakeFailed("its secret is another one: copy its --secret-file to this machine");
-  if (words.verdict > std::uint32_t(LinkVerdict::last) ||
+  if (words.verdict > std::uint32_t(AdmissionVerdict::last) ||
       !same(words.proof, proof(*secret_, from_server, said_, words.verdict)))
     throw HandshakeFailed(
         "it has not the secret of --secret-file itself: do not trust it, look at host and port");
-  if (words.verdict == std::uint32_t(LinkVerdict::too_many))
+  if (words.verdict == std::uint32_t(AdmissionVerdict::too_many))
     throw HandshakeFailed("as many clients as it takes are there already: try again later");
-  if (words.verdict == std::uint32_t(LinkVerdict::not_offered))
-    throw HandshakeFailed("it has no stage: start it with understudy serve --stage --listen …");
+  if (words.verdict == std::uint32_t(AdmissionVerdict::not_offered))
+    throw HandshakeFailed("it has no GL server: start it with understudy serve --gl-server --listen …");
 }
 
 }  // namespace understudy::compositor

@@ -1,11 +1,12 @@
-// How the two ends of a link over TCP find out that they share a secret, before either believes anything else.
+// How the two ends of a connection over TCP find out that they share a secret, before either believes anything
+// else.
 //
 // The client says its version, what it wants and a random number; the server its version and another one; the
 // client proves that it has the secret, then the server does. A proof is HMAC-SHA-512-256 (libsodium's
 // crypto_auth) of a label for the direction and of all that was said before, so that nobody can use one end's
 // proof at another, at another time or for other wishes. (Challenge and response in both directions: ISO/IEC
-// 9798-4.) What comes later is neither signed nor encrypted: on networks that others can write to, links go
-// through ssh.
+// 9798-4.) What comes later is neither signed nor encrypted: on networks that others can write to, connections
+// go through ssh.
 //
 // Nothing here touches a socket; each step takes one message of a fixed size and gives the next.
 #pragma once
@@ -24,28 +25,34 @@
 
 namespace understudy::compositor {
 
-constexpr std::uint32_t link_version = 2;  ///< grows with every change of what travels over TCP
+constexpr std::uint32_t tcp_protocol_version = 2;  ///< grows with every change of what travels over TCP
 
-enum class LinkedTo : std::uint8_t {
-  nodes,  ///< the render service
-  stage,  ///< makes the calls of an application
-  last = stage
+enum class Destination : std::uint8_t {
+  nodes,      ///< the render service
+  gl_server,  ///< makes the calls of an application
+  last = gl_server
 };
 
 /// What a client wants, and how.
-struct LinkWishes {
-  LinkedTo to = LinkedTo::nodes;
-  Layout pixels = Layout::rgba32f;  ///< in which the nodes' pictures come home
-  int jpeg_quality = 0;             ///< of pictures of views that move, 1 to 100; 0: no bit of them is lost
+struct ConnectionRequest {
+  Destination to = Destination::nodes;
+  Layout pixels = Layout::rgba32f;  ///< in which the nodes' images are gathered
+  int jpeg_quality = 0;             ///< of images of views that move, 1 to 100; 0: no bit of them is lost
   bool only_asks = false;           ///< whether it would be let in
 };
 
-enum class LinkVerdict : std::uint32_t { welcome, wrong_secret, too_many, not_offered, last = not_offered };
+enum class AdmissionVerdict : std::uint32_t {
+  accepted,
+  wrong_secret,
+  too_many,
+  not_offered,
+  last = not_offered
+};
 
-constexpr std::size_t link_hello_bytes = 48;
-constexpr std::size_t link_challenge_bytes = 48;
-constexpr std::size_t link_proof_bytes = 32;
-constexpr std::size_t link_verdict_bytes = 40;
+constexpr std::size_t hello_bytes = 48;
+constexpr std::size_t challenge_bytes = 48;
+constexpr std::size_t proof_bytes = 32;
+constexpr std::size_t verdict_bytes = 40;
 
 /// The other end cannot be believed, or does not believe this one. The text says why, and what to do.
 class HandshakeFailed : public std::runtime_error {
@@ -64,23 +71,24 @@ class ServerHandshake {
   /// The client has proved that it has the secret.
   bool proved() const { return step_ == Step::proved; }
   /// What says whether the client is let in, once proved.
-  std::vector<std::byte> verdict(LinkVerdict verdict) const;
+  std::vector<std::byte> verdict(AdmissionVerdict verdict) const;
   std::span<const std::byte> last_words() const { return last_words_; }
-  const LinkWishes& wishes() const { return wishes_; }
+  const ConnectionRequest& connection_request() const { return connection_request_; }
 
  private:
   enum class Step { hello, proof, proved };
 
   const Secret* secret_;
   Step step_ = Step::hello;
-  LinkWishes wishes_;
+  ConnectionRequest connection_request_;
   std::vector<std::byte> said_;  ///< hello and challenge
   std::vector<std::byte> last_words_;
 };
 
 class ClientHandshake {
  public:
-  ClientHandshake(const Secret& secret, const LinkWishes& wishes, std::uint32_t version = link_version);
+  ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
+                  std::uint32_t version = tcp_protocol_version);
 
   const std::vector<std::byte>& hello() const { return hello_; }
   /// The proof. Throws HandshakeFailed.

@@ -54,7 +54,7 @@ void append_jpeg(std::span<const std::byte> pixels, int width, int height, JpegP
   auto* out = reinterpret_cast<unsigned char*>(to.data() + before);
   if (!handle || ::tjCompress2(handle.get(), unsigned_bytes(pixels), width, 0, height, format_of(format), &out,
                                &size, subsampling, quality, TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0)
-    throw std::runtime_error(std::string("no JPEG picture can be made: ") + ::tjGetErrorStr2(handle.get()));
+    throw std::runtime_error(std::string("no JPEG image can be made: ") + ::tjGetErrorStr2(handle.get()));
   to.resize(before + size);
 }
 
@@ -73,7 +73,7 @@ void read_jpeg(std::span<const std::byte> jpeg, int width, int height, JpegPixel
       ::tjDecompress2(handle.get(), unsigned_bytes(jpeg), jpeg.size(),
                       reinterpret_cast<unsigned char*>(to.data()), width, 0, height, format_of(format),
                       TJFLAG_FASTDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) == 0;
-  if (!read) throw MalformedMessage("picture: no JPEG picture of its size");
+  if (!read) throw MalformedMessage("image: no JPEG image of its size");
 }
 
 }  // namespace understudy::compositor

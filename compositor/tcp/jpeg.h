@@ -1,4 +1,4 @@
-// Pictures as JPEG (libjpeg-turbo), for views that move over slow lines.
+// Images as JPEG (libjpeg-turbo), for views that move over slow lines.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ constexpr int max_jpeg_extent = 65500;
 /// 90 colours have half the resolution. Appends to `to`.
 void append_jpeg(std::span<const std::byte> pixels, int width, int height, JpegPixels format, int quality,
                  std::vector<std::byte>& to);
-/// A fourth byte of a pixel is 255. Throws MalformedMessage where `jpeg` is no picture of that size.
+/// A fourth byte of a pixel is 255. Throws MalformedMessage where `jpeg` is no image of that size.
 void read_jpeg(std::span<const std::byte> jpeg, int width, int height, JpegPixels format,
                std::span<std::byte> to);
 

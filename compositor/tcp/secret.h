@@ -1,4 +1,4 @@
-// What both ends of a link over TCP must have: the contents of a file that only its owner may read.
+// What both ends of a connection over TCP must have: the contents of a file that only its owner may read.
 #pragma once
 
 #include <array>

@@ -36,7 +36,7 @@ AddressList resolve(const TcpAddress& address, int flags) {
 }
 
 void set(int socket, int level, int option, int value) {
-  // Where a kernel does not know one of these, links are only slower to notice a cut.
+  // Where a kernel does not know one of these, connections are only slower to notice a cut.
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
@@ -64,13 +64,13 @@ TcpAddress address_of(int socket, decltype(&::getpeername) name) {
 
 }  // namespace
 
-void set_link_options(int socket) {
+void set_connection_options(int socket) {
   set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   // Who sends sees how fast the line takes it, not how fast memory is filled.
-  set(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, int(limits::max_link_block_bytes));
-  // Who is gone is known by his silence (tcp_link.h). The kernel's own time-out also ends connections to who
-  // only takes nothing for a while, and must come later.
-  set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, int(2 * limits::stage_patience.count()));
+  set(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, int(limits::max_tcp_block_bytes));
+  // Who is gone is known by his silence (tcp_connection.h). The kernel's own time-out also ends connections to
+  // who only takes nothing for a while, and must come later.
+  set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, int(2 * limits::server_patience.count()));
 }
 
 FileDescriptor listen_at(const TcpAddress& address) {
@@ -104,7 +104,7 @@ FileDescriptor connect_to(const TcpAddress& address, Deadline deadline) {
     const Deadline now = Clock::now();
     error = try_to_connect(result.get(), *to, now + (deadline - now) / left);
     if (error != 0) continue;
-    set_link_options(result.get());
+    set_connection_options(result.get());
     return result;
   }
   throw std::runtime_error(fmt::format("cannot connect to '{}': {}", address.text(), std::strerror(error)));

@@ -1,4 +1,5 @@
-// TCP sockets for links: they wait for nothing, send at once, and notice in bounded time that the line is cut.
+// TCP sockets for connections: they wait for nothing, send at once, and notice in bounded time that the line is
+// cut.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ TcpAddress peer_address(int socket);
 FileDescriptor connect_to(const TcpAddress& address, Deadline deadline);
 
 /// For a connection that was accepted: what connect_to() has set already.
-void set_link_options(int socket);
+void set_connection_options(int socket);
 
 /// What the kernel has measured on the bytes of this connection.
 struct LineFigures {

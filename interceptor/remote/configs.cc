@@ -23,7 +23,7 @@ struct Screen {
 constinit pthread_mutex_t configs_lock = PTHREAD_MUTEX_INITIALIZER;
 constinit Screen* screens = nullptr;
 
-bool takes_pictures(const XVisualInfo& visual) {
+bool takes_images(const XVisualInfo& visual) {
   return visual.c_class == TrueColor && visual.red_mask == 0xff0000 && visual.green_mask == 0xff00 &&
          visual.blue_mask == 0xff;
 }
@@ -58,7 +58,7 @@ void fill(Screen& screen) {
   for (const int depth : {24, 32}) {
     const XVisualInfo* best = nullptr;
     for (int i = 0; i < count; ++i) {
-      if (visuals[i].depth != depth || !takes_pictures(visuals[i])) continue;
+      if (visuals[i].depth != depth || !takes_images(visuals[i])) continue;
       if (best == nullptr || visuals[i].visualid == usual) best = &visuals[i];
     }
     // Toolkits that do not ask for alpha would take it for a window to look through.

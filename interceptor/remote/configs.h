@@ -1,6 +1,6 @@
 // The framebuffer configurations that remote GLX and EGL offer: for each kind of window that the X server has
-// and that pictures can be put into, with and without alpha, a second buffer, depth and samples. What is drawn
-// lies on the stage, which can have all of these.
+// and that images can be put into, with and without alpha, a second buffer, depth and samples. What is drawn
+// lies on the GL server, which can have all of these.
 #pragma once
 
 #include <X11/Xlib.h>

@@ -7,7 +7,7 @@
 
 #include <atomic>
 
-#include "interceptor/door_thread.h"
+#include "interceptor/entry_thread.h"
 #include "interceptor/remote/remote.h"
 
 namespace understudy::interceptor {

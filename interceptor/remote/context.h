@@ -1,10 +1,10 @@
 // Contexts of remote GLX and EGL: what was asked for, and which thread has which. What they draw with is the
-// stage's.
+// GL server's.
 #pragma once
 
 #include <cstdint>
 
-#include "interceptor/body.h"
+#include "interceptor/core.h"
 #include "interceptor/remote/configs.h"
 
 namespace understudy::interceptor {
@@ -34,7 +34,7 @@ struct RemoteThread {
 
 RemoteThread& remote_thread();
 
-/// Null when the stage cannot make such a context.
+/// Null when the GL server cannot make such a context.
 RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContextWish& wish,
                                   const RemoteContext* share);
 /// Says once what a viewer that asks for OpenGL ES should do.

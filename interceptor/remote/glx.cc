@@ -10,7 +10,7 @@
 
 #include <atomic>
 
-#include "interceptor/door_thread.h"
+#include "interceptor/entry_thread.h"
 #include "interceptor/remote/configs.h"
 #include "interceptor/remote/context.h"
 #include "interceptor/remote/named_function.h"
@@ -292,7 +292,7 @@ GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext shar
   return reinterpret_cast<GLXContext>(new_remote_context(*config_of(config), wish, context_of(share)));
 }
 
-/// Most of a context's state can be asked for only while it is current, and the stage's EGL copies none.
+/// Most of a context's state can be asked for only while it is current, and the GL server's EGL copies none.
 void CopyContext(Display*, GLXContext, GLXContext, unsigned long) {
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
@@ -341,7 +341,7 @@ GLXDrawable GetCurrentReadDrawable() {
   return remote_thread().read;
 }
 
-/// The frame's picture comes afterwards, with the end of the frame; what the application has asked of its
+/// The frame's image comes afterwards, with the end of the frame; what the application has asked of its
 /// windows comes before.
 void SwapBuffers(Display* display, GLXDrawable) {
   if (const Xlib* x = xlib()) x->flush(display);

@@ -5,8 +5,8 @@
 
 #include <atomic>
 
-#include "interceptor/door_thread.h"
-#include "interceptor/open_body.h"
+#include "interceptor/entry_thread.h"
+#include "interceptor/open_core.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/context.h"
 #include "interceptor/remote/x_server.h"
@@ -25,15 +25,15 @@ bool is_remote() {
 }
 
 void* remote_symbol(WindowSystem system, const char* name) {
-  // OpenGL's own functions are our exports; which of them the stage has is seen when they are called.
+  // OpenGL's own functions are our exports; which of them the GL server has is seen when they are called.
   if (strncmp(name, "gl", 2) == 0 && strncmp(name, "glX", 3) != 0) return own_entry(name);
   return system == WindowSystem::egl ? remote_egl_symbol(name) : remote_glx_symbol(name);
 }
 
 RemoteVersions remote_versions() {
-  const BodyServices* services = open_body();
+  const CoreServices* services = open_core();
   if (services == nullptr) return {};
-  const InsideBody inside;
+  const InsideCore inside;
   return services->remote_versions();
 }
 
@@ -57,9 +57,9 @@ void remote_drawable(RemoteDrawable* drawable) {
   ask(thread.display, thread.draw, drawable);
 }
 
-void remote_show(const RemoteDrawable* drawable, const RemotePicture* picture) {
+void remote_show(const RemoteDrawable* drawable, const RemoteImage* image) {
   if (drawable->display == 0) return;
-  put_picture(reinterpret_cast<Display*>(drawable->display), drawable->number, *picture);
+  put_image(reinterpret_cast<Display*>(drawable->display), drawable->number, *image);
 }
 
 }  // namespace understudy::interceptor

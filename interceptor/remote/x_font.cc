@@ -64,7 +64,7 @@ const XCharStruct* metrics_of(const XFontStruct& font, unsigned character) {
   return missing ? nullptr : &glyph;
 }
 
-/// A picture of one bit a pixel, as large as a font's largest glyph, that the server draws into.
+/// An image of one bit a pixel, as large as a font's largest glyph, that the server draws into.
 class GlyphPixmap {
  public:
   GlyphPixmap(Display* display, Font font, int width, int height)

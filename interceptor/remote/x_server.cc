@@ -34,7 +34,7 @@ struct Xcb {
 struct Server {
   Display* display;
   xcb_connection_t* connection;  ///< null: it could not be made
-  XSharedMemory memory;          ///< for pictures
+  XSharedMemory memory;          ///< for images
   Server* next;
 };
 
@@ -130,17 +130,17 @@ void forget_events(xcb_connection_t* connection) {
 }
 
 /// Through the socket, in as many pieces as requests may be long.
-void send_picture(xcb_connection_t* connection, xcb_drawable_t drawable, xcb_gcontext_t gc, std::uint8_t depth,
-                  const RemotePicture& picture) {
-  const int row_bytes = picture.width * 4;
+void send_image(xcb_connection_t* connection, xcb_drawable_t drawable, xcb_gcontext_t gc, std::uint8_t depth,
+                const RemoteImage& image) {
+  const int row_bytes = image.width * 4;
   const auto room = static_cast<long>(xcb_functions.get_maximum_request_length(connection)) * 4 - 64;
   const int rows_at_once = room < row_bytes ? 1 : static_cast<int>(room / row_bytes);
-  for (int y = 0; y < picture.height; y += rows_at_once) {
-    const int rows = picture.height - y < rows_at_once ? picture.height - y : rows_at_once;
+  for (int y = 0; y < image.height; y += rows_at_once) {
+    const int rows = image.height - y < rows_at_once ? image.height - y : rows_at_once;
     xcb_functions.put_image(
-        connection, XCB_IMAGE_FORMAT_Z_PIXMAP, drawable, gc, static_cast<std::uint16_t>(picture.width),
+        connection, XCB_IMAGE_FORMAT_Z_PIXMAP, drawable, gc, static_cast<std::uint16_t>(image.width),
         static_cast<std::uint16_t>(rows), 0, static_cast<std::int16_t>(y), 0, depth,
-        static_cast<std::uint32_t>(rows * row_bytes), picture.pixels + static_cast<long>(y) * row_bytes);
+        static_cast<std::uint32_t>(rows * row_bytes), image.pixels + static_cast<long>(y) * row_bytes);
   }
 }
 
@@ -171,10 +171,10 @@ bool extent_of(Display* display, XID drawable, int* width, int* height) {
   return true;
 }
 
-void put_picture(Display* display, XID drawable, const RemotePicture& picture) {
+void put_image(Display* display, XID drawable, const RemoteImage& image) {
   const Locked locked;
   Server* server = server_of(display);
-  if (server == nullptr || picture.width <= 0 || picture.height <= 0) return;
+  if (server == nullptr || image.width <= 0 || image.height <= 0) return;
   xcb_connection_t* connection = server->connection;
   Geometry geometry{};
   if (!geometry_of(connection, drawable, &geometry)) return;
@@ -182,8 +182,8 @@ void put_picture(Display* display, XID drawable, const RemotePicture& picture) {
   const auto depth = static_cast<std::uint8_t>(geometry.depth);
   const xcb_gcontext_t gc = xcb_functions.generate_id(connection);
   xcb_functions.create_gc(connection, gc, target, 0, nullptr);
-  if (!put_shared_picture(&server->memory, connection, target, gc, depth, picture))
-    send_picture(connection, target, gc, depth, picture);
+  if (!put_shared_image(&server->memory, connection, target, gc, depth, image))
+    send_image(connection, target, gc, depth, image);
   xcb_functions.free_gc(connection, gc);
   free(xcb_functions.get_input_focus_reply(connection, xcb_functions.get_input_focus(connection), nullptr));
   forget_events(connection);

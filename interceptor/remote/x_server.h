@@ -1,12 +1,12 @@
 // The X server, by a connection of our own beside the application's: its errors come back as events that nobody
-// need handle (a window may be gone at any moment), and pictures may be shown whatever the application's
+// need handle (a window may be gone at any moment), and images may be shown whatever the application's
 // threads do with theirs.
 #pragma once
 
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
-#include "interceptor/body.h"
+#include "interceptor/core.h"
 
 namespace understudy::interceptor {
 
@@ -28,7 +28,7 @@ Display* default_display();
 /// The drawable's size; false when there is no such drawable.
 bool extent_of(Display* display, XID drawable, int* width, int* height);
 
-/// Returns when the picture is on the screen.
-void put_picture(Display* display, XID drawable, const RemotePicture& picture);
+/// Returns when the image is on the screen.
+void put_image(Display* display, XID drawable, const RemoteImage& image);
 
 }  // namespace understudy::interceptor

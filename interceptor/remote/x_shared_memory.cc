@@ -30,7 +30,7 @@ struct Functions {
 constinit Functions functions{};
 constinit int state = 0;  ///< 1: there, -1: not
 
-/// Nothing is said where the library is not there: pictures then go through the socket.
+/// Nothing is said where the library is not there: images then go through the socket.
 bool open_functions() {
   void* xcb = real_dlopen("libxcb.so.1", RTLD_NOW | RTLD_LOCAL);
   void* shm = real_dlopen("libxcb-shm.so.0", RTLD_NOW | RTLD_LOCAL);
@@ -76,7 +76,7 @@ void release(XSharedMemory* memory, xcb_connection_t* connection) {
 }
 
 bool attach(XSharedMemory* memory, xcb_connection_t* connection, std::size_t size) {
-  const int descriptor = memfd_create("understudy-picture", MFD_CLOEXEC);
+  const int descriptor = memfd_create("understudy-image", MFD_CLOEXEC);
   if (descriptor < 0) return false;
   void* bytes = MAP_FAILED;
   if (ftruncate(descriptor, static_cast<off_t>(size)) == 0)
@@ -111,14 +111,13 @@ bool make_room(XSharedMemory* memory, xcb_connection_t* connection, std::size_t 
 
 }  // namespace
 
-bool put_shared_picture(XSharedMemory* memory, xcb_connection_t* connection, xcb_drawable_t drawable,
-                        xcb_gcontext_t gc, std::uint8_t depth, const RemotePicture& picture) {
-  const std::size_t size =
-      static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) * 4;
+bool put_shared_image(XSharedMemory* memory, xcb_connection_t* connection, xcb_drawable_t drawable,
+                      xcb_gcontext_t gc, std::uint8_t depth, const RemoteImage& image) {
+  const std::size_t size = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
   if (!make_room(memory, connection, size)) return false;
-  memcpy(memory->bytes, picture.pixels, size);
-  const auto width = static_cast<std::uint16_t>(picture.width);
-  const auto height = static_cast<std::uint16_t>(picture.height);
+  memcpy(memory->bytes, image.pixels, size);
+  const auto width = static_cast<std::uint16_t>(image.width);
+  const auto height = static_cast<std::uint16_t>(image.height);
   functions.put_image(connection, drawable, gc, width, height, 0, 0, width, height, 0, 0, depth,
                       XCB_IMAGE_FORMAT_Z_PIXMAP, 0, memory->segment, 0);
   return true;

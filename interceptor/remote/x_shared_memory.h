@@ -1,5 +1,5 @@
-// Memory that an X server of this machine shares with us (MIT-SHM): pictures are copied there once, where they
-// would otherwise go through a socket in pieces. 1.4 ms of a picture of 512 x 512 become 0.3.
+// Memory that an X server of this machine shares with us (MIT-SHM): images are copied there once, where they
+// would otherwise go through a socket in pieces. 1.4 ms of an image of 512 x 512 become 0.3.
 #pragma once
 
 #include <xcb/xcb.h>
@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "interceptor/body.h"
+#include "interceptor/core.h"
 
 namespace understudy::interceptor {
 
@@ -18,9 +18,9 @@ struct XSharedMemory {
   bool refused = false;  ///< the server is elsewhere, or does not know how
 };
 
-/// Sends what shows the picture; it may be read until the server has answered anything that was sent later.
-/// False where pictures must go another way.
-bool put_shared_picture(XSharedMemory* memory, xcb_connection_t* connection, xcb_drawable_t drawable,
-                        xcb_gcontext_t gc, std::uint8_t depth, const RemotePicture& picture);
+/// Sends what shows the image; it may be read until the server has answered anything that was sent later.
+/// False where images must go another way.
+bool put_shared_image(XSharedMemory* memory, xcb_connection_t* connection, xcb_drawable_t drawable,
+                      xcb_gcontext_t gc, std::uint8_t depth, const RemoteImage& image);
 
 }  // namespace understudy::interceptor

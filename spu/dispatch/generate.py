@@ -10,8 +10,8 @@ Files written (README.md in this folder says who uses which):
     call_shape.h, .cc   CallShape: types, names and extents of a command's arguments; stable ids; names of enumerants
     call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
-    gl_entry_N.cc     the exported gl* functions of the door, in a few files so that they compile in parallel
-    glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the door does not write by hand
+    gl_entry_N.cc     the exported gl* functions of the entry library, in a few files so that they compile in parallel
+    glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the entry library does not write by hand
 
 Python's standard library only. The registry is Debian's package khronos-api, which lacks EGL's: EGL's commands are read
 from its header, which the registry's own generator writes. Nothing generated is ever committed.

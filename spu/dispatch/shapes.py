@@ -8,7 +8,7 @@ EXTENT_RULES = [
     "retained", "address", "unknown",
 ]
 
-# The argument that says how large a picture is, by the name it has in the command.
+# The argument that says how large an image is, by the name it has in the command.
 IMAGE_ARGUMENTS = {"width": ("width", "w", "count"), "height": ("height", "h"), "depth": ("depth",), "format": ("format",), "type": ("type",)}
 
 
@@ -136,7 +136,7 @@ struct ParameterShape {{
   const char* name() const noexcept;
 }};
 
-/// Which arguments describe the picture of a command; no_argument where it has none.
+/// Which arguments describe the image of a command; no_argument where it has none.
 struct ImageArguments {{
   std::uint8_t width = no_argument;
   std::uint8_t height = no_argument;

@@ -3,6 +3,6 @@
 namespace understudy::spu {
 
 constinit const UnitDescription driver_description{
-    .name = "driver", .help = "the real OpenGL; every chain ends in it", .standing = Standing::last};
+    .name = "driver", .help = "the real OpenGL; every chain ends in it", .position = UnitPosition::last};
 
 }  // namespace understudy::spu

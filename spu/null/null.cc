@@ -5,19 +5,19 @@
 namespace understudy::spu {
 namespace {
 
-struct Swallow {
+struct NullCall {
   static std::uint64_t call(CallId, const std::uint64_t*) { return 0; }
 };
 
 }  // namespace
 
 void Null::fill(Phase, DispatchTable& table) {
-  AsWords<Swallow>::fill(table);
+  AsWords<NullCall>::fill(table);
 }
 
 constinit const UnitDescription null_description{
     .name = "null",
-    .help = "swallows every call: results are 0, what OpenGL would write stays untouched",
+    .help = "discards every call: results are 0, what OpenGL would write stays untouched",
     .make = [](const UnitPlace&) -> std::unique_ptr<Unit> { return std::make_unique<Null>(); }};
 
 }  // namespace understudy::spu

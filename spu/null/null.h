@@ -1,4 +1,4 @@
-// The null unit: swallows every call. What the application's own half of the work costs is what is left.
+// The null unit: discards every call. What the application's own half of the work costs is what is left.
 #pragma once
 
 #include "spu/unit_description.h"

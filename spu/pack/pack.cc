@@ -60,7 +60,7 @@ constinit const UnitDescription pack_description{
     .help = "turns calls into records, for unpack or link behind it",
     .options = options,
     .leads_to = "unpack",
-    .or_leads_to = "link",
+    .or_leads_to = "remote",
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Pack>(place.chain, std::size_t(place.options.integer("block")) * 128);
     }};

@@ -31,7 +31,7 @@ struct CallFigures {
   Count calls;
   Count nanoseconds;  ///< in everything below the unit, with the reading of the clock
   Count bytes;        ///< that the call's pointers stand for
-  Count round_trips;  ///< to a stage (run --remote), which the call waited for
+  Count round_trips;  ///< to a GL server (run --remote), which the call waited for
 
   void add(const CallFigures& other);
   void keep_largest(const CallFigures& other);

@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "spu/assemble.h"
-#include "spu/player/shown_picture.h"
+#include "spu/player/shown_image.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
-#include "spu/strips/strip.h"
-#include "spu/strips/strips.h"
+#include "spu/tiles/tile.h"
+#include "spu/tiles/tiles.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/volume_unit.h"
@@ -79,17 +79,17 @@ const CallAnswer& Player::call_answer() const {
   return found == contexts_.end() ? none : found->second->decoder.call_answer();
 }
 
-const Decoder::ReadPicture& Player::read_picture() const {
-  static const Decoder::ReadPicture none;
+const Decoder::ReadImage& Player::read_image() const {
+  static const Decoder::ReadImage none;
   const auto found = contexts_.find(active_);
-  return found == contexts_.end() ? none : found->second->decoder.read_picture();
+  return found == contexts_.end() ? none : found->second->decoder.read_image();
 }
 
-std::vector<std::uint8_t> Player::shown_picture() const {
+std::vector<std::uint8_t> Player::shown_image() const {
   const auto found = contexts_.find(active_);
   if (found == contexts_.end()) return {};
-  if (Strips* strips = found->second->chain.find<Strips>()) return strips->shown_picture();
-  return spu::shown_picture(driver(), active_extent_);
+  if (Tiles* tiles = found->second->chain.find<Tiles>()) return tiles->shown_image();
+  return spu::shown_image(driver(), active_extent_);
 }
 
 std::vector<Player::PlayedContext> Player::contexts() const {
@@ -158,7 +158,7 @@ std::string Player::introduce(const Record& record) {
   groups_[context.number] = group;
   auto made = std::make_unique<Context>(group, windows_.driver(), context, origin_);
   if (const auto trouble = assemble(made->chain, options_.chain, session_)) throw std::runtime_error(*trouble);
-  if (Strips* strips = made->chain.find<Strips>()) strips->introduce(words.first(event::context_words));
+  if (Tiles* tiles = made->chain.find<Tiles>()) tiles->introduce(words.first(event::context_words));
   if (group->number == 0) group->number = context.number;
   made->played = {context.number, group->number, {}};
   made->counts_frames = made->chain.find<VolumeUnit>() == nullptr;
@@ -208,8 +208,8 @@ Player::Context* Player::activate() {
   if (active_ != thread.context) Chain::release_current();
   windows_.make_current(thread.context, thread.drawable, thread.extent);
   Chain& chain = found->second->chain;
-  if (Strips* strips = chain.find<Strips>()) strips->place(thread.drawable, thread.extent);
-  if (Strip* strip = chain.find<Strip>()) strip->place(thread.extent);
+  if (Tiles* tiles = chain.find<Tiles>()) tiles->place(thread.drawable, thread.extent);
+  if (Tile* tile = chain.find<Tile>()) tile->place(thread.extent);
   if (active_ != thread.context) chain.make_current();
   active_ = thread.context;
   active_drawable_ = thread.drawable;
@@ -270,7 +270,7 @@ std::string Player::call(const Record& record) {
   Context* context = activate();
   if (context == nullptr) return "a call of a thread without a context";
   Decoded decoded = context->decoder.decode(record, *installed);
-  if (on_read && !context->decoder.read_picture().pixels.empty()) on_read(context->decoder.read_picture());
+  if (on_read && !context->decoder.read_image().pixels.empty()) on_read(context->decoder.read_image());
   return std::move(decoded.error);
 }
 

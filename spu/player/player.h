@@ -41,8 +41,8 @@ class Player {
 
   /// Called before the frame counts as ended.
   std::function<void(const ShownFrame&)> on_frame;
-  /// The application read this picture back.
-  std::function<void(const Decoder::ReadPicture&)> on_read;
+  /// The application read this image back.
+  std::function<void(const Decoder::ReadImage&)> on_read;
 
   /// Makes the context of the thread whose records come next the current one, as play() does. False when it has
   /// none.
@@ -57,10 +57,10 @@ class Player {
   const CallAnswer& call_answer() const;
   /// The one that is current; number 0 when none is.
   PlayedContext current() const;
-  /// What its drawable shows (shown_picture.h), whoever has drawn it; for on_frame.
-  std::vector<std::uint8_t> shown_picture() const;
+  /// What its drawable shows (shown_image.h), whoever has drawn it; for on_frame.
+  std::vector<std::uint8_t> shown_image() const;
   /// Pixels that the last call read; empty when it read none.
-  const Decoder::ReadPicture& read_picture() const;
+  const Decoder::ReadImage& read_image() const;
   /// Number of the drawable that is current.
   std::uint64_t drawable() const { return active_drawable_; }
   std::vector<PlayedContext> contexts() const;

@@ -85,7 +85,7 @@ void add(volume::FrameCounts& total, const volume::FrameCounts& frame) {
   add(total.blocks, frame.blocks);
   add(total.blocks_empty, frame.blocks_empty);
   add(total.samples_hidden, frame.samples_hidden);
-  add(total.samples_lesser, frame.samples_lesser);
+  add(total.dominated_samples, frame.dominated_samples);
   add(total.nodes_idle, frame.nodes_idle);
   add(total.bytes_exchanged, frame.bytes_exchanged);
   add(total.bytes_of_whole_windows, frame.bytes_of_whole_windows);
@@ -189,10 +189,10 @@ void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t
   add_reason(volume.left_because, reason, times);
 }
 
-void count_done(Omission omission, std::string_view reason) {
+void count_done(Optimization optimization, std::string_view reason) {
   static constinit std::mutex mutex;  // contexts of several threads count at once
   const std::scoped_lock lock(mutex);
-  add_reason(process_counters().done_because[std::size_t(omission)], reason, 1);
+  add_reason(process_counters().done_because[std::size_t(optimization)], reason, 1);
 }
 
 ProcessCounters& process_counters() {
@@ -208,7 +208,7 @@ void count_frame(const FrameRecord& frame) {
   if (frame.substituted > 0) counters.frames_substituted.fetch_add(1);
   if (frame.left > 0) counters.frames_left.fetch_add(1);
   add(counters.total, frame.counts);
-  for (std::size_t i = 0; i < omission_count; ++i) {
+  for (std::size_t i = 0; i < optimization_count; ++i) {
     add(counters.total_amounts[i].done, frame.amounts[i].done);
     add(counters.total_amounts[i].left_out, frame.amounts[i].left_out);
   }

@@ -12,7 +12,7 @@
 #include <span>
 #include <string_view>
 
-#include "spu/report/omission.h"
+#include "spu/report/optimization.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
@@ -34,12 +34,12 @@ enum class VolumePlace : std::uint32_t { free, held, left_behind, given_up };
 
 /// What became of the error or the time that was asked for.
 struct BudgetCounters {
-  double asked_error;           ///< 0: none
-  double asked_ms;              ///< 0: none
-  double measured;              ///< greatest error of the rays that were integrated, under the setting below
-  double ms;                    ///< that a picture takes
-  std::uint64_t rays;           ///< integrated while running
-  std::uint64_t pictures_over;  ///< in which a ray was wrong by more than was asked; the next was finer
+  double asked_error;         ///< 0: none
+  double asked_ms;            ///< 0: none
+  double measured;            ///< greatest error of the rays that were integrated, under the setting below
+  double ms;                  ///< that an image takes
+  std::uint64_t rays;         ///< integrated while running
+  std::uint64_t images_over;  ///< in which a ray was wrong by more than was asked; the next was finer
   std::uint32_t calibrations;
   char setting[120];
   char note[200];  ///< why the budget is not kept; empty: it is
@@ -71,7 +71,7 @@ struct FrameShares {
   double upload;        ///< texels to the nodes
   double render;        ///< waiting for the render service
   double verification;  ///< the application's own drawing, and the comparison
-  double presentation;  ///< the picture completed, and into the application's framebuffer
+  double presentation;  ///< the image completed, and into the application's framebuffer
   double budget;        ///< choosing samples, and integrating rays to see how wrong they are
 
   FrameShares& operator+=(const FrameShares& other) {
@@ -86,14 +86,14 @@ struct FrameShares {
   }
 };
 
-/// Of what could be left out: what was done, and what was left out. Units are those of the omission.
+/// Of what could be left out: what was done, and what was left out. Units are those of the optimization.
 struct Amount {
   std::uint64_t done = 0;
   std::uint64_t left_out = 0;
 };
 
-/// By Omission. In a process's own figures those stay empty that the nodes count (volume::FrameCounts).
-using Amounts = std::array<Amount, omission_count>;
+/// By Optimization. In a process's own figures those stay empty that the nodes count (volume::FrameCounts).
+using Amounts = std::array<Amount, optimization_count>;
 
 inline Amounts& operator+=(Amounts& sum, const Amounts& more) {
   for (std::size_t i = 0; i < sum.size(); ++i) {
@@ -113,7 +113,7 @@ struct FrameRecord {
   volume::FrameCounts counts;
   Amounts amounts;
 
-  Amount& amount(Omission omission) { return amounts[std::size_t(omission)]; }
+  Amount& amount(Optimization optimization) { return amounts[std::size_t(optimization)]; }
 };
 
 /// Of a process whose OpenGL calls are made elsewhere. Bytes include heads of messages.
@@ -125,10 +125,10 @@ struct RemoteCounters {
   std::atomic<std::uint64_t> bytes_down;
 };
 
-/// Of a stage whose windows are drawn in strips.
-struct StripCounters {
-  std::uint32_t count;                ///< strips of a window; 0: windows are drawn whole
-  std::atomic<std::uint64_t> frames;  ///< put together from strips
+/// Of a GL server whose windows are drawn in tiles.
+struct TileCounters {
+  std::uint32_t count;                ///< tiles of a window; 0: windows are drawn whole
+  std::atomic<std::uint64_t> frames;  ///< put together from tiles
   char given_up[128];                 ///< why windows are drawn whole from some frame on; empty: they are not
 };
 
@@ -138,17 +138,17 @@ struct ProcessCounters {
   char program[256];
   std::atomic<std::uint64_t> frames;
   std::atomic<std::uint64_t> frames_substituted;  ///< with at least one substituted run of slices
-  std::atomic<std::uint64_t> frames_left;         ///< with at least one run of slices left to the application
+  std::atomic<std::uint64_t> frames_left;         ///< with at least one run of slices not substituted
   volume::FrameCounts total;                      ///< over all frames; the ring below forgets
   Amounts total_amounts;                          ///< likewise
-  ReasonCount done_because[omission_count][max_counted_omission_reasons];
-  std::int32_t nodes;                          ///< 0: embedded
-  std::atomic<std::uint64_t> pictures_behind;  ///< shown one frame late, and of these
-  std::atomic<std::uint64_t> windows_asked;    ///< how often the window was asked to draw again
+  ReasonCount done_because[optimization_count][max_counted_omission_reasons];
+  std::int32_t nodes;                        ///< 0: embedded
+  std::atomic<std::uint64_t> images_behind;  ///< shown one frame late, and of these
+  std::atomic<std::uint64_t> windows_asked;  ///< how often the window was asked to draw again
   std::atomic<std::uint32_t> threads;
   std::uint64_t calls[max_counted_threads];  ///< one slot a thread, so that counting needs no atomics
   RemoteCounters remote;
-  StripCounters strips;
+  TileCounters tiles;
   std::atomic<std::uint32_t> volumes;
   std::atomic<std::uint32_t> volumes_merged;   ///< of these, those that are counted in another's place
   VolumeCounters volume[max_counted_volumes];  ///< the last one: see count_volume()
@@ -175,13 +175,13 @@ void leave_behind(VolumeCounters& volume);
 /// A fixed field of the counters: as much of the text as it holds, and zeros.
 void put_text(std::span<char> field, std::string_view text);
 
-/// Counts one more run that was left to the application. A volume knows max_counted_reasons; the last of them
+/// Counts one more run that was not substituted. A volume knows max_counted_reasons; the last of them
 /// is "other reasons" once there are more.
 void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times = 1);
 
-/// Counts once more why something was done that this omission could have spared. An omission knows
+/// Counts once more why something was done that this optimization could have spared. An optimization knows
 /// max_counted_omission_reasons; the last of them is "other reasons" once there are more.
-void count_done(Omission omission, std::string_view reason);
+void count_done(Optimization optimization, std::string_view reason);
 
 /// Counts one finished frame: its ring slot, and the totals.
 void count_frame(const FrameRecord& frame);

@@ -11,7 +11,7 @@ constexpr const char* frames_left = "frames_left";
 constexpr const char* nodes = "nodes";
 constexpr const char* backends = "backends";  ///< of nodes of this run: who cast the rays, and why
 constexpr const char* remote = "remote";      ///< whether the viewer's whole stream was drawn elsewhere
-constexpr const char* pictures_behind = "pictures_behind";  ///< --pipeline: shown one frame late
+constexpr const char* images_behind = "images_behind";  ///< --frame-latency: shown one frame late
 constexpr const char* windows_asked = "windows_asked";  ///< how often a window was asked to draw again for that
 constexpr const char* processes = "processes";
 constexpr const char* time_ms = "time_ms";
@@ -19,22 +19,22 @@ constexpr const char* left_out = "left_out";  ///< {what: amount}
 constexpr const char* frames_detail = "frames_detail";
 constexpr const char* volumes = "volumes";
 
-// remote_link: null unless remote. Of all processes of the run; per_frame are means.
-constexpr const char* remote_link = "remote_link";
+// server_connection: null unless remote. Of all processes of the run; per_frame are means.
+constexpr const char* server_connection = "server_connection";
 constexpr const char* round_trips = "round_trips";
 constexpr const char* bytes_up = "bytes_up";
 constexpr const char* bytes_down = "bytes_down";
 constexpr const char* per_frame = "per_frame";
 
-// strips: null unless --polygons strips, on this machine.
-constexpr const char* strips = "strips";
-constexpr const char* of = "of";              ///< strips of a window
+// tiles: null unless --tiles on, on this machine.
+constexpr const char* tiles = "tiles";
+constexpr const char* of = "of";              ///< tiles of a window
 constexpr const char* given_up = "given_up";  ///< why windows were drawn by one process from some frame on
 
-// link: null unless --connect HOST:PORT. Of all connections of the run: what went over TCP.
-constexpr const char* link = "link";
+// connection: null unless --connect HOST:PORT. Of all connections of the run: what went over TCP.
+constexpr const char* connection = "connection";
 constexpr const char* address = "address";
-constexpr const char* links = "links";                  ///< how many connections
+constexpr const char* connections = "connections";      ///< how many connections
 constexpr const char* up = "up";                        ///< {messages, payload_bytes, bytes, blocks}
 constexpr const char* down = "down";                    ///< {messages, payload_bytes, bytes}
 constexpr const char* payload_bytes = "payload_bytes";  ///< before they were compressed
@@ -62,7 +62,7 @@ constexpr const char* rays_ended_early = "rays_ended_early";
 constexpr const char* blocks_empty = "blocks_empty";
 constexpr const char* nodes_idle = "nodes_idle";
 constexpr const char* items =
-    "items";  ///< {omission: {unit, left_out, done, because}}; of a frame {omission: left_out}
+    "items";  ///< {optimization: {unit, left_out, done, because}}; of a frame {optimization: left_out}
 constexpr const char* unit = "unit";
 constexpr const char* done = "done";
 constexpr const char* because = "because";  ///< {reason: count}: why it was done
@@ -106,11 +106,11 @@ constexpr const char* asked = "asked";    ///< error; null where only a time was
 constexpr const char* asked_ms = "asked_ms";
 constexpr const char* measured = "measured";  ///< greatest error of rays that were integrated
 constexpr const char* rays_integrated = "rays_integrated";
-constexpr const char* pictures_over = "pictures_over";
+constexpr const char* images_over = "images_over";
 constexpr const char* calibrations = "calibrations";
 constexpr const char* note = "note";  ///< why it is not kept
 constexpr const char* max = "max";
 constexpr const char* rms = "rms";
-constexpr const char* psnr = "psnr";  ///< dB; null when nothing was verified or the pictures are equal
+constexpr const char* psnr = "psnr";  ///< dB; null when nothing was verified or the images are equal
 
 }  // namespace understudy::spu::report_key

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "spu/report/keys.h"
-#include "spu/report/left_out.h"
+#include "spu/report/skipped_work.h"
 
 namespace understudy::spu {
 namespace {
@@ -122,7 +122,8 @@ Json left_out(const volume::FrameCounts& counts, Json items) {
 Json items_of(const FrameRecord& frame) {
   const Amounts amounts = amounts_of(frame.amounts, frame.counts);
   Json items;
-  for (std::size_t i = 0; i < omission_count; ++i) items[omission_table()[i].name] = amounts[i].left_out;
+  for (std::size_t i = 0; i < optimization_count; ++i)
+    items[optimization_table()[i].name] = amounts[i].left_out;
   return items;
 }
 
@@ -192,7 +193,7 @@ Json report_of(const BudgetCounters& budget) {
           {report_key::time, or_null(budget.ms)},
           {report_key::setting, text_in(budget.setting)},
           {report_key::rays_integrated, budget.rays},
-          {report_key::pictures_over, budget.pictures_over},
+          {report_key::images_over, budget.images_over},
           {report_key::calibrations, budget.calibrations},
           {report_key::note, text_in(budget.note)}};
 }
@@ -206,7 +207,7 @@ std::string sentence_of(const BudgetCounters& budget) {
     asked = fmt::format("time asked {:.4g} ms, taken {:.4g} ms", budget.asked_ms, budget.ms);
   }
   if (budget.calibrations > 0)
-    asked += fmt::format(", {} {:.4f} ({:.3g} ms a picture, {})",
+    asked += fmt::format(", {} {:.4f} ({:.3g} ms an image, {})",
                          budget.asked_error > 0 ? "measured" : "error measured", budget.measured, budget.ms,
                          text_in(budget.setting));
   if (budget.note[0] != '\0') asked += "; " + text_in(budget.note);
@@ -238,12 +239,12 @@ struct Totals {
   std::uint64_t frames_substituted = 0;
   std::uint64_t frames_left = 0;
   std::int32_t nodes = 0;
-  std::uint64_t pictures_behind = 0;
+  std::uint64_t images_behind = 0;
   std::uint64_t windows_asked = 0;
   std::size_t volumes = 0;
   volume::FrameCounts counts;
   Amounts amounts{};
-  std::array<ReasonCounts, omission_count> done_because;
+  std::array<ReasonCounts, optimization_count> done_because;
   ReasonCounts reasons;
   std::vector<std::string> budgets;  ///< of each volume that has one
 };
@@ -256,11 +257,11 @@ Totals totals_of(Processes processes) {
     totals.frames_left += process->frames_left.load();
     // Not a sum: all processes of a run share one node group.
     totals.nodes = std::max(totals.nodes, process->nodes);
-    totals.pictures_behind += process->pictures_behind.load();
+    totals.images_behind += process->images_behind.load();
     totals.windows_asked += process->windows_asked.load();
     totals.counts += process->total;
     totals.amounts += process->total_amounts;
-    for (std::size_t i = 0; i < omission_count; ++i)
+    for (std::size_t i = 0; i < optimization_count; ++i)
       for (const auto& [reason, count] : counts_in(process->done_because[i]))
         totals.done_because[i][reason] += count;
     for (const VolumeCounters* const entry : volumes_of(*process)) {
@@ -278,8 +279,8 @@ Totals totals_of(Processes processes) {
 Json items_of(const Totals& totals) {
   const Amounts amounts = amounts_of(totals.amounts, totals.counts);
   Json items;
-  for (std::size_t i = 0; i < omission_count; ++i) {
-    const OmissionText& about = omission_table()[i];
+  for (std::size_t i = 0; i < optimization_count; ++i) {
+    const OptimizationText& about = optimization_table()[i];
     items[about.name] = {{report_key::unit, about.unit},
                          {report_key::left_out, amounts[i].left_out},
                          {report_key::done, amounts[i].done},
@@ -293,22 +294,22 @@ bool is_remote(Processes processes) {
                      [](const ProcessCounters* process) { return process->remote.is.load() != 0; });
 }
 
-std::uint64_t frames_from_a_stage(Processes processes) {
+std::uint64_t frames_from_a_gl_server(Processes processes) {
   std::uint64_t frames = 0;
   for (const ProcessCounters* process : processes) frames += process->remote.frames.load();
   return frames;
 }
 
-/// A stage of this run is one of its processes, and counts the calls that it plays.
-bool has_a_stage(Processes processes) {
+/// A GL server of this run is one of its processes, and counts the calls that it plays.
+bool has_a_gl_server(Processes processes) {
   return std::any_of(processes.begin(), processes.end(), [](const ProcessCounters* process) {
     return process->remote.is.load() == 0 && calls_of(*process) > 0;
   });
 }
 
-Json remote_link(Processes processes) {
+Json server_connection(Processes processes) {
   if (!is_remote(processes)) return nullptr;
-  const std::uint64_t frames = frames_from_a_stage(processes);
+  const std::uint64_t frames = frames_from_a_gl_server(processes);
   std::uint64_t round_trips = 0;
   std::uint64_t up = 0;
   std::uint64_t down = 0;
@@ -330,13 +331,13 @@ Json remote_link(Processes processes) {
             {report_key::bytes_down, a_frame(down)}}}};
 }
 
-/// Of the first stage that has drawn in strips.
-Json strips(Processes processes) {
+/// Of the first GL server that has drawn in tiles.
+Json tiles(Processes processes) {
   const auto found = std::find_if(processes.begin(), processes.end(), [](const ProcessCounters* process) {
-    return process->strips.count > 0 || process->strips.given_up[0] != 0;
+    return process->tiles.count > 0 || process->tiles.given_up[0] != 0;
   });
   if (found == processes.end()) return nullptr;
-  const StripCounters& counted = (*found)->strips;
+  const TileCounters& counted = (*found)->tiles;
   return {{report_key::of, counted.count},
           {report_key::frames, counted.frames.load()},
           {report_key::given_up, std::string(counted.given_up)}};
@@ -390,9 +391,9 @@ std::string report_json(Processes processes) {
               {report_key::frames_left, totals.frames_left},
               {report_key::nodes, totals.nodes},
               {report_key::remote, is_remote(processes)},
-              {report_key::remote_link, remote_link(processes)},
-              {report_key::strips, strips(processes)},
-              {report_key::pictures_behind, totals.pictures_behind},
+              {report_key::server_connection, server_connection(processes)},
+              {report_key::tiles, tiles(processes)},
+              {report_key::images_behind, totals.images_behind},
               {report_key::windows_asked, totals.windows_asked},
               {report_key::processes, Json::array()},
               {report_key::time_ms, median_times(processes)},
@@ -419,10 +420,10 @@ std::string report_json(Processes processes) {
 
 std::string summary_line(Processes processes) {
   const Totals totals = totals_of(processes);
-  if (const std::uint64_t frames = frames_from_a_stage(processes);
-      frames > 0 && totals.frames == 0 && !has_a_stage(processes))
+  if (const std::uint64_t frames = frames_from_a_gl_server(processes);
+      frames > 0 && totals.frames == 0 && !has_a_gl_server(processes))
     return fmt::format(
-        "understudy: {} came from a stage on another machine, which knows what of them was substituted",
+        "understudy: {} came from a GL server on another machine, which knows what of them was substituted",
         counted(frames, "frame"));
   // Who draws is known once somebody did.
   std::string where;
@@ -431,7 +432,7 @@ std::string summary_line(Processes processes) {
   } else if (totals.frames_substituted > 0) {
     where = " (embedded)";
   }
-  std::string line = fmt::format("understudy: {} seen, {}: {} substituted{}, {} left to the application",
+  std::string line = fmt::format("understudy: {} seen, {}: {} substituted{}, {} not substituted",
                                  counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
                                  totals.frames_substituted, where, totals.frames_left);
   if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);
@@ -459,7 +460,7 @@ std::string explanation_text(Processes processes) {
                             volume.texel_bytes_left_out.load());
       }
       for (const auto& [reason, count] : reasons_of(volume)) {
-        text += fmt::format("understudy:     left to the application {}x: {}\n", count, reason);
+        text += fmt::format("understudy:     not substituted {}x: {}\n", count, reason);
       }
       if (const std::uint64_t frames = volume.verified_frames.load(); frames > 0) {
         text += fmt::format("understudy:     verified on {}: max {:.4g}, RMS {:.4g}\n",

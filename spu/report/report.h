@@ -34,7 +34,7 @@ using Processes = std::span<const ProcessCounters* const>;
 /// out.
 std::string report_json(Processes processes);
 
-/// "understudy: 1 volume, 20 frames: 19 substituted (4 nodes), 1 left to the application (reason, …)".
+/// "understudy: 1 volume, 20 frames: 19 substituted (4 nodes), 1 not substituted (reason, …)".
 std::string summary_line(Processes processes);
 
 /// Several lines: for every volume what was recognised, how its draws were treated, and why some were left.

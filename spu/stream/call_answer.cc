@@ -24,8 +24,8 @@ std::vector<std::byte> encode(const CallAnswer& answer) {
   };
   put(std::array<std::uint64_t, head_words>{answer.result, answer.outputs.size()});
   for (const AnsweredOutput& output : answer.outputs) {
-    const PictureShape shape = output.picture.value_or(PictureShape{});
-    put(std::array<std::uint64_t, output_words>{output.parameter, output.picture.has_value(),
+    const ImageShape shape = output.image.value_or(ImageShape{});
+    put(std::array<std::uint64_t, output_words>{output.parameter, output.image.has_value(),
                                                 std::uint32_t(shape.width), std::uint32_t(shape.height),
                                                 std::uint32_t(shape.depth), shape.format, shape.type,
                                                 std::uint32_t(shape.dimensions), output.bytes.size()});
@@ -53,8 +53,8 @@ std::optional<CallAnswer> decode_answer(std::span<const std::byte> bytes) {
     AnsweredOutput& output = answer.outputs.emplace_back();
     output.parameter = std::uint32_t(words[0]);
     if (words[1] != 0) {
-      output.picture = PictureShape{GLsizei(words[2]), GLsizei(words[3]), GLsizei(words[4]),
-                                    GLenum(words[5]),  GLenum(words[6]),  int(words[7])};
+      output.image = ImageShape{GLsizei(words[2]), GLsizei(words[3]), GLsizei(words[4]),
+                                GLenum(words[5]),  GLenum(words[6]),  int(words[7])};
     }
     output.bytes.assign(bytes.begin(), bytes.begin() + std::ptrdiff_t(words[8]));
     bytes = bytes.subspan(words_for(words[8]) * 8);

@@ -19,8 +19,8 @@ struct AnsweredOutput {
   static constexpr std::uint32_t mapped = 0x101;       ///< what is in the memory that a buffer was mapped to
   static constexpr std::uint32_t feedback = 0x102;     ///< what glFeedbackBuffer or glSelectBuffer was given
 
-  std::uint32_t parameter = 0;          ///< position among the call's parameters, or one of the above
-  std::optional<PictureShape> picture;  ///< bytes are pixels as pictures lie in streams
+  std::uint32_t parameter = 0;      ///< position among the call's parameters, or one of the above
+  std::optional<ImageShape> image;  ///< bytes are pixels as images lie in streams
   std::vector<std::byte> bytes;
 };
 
@@ -29,7 +29,7 @@ struct CallAnswer {
   std::vector<AnsweredOutput> outputs;
 };
 
-/// Bytes of an answer: {result, number of outputs}, then for each {parameter, has a picture, its width, height,
+/// Bytes of an answer: {result, number of outputs}, then for each {parameter, has an image, its width, height,
 /// depth, format, type, dimensions, bytes, data up to a full word}.
 std::vector<std::byte> encode(const CallAnswer& answer);
 /// Nothing when the bytes are no answer.

@@ -208,13 +208,13 @@ std::string Decoder::read_arguments(const Record& record, Call& call) {
       continue;
     }
     const auto needed = parameter.rule == ExtentRule::image
-                            ? picture_extent(picture_shape(call.id, call.words.data()), tight_pixels)
+                            ? image_extent(image_shape(call.id, call.words.data()), tight_pixels)
                             : pointee_bytes(call.id, p, call.words.data());
     if (!needed || *needed > call.bytes[p]) {
       return in_call(call.id, fmt::format("{} needs {} bytes and has {}", parameter.name(),
                                           needed ? std::to_string(*needed) : "unknown", call.bytes[p]));
     }
-    call.picture_in |= parameter.rule == ExtentRule::image;
+    call.image_in |= parameter.rule == ExtentRule::image;
   }
   return {};
 }
@@ -285,21 +285,21 @@ std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
     std::size_t bytes = pointee_bytes(call.id, p, call.words.data()).value_or(unknown_output_bytes);
     const bool linked = origin_ == StreamOrigin::linked;
     if (parameter.rule == ExtentRule::image_out) {
-      if (linked) return provide_picture(call, p, gl);
+      if (linked) return provide_image(call, p, gl);
       if (call.id != CallId::ReadPixels) {
         call.skip = true;
         return {};
       }
-      const PictureShape shape = picture_shape(call.id, call.words.data());
-      const auto extent = begin_and_end_.inside() ? std::nullopt : picture_extent(shape, tight_pixels);
+      const ImageShape shape = image_shape(call.id, call.words.data());
+      const auto extent = begin_and_end_.inside() ? std::nullopt : image_extent(shape, tight_pixels);
       if (!extent || *extent > most_output_bytes) {
         call.skip = true;
         return {};
       }
-      read_picture_.shape = shape;
-      read_picture_.pixels.assign(*extent, std::byte(0));
-      call.words[p] = word_of(read_picture_.pixels.data());
-      // Where the sender wanted it does not matter here: it is read as pictures lie in streams.
+      read_image_.shape = shape;
+      read_image_.pixels.assign(*extent, std::byte(0));
+      call.words[p] = word_of(read_image_.pixels.data());
+      // Where the sender wanted it does not matter here: it is read as images lie in streams.
       const PixelStore store = pixel_store(gl, pack_names);
       set_pixel_store(gl, pack_names, store, tight_pixels);
       invoke(gl, call.id, call.words.data());
@@ -414,7 +414,7 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
 Decoded Decoder::make(Call& call, const DispatchTable& gl) {
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
   Decoded decoded;
-  if (call.picture_in && !begin_and_end_.inside()) {
+  if (call.image_in && !begin_and_end_.inside()) {
     const PixelStore store = pixel_store(gl, unpack_names);
     set_pixel_store(gl, unpack_names, store, tight_pixels);
     decoded.result = invoke(gl, call.id, call.words.data());
@@ -531,7 +531,7 @@ Decoded Decoder::write_mapped(const Record& record) {
 
 Decoded Decoder::decode(const Record& record, const DispatchTable& gl) {
   scratch_used_ = 0;
-  if (!read_picture_.pixels.empty()) read_picture_.pixels.clear();
+  if (!read_image_.pixels.empty()) read_image_.pixels.clear();
   call_answer_ = {};
   if (record.id == event::arrays) return begin_arrays(record, gl);
   if (record.id == event::arrays_end) {

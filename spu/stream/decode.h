@@ -54,11 +54,11 @@ class Decoder {
 
   /// Pixels that the last call read into memory of the decoder (glReadPixels of a stream from elsewhere); empty
   /// when it read none.
-  struct ReadPicture {
-    PictureShape shape;
+  struct ReadImage {
+    ImageShape shape;
     std::vector<std::byte> pixels;
   };
-  const ReadPicture& read_picture() const { return read_picture_; }
+  const ReadImage& read_image() const { return read_image_; }
 
   /// What the last call of a linked stream has answered.
   const CallAnswer& call_answer() const { return call_answer_; }
@@ -74,7 +74,7 @@ class Decoder {
   std::string read_lists(const Record& record, Call& call, std::size_t parameter);
   bool translate(Call& call);
   std::string provide_outputs(Call& call, const DispatchTable& gl);
-  std::string provide_picture(Call& call, std::size_t parameter, const DispatchTable& gl);
+  std::string provide_image(Call& call, std::size_t parameter, const DispatchTable& gl);
   Decoded make_and_answer(Call& call, const DispatchTable& gl);
   void answer_result(const Call& call, std::uint64_t result);
   void answer_outputs(const Call& call);
@@ -104,7 +104,7 @@ class Decoder {
   std::shared_ptr<ObjectNames> shared_names_;
   ObjectNames own_names_;  ///< of kinds that contexts do not share
   bool arrays_active_ = false;
-  ReadPicture read_picture_;
+  ReadImage read_image_;
   CallAnswer call_answer_;
 
   /// What the last call answered here, until the stream tells what it had answered there.

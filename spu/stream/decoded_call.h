@@ -11,7 +11,7 @@
 
 namespace understudy::spu {
 
-/// Answers to the sender of a linked stream: pictures and buffers of applications may be large.
+/// Answers to the sender of a linked stream: images and buffers of applications may be large.
 constexpr std::size_t most_linked_output_bytes = std::size_t(1) << 30;
 /// What fills memory before OpenGL writes answers into it, so that what it wrote is seen.
 constexpr std::byte unwritten{0xa5};
@@ -23,7 +23,7 @@ struct Decoder::Call {
   std::array<ReferenceKind, max_parameters> kinds{};
   std::array<std::size_t, max_parameters> bytes{};  ///< there are behind a pointer
   bool skip = false;  ///< has no meaning here: an address of another process, a question
-  bool picture_in = false;
+  bool image_in = false;
 };
 
 }  // namespace understudy::spu

@@ -111,11 +111,11 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   };
   switch (pointer.rule) {
     case ExtentRule::image: {
-      const PictureShape picture = picture_shape(call, words);
+      const ImageShape image = image_shape(call, words);
       const PixelStore store = pixel_store(ask(), unpack_names);
       // Formats that OpenGL does not know are errors: nothing is read.
-      if (!picture_extent(picture, store)) return argument;
-      argument.owned = tight_picture(picture, store, address(word));
+      if (!image_extent(image, store)) return argument;
+      argument.owned = tight_image(image, store, address(word));
       argument.reference.kind = ReferenceKind::inside;
       argument.bytes = argument.owned;
       return argument;

@@ -1,7 +1,7 @@
 // From calls to records.
 //
 // Everything that OpenGL would read through a pointer while the call runs is copied into the record, so the
-// application may do with its memory what it likes afterwards: pixels as tight_picture() lays them, strings,
+// application may do with its memory what it likes afterwards: pixels as tight_image() lays them, strings,
 // arrays, indices, and the elements of client vertex arrays that a draw uses. Offsets into bound buffers stay
 // offsets.
 #pragma once

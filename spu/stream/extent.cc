@@ -139,13 +139,13 @@ std::uint8_t argument_named(const CallShape& shape, std::string_view name) noexc
   return no_argument;
 }
 
-PictureShape picture_shape(CallId call, const std::uint64_t* words) {
+ImageShape image_shape(CallId call, const std::uint64_t* words) {
   const ImageArguments& image = call_shape(call).image;
   const auto size = [&](std::uint8_t argument, GLsizei otherwise) {
     return argument == no_argument ? otherwise : GLsizei(words[argument]);
   };
-  PictureShape shape;
-  // glPolygonStipple says nothing of its picture: it is always 32 by 32 bits. glBitmap says its size alone.
+  ImageShape shape;
+  // glPolygonStipple says nothing of its image: it is always 32 by 32 bits. glBitmap says its size alone.
   const GLsizei otherwise = image.width == no_argument ? 32 : 1;
   shape.width = size(image.width, otherwise);
   shape.height = size(image.height, otherwise);

@@ -1,5 +1,5 @@
 // How many bytes stand behind a pointer argument, as far as the call alone tells: the rules of
-// spu/dispatch/arguments.txt. Pictures in client memory depend on the pixel store and are pixels.h's business.
+// spu/dispatch/arguments.txt. Images in client memory depend on the pixel store and are pixels.h's business.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ std::size_t component_size(GLenum type) noexcept;
 /// The argument that has this name in the registry; no_argument when none has.
 std::uint8_t argument_named(const CallShape& shape, std::string_view name) noexcept;
 
-/// What a command with an image, image_out or one_texel argument says of its picture.
-PictureShape picture_shape(CallId call, const std::uint64_t* words);
+/// What a command with an image, image_out or one_texel argument says of its image.
+ImageShape image_shape(CallId call, const std::uint64_t* words);
 
 }  // namespace understudy::spu

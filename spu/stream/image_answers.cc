@@ -19,8 +19,8 @@ int dimensions_of(GLenum target) {
   }
 }
 
-std::optional<ImageAnswer> with_rows(const PictureShape& shape) {
-  const auto bytes = picture_extent(shape, tight_pixels);
+std::optional<ImageAnswer> with_rows(const ImageShape& shape) {
+  const auto bytes = image_extent(shape, tight_pixels);
   if (!bytes) return std::nullopt;
   return ImageAnswer{shape, *bytes};
 }
@@ -75,7 +75,7 @@ std::optional<ImageAnswer> whole_answer(CallId call, const std::uint64_t* words,
     case CallId::ReadnPixels:
     case CallId::ReadnPixelsARB:
     case CallId::GetTextureSubImage:
-      return with_rows(picture_shape(call, words));
+      return with_rows(image_shape(call, words));
     case CallId::GetTexImage:
     case CallId::GetnTexImage:
     case CallId::GetnTexImageARB:

@@ -12,8 +12,8 @@
 namespace understudy::spu {
 
 struct ImageAnswer {
-  std::optional<PictureShape> shape;  ///< nothing: bytes without rows, whatever GL_PACK_* says
-  std::size_t bytes = 0;              ///< with rows that follow each other without gaps
+  std::optional<ImageShape> shape;  ///< nothing: bytes without rows, whatever GL_PACK_* says
+  std::size_t bytes = 0;            ///< with rows that follow each other without gaps
 };
 
 /// What the command with these arguments writes; asks `gl` for the size of textures. Nothing when it writes

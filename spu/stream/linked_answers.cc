@@ -56,7 +56,7 @@ std::vector<std::byte> contents_before(CallId call, const std::uint64_t* words, 
 
 }  // namespace
 
-std::string Decoder::provide_picture(Call& call, std::size_t p, const DispatchTable& gl) {
+std::string Decoder::provide_image(Call& call, std::size_t p, const DispatchTable& gl) {
   call.skip = true;
   if (begin_and_end_.inside()) return {};
   const auto image = image_answer(call.id, call.words.data(), gl);
@@ -64,8 +64,8 @@ std::string Decoder::provide_picture(Call& call, std::size_t p, const DispatchTa
   if (image->bytes > most_linked_output_bytes)
     return std::string(call_name(call.id)) + ": claims an answer beyond all reason";
   AnsweredOutput output{
-      .parameter = std::uint32_t(p), .picture = image->shape, .bytes = std::vector<std::byte>(image->bytes)};
-  // OpenGL may write a whole word for an empty picture's sake, and wants an address.
+      .parameter = std::uint32_t(p), .image = image->shape, .bytes = std::vector<std::byte>(image->bytes)};
+  // OpenGL may write a whole word for an empty image's sake, and wants an address.
   std::byte nothing[8];
   call.words[p] = reinterpret_cast<std::uintptr_t>(output.bytes.empty() ? nothing : output.bytes.data());
   const PixelStore store = pixel_store(gl, pack_names);

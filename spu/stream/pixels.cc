@@ -7,8 +7,8 @@
 namespace understudy::spu {
 namespace {
 
-/// No picture that any OpenGL takes has more: sizes above are not computed with.
-constexpr std::uint64_t most_picture_bytes = std::uint64_t(1) << 40;
+/// No image that any OpenGL takes has more: sizes above are not computed with.
+constexpr std::uint64_t most_image_bytes = std::uint64_t(1) << 40;
 
 std::optional<std::size_t> components(GLenum format) {
   switch (format) {
@@ -102,7 +102,7 @@ std::optional<TypeSize> type_size(GLenum type) {
   }
 }
 
-/// Distances within a picture, in bytes; `bits` when pixels are bits.
+/// Distances within an image, in bytes; `bits` when pixels are bits.
 struct Layout {
   std::uint64_t row = 0;         ///< used bytes of a row
   std::uint64_t row_step = 0;    ///< from row to row
@@ -112,7 +112,7 @@ struct Layout {
   bool bits = false;
 };
 
-std::optional<Layout> layout_of(const PictureShape& shape, const PixelStore& store) {
+std::optional<Layout> layout_of(const ImageShape& shape, const PixelStore& store) {
   Layout layout;
   layout.bits = shape.type == GL_BITMAP;
   const std::uint64_t width = std::uint64_t(shape.width);
@@ -135,12 +135,12 @@ std::optional<Layout> layout_of(const PictureShape& shape, const PixelStore& sto
     skip_in_row = std::uint64_t(store.skip_pixels) * *pixel;
   }
   layout.row_step = (unpadded + alignment - 1) / alignment * alignment;
-  if (layout.row_step > most_picture_bytes ||
-      rows > most_picture_bytes / std::max<std::uint64_t>(layout.row_step, 1))
+  if (layout.row_step > most_image_bytes ||
+      rows > most_image_bytes / std::max<std::uint64_t>(layout.row_step, 1))
     return std::nullopt;
   layout.image_step = layout.row_step * rows;
   if (std::uint64_t(shape.depth) + std::uint64_t(store.skip_images) >
-      most_picture_bytes / std::max<std::uint64_t>(layout.image_step, 1)) {
+      most_image_bytes / std::max<std::uint64_t>(layout.image_step, 1)) {
     return std::nullopt;
   }
   layout.skip = skip_in_row + (shape.dimensions > 1 ? std::uint64_t(store.skip_rows) * layout.row_step : 0) +
@@ -148,7 +148,7 @@ std::optional<Layout> layout_of(const PictureShape& shape, const PixelStore& sto
   return layout;
 }
 
-bool empty(const PictureShape& shape) {
+bool empty(const ImageShape& shape) {
   return shape.width <= 0 || shape.height <= 0 || shape.depth <= 0;
 }
 
@@ -201,7 +201,7 @@ std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type) {
   return size->packed ? size->bytes : size->bytes * *count;
 }
 
-std::optional<std::size_t> picture_extent(const PictureShape& shape, const PixelStore& store) {
+std::optional<std::size_t> image_extent(const ImageShape& shape, const PixelStore& store) {
   if (empty(shape)) return 0;
   const auto layout = layout_of(shape, store);
   if (!layout) return std::nullopt;
@@ -209,17 +209,16 @@ std::optional<std::size_t> picture_extent(const PictureShape& shape, const Pixel
          layout->row_step * std::uint64_t(shape.height - 1) + layout->row;
 }
 
-std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore& store,
-                                     const std::byte* pixels) {
+std::vector<std::byte> tight_image(const ImageShape& shape, const PixelStore& store, const std::byte* pixels) {
   if (empty(shape)) return {};
   const auto from = layout_of(shape, store);
   const auto to = layout_of(shape, tight_pixels);
   if (!from || !to) return {};
-  std::vector<std::byte> picture(to->image_step * std::uint64_t(shape.depth));
-  for (std::uint64_t image = 0; image < std::uint64_t(shape.depth); ++image) {
+  std::vector<std::byte> image(to->image_step * std::uint64_t(shape.depth));
+  for (std::uint64_t layer = 0; layer < std::uint64_t(shape.depth); ++layer) {
     for (std::uint64_t row = 0; row < std::uint64_t(shape.height); ++row) {
-      const std::byte* source = pixels + from->skip + image * from->image_step + row * from->row_step;
-      std::byte* target = picture.data() + image * to->image_step + row * to->row_step;
+      const std::byte* source = pixels + from->skip + layer * from->image_step + row * from->row_step;
+      std::byte* target = image.data() + layer * to->image_step + row * to->row_step;
       if (from->bits) {
         copy_bits(source, std::size_t(store.skip_pixels) % 8, std::size_t(shape.width), store.lsb_first != 0,
                   target);
@@ -229,22 +228,21 @@ std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore
     }
   }
   if (from->swap > 1) {
-    for (std::size_t i = 0; i + from->swap <= picture.size(); i += from->swap)
-      std::reverse(picture.begin() + std::ptrdiff_t(i), picture.begin() + std::ptrdiff_t(i + from->swap));
+    for (std::size_t i = 0; i + from->swap <= image.size(); i += from->swap)
+      std::reverse(image.begin() + std::ptrdiff_t(i), image.begin() + std::ptrdiff_t(i + from->swap));
   }
-  return picture;
+  return image;
 }
 
-void spread_picture(const PictureShape& shape, const PixelStore& store, const std::byte* tight,
-                    std::byte* pixels) {
+void spread_image(const ImageShape& shape, const PixelStore& store, const std::byte* tight, std::byte* pixels) {
   if (empty(shape)) return;
   const auto from = layout_of(shape, tight_pixels);
   const auto to = layout_of(shape, store);
   if (!from || !to) return;
-  for (std::uint64_t image = 0; image < std::uint64_t(shape.depth); ++image) {
+  for (std::uint64_t layer = 0; layer < std::uint64_t(shape.depth); ++layer) {
     for (std::uint64_t row = 0; row < std::uint64_t(shape.height); ++row) {
-      const std::byte* source = tight + image * from->image_step + row * from->row_step;
-      std::byte* target = pixels + to->skip + image * to->image_step + row * to->row_step;
+      const std::byte* source = tight + layer * from->image_step + row * from->row_step;
+      std::byte* target = pixels + to->skip + layer * to->image_step + row * to->row_step;
       if (to->bits) {
         spread_bits(source, std::size_t(store.skip_pixels) % 8, std::size_t(shape.width), store.lsb_first != 0,
                     target);

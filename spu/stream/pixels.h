@@ -1,4 +1,4 @@
-// How pictures lie in the application's memory (OpenGL 4.6, section 8.4.4), and the one way they lie in a
+// How images lie in the application's memory (OpenGL 4.6, section 8.4.4), and the one way they lie in a
 // stream.
 //
 // In a stream rows follow each other without gaps, components are in the byte order of the machine, bits start
@@ -44,9 +44,9 @@ PixelStore pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& nam
 void set_pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names, const PixelStore& now,
                      const PixelStore& wanted);
 
-/// What a command says of its picture. `dimensions` of the command, not of the picture: it decides which skips
+/// What a command says of its image. `dimensions` of the command, not of the image: it decides which skips
 /// count.
-struct PictureShape {
+struct ImageShape {
   GLsizei width = 1;
   GLsizei height = 1;
   GLsizei depth = 1;
@@ -59,16 +59,14 @@ struct PictureShape {
 std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type);
 
 /// Bytes from the pointer that the application gives to the end of what is read or written under `store`;
-/// nothing when the format is not known or the size is beyond reason, 0 for an empty picture.
-std::optional<std::size_t> picture_extent(const PictureShape& shape, const PixelStore& store);
+/// nothing when the format is not known or the size is beyond reason, 0 for an empty image.
+std::optional<std::size_t> image_extent(const ImageShape& shape, const PixelStore& store);
 
-/// The picture as it lies in streams. `pixels` must hold picture_extent(shape, store) bytes.
-std::vector<std::byte> tight_picture(const PictureShape& shape, const PixelStore& store,
-                                     const std::byte* pixels);
+/// The image as it lies in streams. `pixels` must hold image_extent(shape, store) bytes.
+std::vector<std::byte> tight_image(const ImageShape& shape, const PixelStore& store, const std::byte* pixels);
 
-/// The other way: a picture as it lies in streams to where the application wants it. `tight` holds
-/// picture_extent(shape, tight_pixels) bytes, `pixels` has room for picture_extent(shape, store).
-void spread_picture(const PictureShape& shape, const PixelStore& store, const std::byte* tight,
-                    std::byte* pixels);
+/// The other way: an image as it lies in streams to where the application wants it. `tight` holds
+/// image_extent(shape, tight_pixels) bytes, `pixels` has room for image_extent(shape, store).
+void spread_image(const ImageShape& shape, const PixelStore& store, const std::byte* tight, std::byte* pixels);
 
 }  // namespace understudy::spu

@@ -6,7 +6,7 @@
 namespace understudy::spu {
 namespace {
 
-void add_stage(ProgramRecord& record, GLenum type, const std::string* source) {
+void add_gl_server_command(ProgramRecord& record, GLenum type, const std::string* source) {
   const std::string text = source != nullptr ? *source : std::string();
   if (type == GL_VERTEX_SHADER) {
     record.vertex_shader = true;
@@ -16,7 +16,7 @@ void add_stage(ProgramRecord& record, GLenum type, const std::string* source) {
         !text.empty() && (record.fragment_sources.empty() || record.fragment_source_known);
     record.fragment_sources.push_back(text);
   } else {
-    record.other_stages = true;
+    record.other_shader_stages = true;
   }
 }
 
@@ -91,7 +91,7 @@ void ProgramSources::program_linked(GLuint program) {
   record->link = ++links_;
   for (const GLuint shader : found->second.shaders) {
     const Shader& part = shaders_.at(shader);
-    add_stage(*record, part.type, part.compiled.get());
+    add_gl_server_command(*record, part.type, part.compiled.get());
   }
   found->second.linked = std::move(record);
 }
@@ -101,7 +101,7 @@ void ProgramSources::program_linked_from(GLuint program, GLenum type, const std:
   const std::scoped_lock lock(mutex_);
   auto record = std::make_shared<ProgramRecord>();
   record->link = ++links_;
-  add_stage(*record, type, &source);
+  add_gl_server_command(*record, type, &source);
   programs_[program] = {.shaders = {}, .linked = std::move(record)};
 }
 

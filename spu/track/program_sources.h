@@ -19,7 +19,7 @@ struct ProgramRecord {
   std::vector<std::string> vertex_sources;
   std::vector<std::string> fragment_sources;
   bool vertex_shader = false;
-  bool other_stages = false;
+  bool other_shader_stages = false;
   bool fragment_source_known = false;
 };
 

@@ -31,7 +31,7 @@ void ShareGroup::texture_changed(GLuint texture, const volume::TexelBox& box) {
   record.version = ++changes_;
   auto& changes = record.changes;
   if (!changes.empty()) {
-    // Slabs that are uploaded one after the other are one box.
+    // Segments that are uploaded one after the other are one box.
     const volume::TexelBox both = volume::enclosing(changes.back().box, box);
     if (volume::texels_in(both) <= volume::texels_in(changes.back().box) + volume::texels_in(box)) {
       changes.back() = {record.version, both};

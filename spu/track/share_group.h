@@ -26,7 +26,7 @@ struct ListRecord {
   bool draws = false;
   bool only_geometry = true;  ///< nothing but vertices, attributes and draws
   bool changes_textures = false;
-  // Followed where a stage makes the calls (spu/link/front_buffer.h):
+  // Followed where a GL server makes the calls (spu/remote/front_buffer.h):
   bool draws_front = false;  ///< into a front buffer that it has chosen itself
   ChosenBuffer leaves = ChosenBuffer::as_before;
 };

@@ -1,4 +1,4 @@
-// What a call is to somebody who wants to know the state behind it, and not the pictures before.
+// What a call is to somebody who wants to know the state behind it, and not the images before.
 #pragma once
 
 #include "dispatch/call_id.h"
@@ -11,9 +11,9 @@ enum class CallRole {
   end,        ///< glEnd
   vertex,     ///< draws a vertex between the two
   attribute,  ///< the current colour, normal, coordinate: only the last one counts
-  draw,       ///< draws, clears or copies pictures, and changes nothing but the framebuffer
+  draw,       ///< draws, clears or copies images, and changes nothing but the framebuffer
   call_list,  ///< glCallList, glCallLists
-  read,       ///< reads pictures, into memory or into a buffer
+  read,       ///< reads images, into memory or into a buffer
   ask,        ///< asks what no later call refers to; waits
 };
 

@@ -107,56 +107,56 @@ void Prefix::mark_attachments() {
   }
 }
 
-Fate Prefix::fate_of_event(const Record& record, const ThreadState& thread) const {
+RecordAction Prefix::action_of_event(const Record& record, const ThreadState& thread) const {
   switch (record.id) {
     case event::frame:
-      return Fate::drop;
+      return RecordAction::drop;
     case event::arrays:
     case event::arrays_end:
-      return thread.compiling ? Fate::keep : Fate::drop;
+      return thread.compiling ? RecordAction::keep : RecordAction::drop;
     case event::answers:
-      return thread.last_call == Fate::drop ? Fate::drop : Fate::keep;
+      return thread.last_call == RecordAction::drop ? RecordAction::drop : RecordAction::keep;
     default:
-      return Fate::keep;
+      return RecordAction::keep;
   }
 }
 
-Fate Prefix::fate_of_call(CallId call, const Record& record, ThreadState& thread) {
+RecordAction Prefix::action_of_call(CallId call, const Record& record, ThreadState& thread) {
   if (call == CallId::NewList) thread.compiling = true;
   if (call == CallId::EndList) thread.compiling = false;
-  if (thread.compiling || call == CallId::EndList) return Fate::keep;
+  if (thread.compiling || call == CallId::EndList) return RecordAction::keep;
   switch (role_of(call)) {
     case CallRole::begin:
       thread.inside_begin = true;
       thread.attributes.clear();
-      return Fate::drop;
+      return RecordAction::drop;
     case CallRole::end:
       thread.inside_begin = false;
-      return Fate::drop;
+      return RecordAction::drop;
     case CallRole::attribute: {
-      if (!thread.inside_begin) return Fate::keep;
+      if (!thread.inside_begin) return RecordAction::keep;
       // Texture units and generic attributes are told apart by their first argument.
       const std::string_view name = call_name(call);
       const bool numbered = name.starts_with("glMulti") || name.starts_with("glVertexAttrib");
       const std::pair key(record.id, numbered && record.words.size() > 1 ? record.words[1] : 0);
-      const auto [found, first] = thread.attributes.try_emplace(key, fates_.size());
+      const auto [found, first] = thread.attributes.try_emplace(key, actions_.size());
       if (!first) {
-        fates_[found->second] = Fate::drop;
-        found->second = fates_.size();
+        actions_[found->second] = RecordAction::drop;
+        found->second = actions_.size();
       }
-      return Fate::keep;
+      return RecordAction::keep;
     }
     case CallRole::vertex:
     case CallRole::draw:
     case CallRole::read:
     case CallRole::ask:
-      return Fate::drop;
+      return RecordAction::drop;
     case CallRole::call_list:
-      return Fate::expand;
+      return RecordAction::expand;
     case CallRole::state:
-      return Fate::keep;
+      return RecordAction::keep;
   }
-  return Fate::keep;
+  return RecordAction::keep;
 }
 
 /// What OpenGL is about to write to. Not between glBegin and glEnd.
@@ -220,7 +220,7 @@ void Prefix::supersede(const Image& image, const Upload& upload) {
     for (std::size_t k = 0; k < 3; ++k)
       covered &= upload.box[k] <= old.box[k] && old.box[k + 3] <= upload.box[k + 3];
     if (!upload.makes_room && !covered) return false;
-    fates_[old.record] = old.makes_room ? Fate::keep_without_data : Fate::drop;
+    actions_[old.record] = old.makes_room ? RecordAction::keep_without_data : RecordAction::drop;
     return true;
   });
   earlier.push_back(upload);
@@ -248,7 +248,7 @@ void Prefix::note_upload(CallId call, const Record& record) {
     const ReferenceKind kind = data_kind(name.starts_with("glCompressed") ? "data" : "pixels");
     // The buffer's later contents would come instead.
     if (kind == ReferenceKind::address) mark(ObjectKind::texture, texture);
-    Upload upload{.record = fates_.size(), .makes_room = !is_sub(name)};
+    Upload upload{.record = actions_.size(), .makes_room = !is_sub(name)};
     const std::array<std::int64_t, 3> first = {argument("xoffset", 0), argument("yoffset", 0),
                                                argument("zoffset", 0)};
     const std::array<std::int64_t, 3> size = {argument("width", 1), argument("height", 1),
@@ -265,7 +265,7 @@ void Prefix::note_upload(CallId call, const Record& record) {
   if (!buffer_data && !buffer_part) return;
   const GLenum binding = buffer_binding(GLenum(word(0)));
   if (binding == GL_NONE) return;
-  Upload upload{.record = fates_.size(), .makes_room = buffer_data};
+  Upload upload{.record = actions_.size(), .makes_room = buffer_data};
   upload.box = {buffer_data ? 0 : std::int64_t(word(1)), 0, 0, 0, 1, 1};
   upload.box[3] = buffer_data ? std::int64_t(word(1)) : std::int64_t(word(1) + word(2));
   supersede({group, ObjectKind::buffer, ask(binding), 0, 0}, upload);
@@ -295,16 +295,16 @@ std::string Prefix::play(const Record& record) {
   if (record.id == event::thread && record.words.size() > 1) thread_ = record.words[1];
   ThreadState& thread = threads_[thread_];
   const auto call = find_stable_id(record.id);
-  Fate fate = Fate::keep;
+  RecordAction action = RecordAction::keep;
   if (!call) {
-    fate = fate_of_event(record, thread);
+    action = action_of_event(record, thread);
   } else {
     const bool prepared = !thread.inside_begin && player_.prepare();
     if (prepared) look_before(*call, record, thread);
-    fate = fate_of_call(*call, record, thread);
-    thread.last_call = fate;
+    action = action_of_call(*call, record, thread);
+    thread.last_call = action;
   }
-  fates_.push_back(fate);
+  actions_.push_back(action);
   std::string error = player_.play(record);
   if (record.id == event::answers) note_answers(record);
   return error;

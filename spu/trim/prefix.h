@@ -1,4 +1,4 @@
-// The part of a trace before the cut: it is played, and every record gets a fate. What defines stays, what
+// The part of a trace before the cut: it is played, and every record gets a action. What defines stays, what
 // draws goes, and what was drawn where later frames may look is restored (restoration.h).
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace understudy::spu {
 
-enum class Fate : std::uint8_t {
+enum class RecordAction : std::uint8_t {
   keep,
   drop,
   keep_without_data,  ///< an upload whose data a later one replaces: it still makes room
@@ -50,7 +50,7 @@ class Prefix {
   std::string play(const Record& record);
 
   /// By number of the record; final when the prefix has been played.
-  const std::vector<Fate>& fates() const { return fates_; }
+  const std::vector<RecordAction>& actions() const { return actions_; }
   const std::map<DrawnObject, StreamObject>& drawn() const { return drawn_; }
   /// The thread of the last record.
   std::uint64_t thread() const { return thread_; }
@@ -69,13 +69,13 @@ class Prefix {
   struct ThreadState {
     bool inside_begin = false;
     bool compiling = false;
-    Fate last_call = Fate::keep;
+    RecordAction last_call = RecordAction::keep;
     /// The last record of each current attribute since glBegin.
     std::map<std::pair<std::uint32_t, std::uint64_t>, std::size_t> attributes;
   };
 
-  Fate fate_of_event(const Record& record, const ThreadState& thread) const;
-  Fate fate_of_call(CallId call, const Record& record, ThreadState& thread);
+  RecordAction action_of_event(const Record& record, const ThreadState& thread) const;
+  RecordAction action_of_call(CallId call, const Record& record, ThreadState& thread);
   void look_before(CallId call, const Record& record, const ThreadState& thread);
   void note_upload(CallId call, const Record& record);
   void note_answers(const Record& record);
@@ -87,7 +87,7 @@ class Prefix {
   StreamObject& stream_object(ObjectKind kind, GLuint here);
 
   Player& player_;
-  std::vector<Fate> fates_;
+  std::vector<RecordAction> actions_;
   std::map<std::uint64_t, ThreadState> threads_;
   std::uint64_t thread_ = 0;
   std::map<Image, std::vector<Upload>> uploads_;

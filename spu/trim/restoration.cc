@@ -97,9 +97,9 @@ std::string restore_texture(const DispatchTable& gl, GLuint here, const StreamOb
     if (target == GL_TEXTURE_CUBE_MAP) size[2] = 6;
     const bool flat =
         target == GL_TEXTURE_2D || target == GL_TEXTURE_RECTANGLE || target == GL_TEXTURE_1D_ARRAY;
-    const PictureShape shape{size[0],          size[1],        size[2],
-                             transfer->format, transfer->type, target == GL_TEXTURE_1D ? 1 : flat ? 2 : 3};
-    const auto bytes = picture_extent(shape, tight_pixels);
+    const ImageShape shape{size[0],          size[1],        size[2],
+                           transfer->format, transfer->type, target == GL_TEXTURE_1D ? 1 : flat ? 2 : 3};
+    const auto bytes = image_extent(shape, tight_pixels);
     if (!bytes) return fmt::format("texture {} is too large", there);
     std::vector<std::byte> pixels(*bytes);
     gl.GetTextureImage(here, level, transfer->format, transfer->type, GLsizei(pixels.size()), pixels.data());

@@ -124,24 +124,24 @@ void Shortened::follow(const Record& record) {
   }
 }
 
-void Shortened::take(const Record& record, Fate fate) {
+void Shortened::take(const Record& record, RecordAction action) {
   follow(record);
   ThreadState& thread = threads_[thread_];
   const auto call = find_stable_id(record.id);
   if (call == CallId::EndList) thread.compiling = false;
   if (thread.compiling && call != CallId::NewList && (call || record.id == event::arrays))
     copy_record(record, lists_[thread.list]);
-  switch (fate) {
-    case Fate::keep:
+  switch (action) {
+    case RecordAction::keep:
       copy_record(record, records_);
       break;
-    case Fate::keep_without_data:
+    case RecordAction::keep_without_data:
       copy_without_data(record, records_);
       break;
-    case Fate::expand:
+    case RecordAction::expand:
       expand(record, 0);
       break;
-    case Fate::drop:
+    case RecordAction::drop:
       break;
   }
   write_when_large();

@@ -1,4 +1,4 @@
-// The shorter trace as it is written: records of the prefix by their fates, then the frames behind the cut.
+// The shorter trace as it is written: records of the prefix by their actions, then the frames behind the cut.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class Shortened {
   explicit Shortened(const std::filesystem::path& path) : writer_(path) {}
 
   /// A record before the cut.
-  void take(const Record& record, Fate fate);
+  void take(const Record& record, RecordAction action);
   /// At the cut: records that were made for it.
   void take_all(const Records& records);
   /// A record of the frames that stay; they are numbered from 1.

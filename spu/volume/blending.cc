@@ -131,8 +131,8 @@ volume::Classification alpha_as_colour(const volume::Classification& classificat
     }
     return gathered;
   }
-  if (const auto* pairs = std::get_if<volume::PairTable>(&classification)) {
-    volume::PairTable gathered = *pairs;
+  if (const auto* pairs = std::get_if<volume::PreIntegrationTable>(&classification)) {
+    volume::PreIntegrationTable gathered = *pairs;
     for (volume::Rgba& entry : gathered.entries) entry = {entry[3], 0, 0, entry[3]};
     gathered.multiply_by_alpha = alpha.squared;
     return gathered;

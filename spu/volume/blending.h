@@ -34,7 +34,7 @@ struct Blending {
   bool premultiplied = false;  ///< the fragment's colour is taken as it is, not times its alpha
   AlphaBlending alpha;
 
-  /// The picture's own alpha is not what the slices leave: a second picture is needed for it.
+  /// The image's own alpha is not what the slices leave: a second image is needed for it.
   bool alpha_stands_apart() const { return !alpha.untouched && (alpha.op != op || alpha.squared); }
   bool operator==(const Blending&) const = default;
 };
@@ -42,7 +42,7 @@ struct Blending {
 /// Reads the blend state; a reason where no operator of the nodes' does the same.
 std::optional<std::string> read_blending(const DispatchTable& gl, const Target& target, Blending& blending);
 
-/// The classification whose picture holds what `alpha` gathers in its first channel, and the fragments' alpha
+/// The classification whose image holds what `alpha` gathers in its first channel, and the fragments' alpha
 /// in its last.
 volume::Classification alpha_as_colour(const volume::Classification& classification,
                                        const AlphaBlending& alpha);

@@ -56,15 +56,15 @@ std::string_view VolumeUnit::why_probed(const KnownVolume& known, const std::vec
   if (!known.probed) return "the first of the volume";
   if (key != known.probed_under) return "tables, uniforms or state that colours depend on changed";
   if (!known.probed->range.covers(range)) return "fog goes further than it was known";
-  return session_->never_left_out(Omission::known_colours) ? "asked to" : "";
+  return session_->disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }
 
 void VolumeUnit::count_probe(std::string_view why) {
   note([&](FrameRecord& frame) {
-    Amount& probes = frame.amount(Omission::known_colours);
+    Amount& probes = frame.amount(Optimization::known_colours);
     ++(why.empty() ? probes.left_out : probes.done);
   });
-  if (!why.empty()) count_done(Omission::known_colours, why);
+  if (!why.empty()) count_done(Optimization::known_colours, why);
 }
 
 void VolumeUnit::classify(Substitution& s) {
@@ -101,18 +101,18 @@ void VolumeUnit::classify(Substitution& s) {
   count_probe(why);
   if (!why.empty()) {
     ProbeFinding finding = probe_classification(context(), s.pipeline, known.texture, s.fragment, known.range);
-    if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+    if (const auto* reason = std::get_if<std::string>(&finding)) throw Refusal{*reason};
     known.probed = std::get<Probed>(std::move(finding));
     known.probed_under = std::move(key);
     known.counters->probes.fetch_add(1, std::memory_order_relaxed);
   }
   s.request.classification = known.probed->classification;
   if (known.probed->fog) place_fog(s, *known.probed->fog);
-  for (const ObservedSlab& observed : s.slabs) {
-    if (observed.input == known.probed->slab_end) s.request.slab = observed.slab;
+  for (const ObservedSegment& observed : s.slice_segments) {
+    if (observed.input == known.probed->segment_end) s.request.slice_segment = observed.slice_segment;
   }
-  if (known.probed->slab_end && !s.request.slab)
-    throw Doubt{"the second coordinate of slabs is neither a fixed way off nor on the ray"};
+  if (known.probed->segment_end && !s.request.slice_segment)
+    throw Refusal{"the second coordinate of segments is neither a fixed way off nor on the ray"};
 }
 
 void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
@@ -124,7 +124,7 @@ void VolumeUnit::place_fog(Substitution& s, const MeasuredFog& measured) {
     vertices[v].clip = {number, 0, 0, 0};
   }
   const auto fit = fit_camera(vertices);
-  if (!fit || fit->residual > max_fit_residual) throw Doubt{"fog is not an affine map of the position"};
+  if (!fit || fit->residual > max_fit_residual) throw Refusal{"fog is not an affine map of the position"};
   const double scale = 1.0 / (double(measured.high) - measured.low);
   volume::Fog& fog = s.request.fog.emplace();
   for (std::size_t k = 0; k < 3; ++k) fog.normal[k] = fit->texture_to_clip[k] * scale;

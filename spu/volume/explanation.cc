@@ -78,10 +78,10 @@ void VolumeUnit::explain(const Substitution& s, std::string_view beginning) {
                   sampling_of(s.request, s.volume.texture.size, !s.ray_ends.empty()),
                   s.request.filter == volume::Filter::linear ? "linear" : "nearest",
                   std::holds_alternative<volume::LinearMap>(s.request.classification) ? "colours in the texels"
-                  : s.request.slab ? "table of pairs probed from the program"
-                                   : (s.pipeline.program != 0 ? "table probed from the program"
-                                      : s.pipeline.assembly   ? "table probed from the assembly program"
-                                                              : "table probed from fixed function"),
+                  : s.request.slice_segment ? "pre-integration table probed from the program"
+                                            : (s.pipeline.program != 0 ? "table probed from the program"
+                                               : s.pipeline.assembly ? "table probed from the assembly program"
+                                                                     : "table probed from fixed function"),
                   perspective ? "perspective" : "parallel", s.fit->residual, name_of(s.pipeline.blending),
                   s.pipeline.blending.premultiplied ? "premultiplied" : "plain", s.request.clip_planes.size(),
                   s.request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",

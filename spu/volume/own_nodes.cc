@@ -35,7 +35,7 @@ std::filesystem::path launcher_beside_this_library() {
   return library.parent_path().parent_path() / "bin" / "understudy";
 }
 
-/// No door and no option of the viewer may reach the nodes.
+/// No entry library and no option of the viewer may reach the nodes.
 bool is_for_the_viewer_alone(std::string_view variable) {
   return variable.starts_with("LD_AUDIT=") || variable.starts_with("LD_PRELOAD=") ||
          variable.starts_with("UNDERSTUDY_");

@@ -89,7 +89,7 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
   if (volumes == 0 && stacks) take_slice(gl, pipeline);
   if (pipeline.volume.texture != 0) {
     if (!record->fragment_source_known) return "the program's fragment shader source is not known";
-    if (record->other_stages) return "the program has geometry or tessellation stages";
+    if (record->other_shader_stages) return "the program has geometry or tessellation stages";
     pipeline.vertex_shader = record->vertex_shader;
   }
   return std::nullopt;
@@ -218,7 +218,7 @@ std::optional<std::string> read_queries(const GlContext& context) {
   return std::nullopt;
 }
 
-/// Within a slice all samples of a pixel get the colour at its centre, as from our picture, unless each sample
+/// Within a slice all samples of a pixel get the colour at its centre, as from our image, unless each sample
 /// is shaded or masked by itself.
 std::optional<std::string> read_sample_operations(const GlContext& context, const Target& target) {
   const DispatchTable& gl = *context.gl;

@@ -15,13 +15,13 @@ constexpr const char* vertex_source =
     "  gl_Position = vec4(corner, 0.0, 1.0);\n"
     "}\n";
 constexpr const char* fragment_source =
-    "uniform sampler2D picture;\n"
+    "uniform sampler2D image;\n"
     "uniform ivec2 origin;\n"
     "out vec4 colour;\n"
     "uniform bool first_as_alpha;\n"
     "uniform float shown;\n"
     "void main() {\n"
-    "  colour = texelFetch(picture, ivec2(gl_FragCoord.xy) - origin, 0);\n"
+    "  colour = texelFetch(image, ivec2(gl_FragCoord.xy) - origin, 0);\n"
     "  if (shown >= 0.0) colour.rgb = clamp(colour.rgb - shown, 0.0, 1.0);\n"
     "  if (first_as_alpha) colour.a = colour.r;\n"
     "}\n";
@@ -35,7 +35,7 @@ GLuint compile(const DispatchTable& gl, GLenum stage, bool core, const char* sou
   return shader;
 }
 
-/// Blending that puts a picture made with `op` where its samples would have gone one by one.
+/// Blending that puts an image made with `op` where its samples would have gone one by one.
 void set_blending(const DispatchTable& gl, volume::Operator op) {
   gl.BlendEquation(op == volume::Operator::max ? GL_MAX : op == volume::Operator::min ? GL_MIN : GL_FUNC_ADD);
   gl.BlendFunc(GL_ONE, op == volume::Operator::over ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE);
@@ -74,7 +74,7 @@ void Presenter::show(const volume::ImageView& image) const {
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, image.rect.width, image.rect.height, 0, GL_RGBA, GL_FLOAT,
                 image.rgba.data());
   gl.Uniform2i(origin_, image.rect.x, image.rect.y);
-  // The viewport is the rectangle: exactly its pixels are shaded. Outside of it the picture is neutral.
+  // The viewport is the rectangle: exactly its pixels are shaded. Outside of it the image is neutral.
   gl.Viewport(image.rect.x, image.rect.y, image.rect.width, image.rect.height);
   gl.DrawArrays(GL_TRIANGLES, 0, 3);
 }
@@ -118,7 +118,7 @@ void Presenter::present_alpha(const AlphaBlending& alpha, const volume::ImageVie
 void Presenter::present(const volume::ImageView& image, const Blending& blending, const Target& target,
                         const volume::ImageView* alpha) {
   const DispatchTable& gl = *context_.gl;
-  // The application's scissor and colour mask hold for its slices, so they hold for the picture.
+  // The application's scissor and colour mask hold for its slices, so they hold for the image.
   const GLboolean scissor = gl.IsEnabled(GL_SCISSOR_TEST);
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());

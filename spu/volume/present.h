@@ -1,4 +1,4 @@
-// The picture goes back where the slices would have been drawn: into whatever framebuffer the application has
+// The image goes back where the slices would have been drawn: into whatever framebuffer the application has
 // bound.
 #pragma once
 
@@ -16,7 +16,7 @@ class Presenter {
  public:
   explicit Presenter(const GlContext& context) : context_(context) {}
 
-  /// Colour and alpha as the slices would have left them. `alpha` is the picture of alpha_as_colour() where
+  /// Colour and alpha as the slices would have left them. `alpha` is the image of alpha_as_colour() where
   /// `blending.alpha_stands_apart()`.
   void present(const volume::ImageView& image, const Blending& blending, const Target& target,
                const volume::ImageView* alpha);

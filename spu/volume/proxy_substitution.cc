@@ -16,20 +16,20 @@ namespace {
 /// A box whose texture coordinates are known by name: measured again when the program or the texture changes.
 ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
   const auto box = proxy_box(measured, space);
-  if (!box) throw Doubt{"the near plane cuts the ray caster's box, or the eye is inside"};
+  if (!box) throw Refusal{"the near plane cuts the ray caster's box, or the eye is inside"};
   return *box;
 }
 
-/// Of the picture's nine parts the one that shows something in most pixels: enough to tell marches by.
-ApplicationPicture fullest_part(const ApplicationPicture& whole) {
+/// Of the image's nine parts the one that shows something in most pixels: enough to tell marches by.
+ApplicationImage fullest_part(const ApplicationImage& whole) {
   const volume::Rect& all = whole.rect;
   const int columns = std::max(1, all.width / 3);
   const int rows = std::max(1, all.height / 3);
-  ApplicationPicture fullest;
+  ApplicationImage fullest;
   std::size_t most = 0;
   for (int y = 0; y + rows <= all.height; y += rows) {
     for (int x = 0; x + columns <= all.width; x += columns) {
-      ApplicationPicture part{{all.x + x, all.y + y, columns, rows}, {}};
+      ApplicationImage part{{all.x + x, all.y + y, columns, rows}, {}};
       part.rgba.reserve(4 * part.rect.pixels());
       std::size_t visible = 0;
       for (int row = y; row < y + rows; ++row) {
@@ -59,11 +59,11 @@ void ask(volume::RenderRequest& request, const March& march, const ProxyBox& box
   request.clip_planes = cuts.parts.front();
   const std::vector<volume::HalfSpace> planes = ends_of(box, cuts);
   if (!planes.empty() && march.steps.divided)
-    throw Doubt{"planes cut a ray caster's box whose rays are divided evenly"};
+    throw Refusal{"planes cut a ray caster's box whose rays are divided evenly"};
   // One number a pixel travels to the nodes.
   if (!planes.empty() &&
       volume::footprint(request, request.region).pixels() > std::size_t(compositor::limits::max_ray_offsets))
-    throw Doubt{"planes cut a ray caster's box in more pixels than the nodes take beginnings of rays for"};
+    throw Refusal{"planes cut a ray caster's box in more pixels than the nodes take beginnings of rays for"};
   end_rays_at(planes, march.past_planes, request);
 }
 
@@ -88,12 +88,12 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   } else {
     spaces = coordinate_spaces(context_of());
     if (spaces.empty())
-      throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
+      throw Refusal{"no output of the vertex shader is a texture coordinate over the whole box"};
   }
   ProxyBox box = box_in(context_of(), spaces.front());
   use(box);
   s.eye_inside = !box.cuts.empty();
-  if (s.eye_inside && !known.left_inside.empty()) throw Doubt{known.left_inside};
+  if (s.eye_inside && !known.left_inside.empty()) throw Refusal{known.left_inside};
   s.cuts = read_cuts(context(), s.pipeline.program, box.camera.texture_to_clip);
   if (known.march && known.march->clipped == s.cuts.clipping.empty()) known.march.reset();
   upload(s, service);  // says what values there are
@@ -104,7 +104,7 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
       inputs.fixed == known.march_inputs.fixed) {
     // Rays of all directions, which may show that the step was not known in every one.
     auto again = with_new_steps(measured, *known.march, box);
-    if (const auto* reason = std::get_if<std::string>(&again)) throw Doubt{*reason};
+    if (const auto* reason = std::get_if<std::string>(&again)) throw Refusal{*reason};
     known.march = std::get<March>(std::move(again));
   }
   const bool same = known.march && inputs == known.march_inputs;
@@ -112,8 +112,8 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
                               still_marches(measured, *known.march, box));
   const char* const why = !known.march ? "the first of the volume"
                           : !holds     ? "tables, uniforms or state that colours depend on changed"
-                          : session_->never_left_out(Omission::known_colours) ? "asked to"
-                                                                              : "";
+                          : session_->disabled_optimizations(Optimization::known_colours) ? "asked to"
+                                                                                          : "";
   count_probe(why);
   if (*why != '\0') {
     // Another table is usual while somebody edits one; where samples lie is not tried again for that.
@@ -122,14 +122,14 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
     known.march = again;
     if (!again) {
       if (known.refusals >= patient_refusals && session_->ledger().frames() % refused_retry_frames != 0)
-        throw Doubt{known.last_reason};
+        throw Refusal{known.last_reason};
       spaces = coordinate_spaces(measured);
       if (spaces.empty())
-        throw Doubt{"no output of the vertex shader is a texture coordinate over the whole box"};
+        throw Refusal{"no output of the vertex shader is a texture coordinate over the whole box"};
       box = box_in(measured, spaces.front());
       use(box);
       MarchFinding finding = measure_march(measured, spaces, box);
-      if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+      if (const auto* reason = std::get_if<std::string>(&finding)) throw Refusal{*reason};
       known.march = choose_march(s, service, std::get<std::vector<March>>(finding));
       known.frames = 0;  // looked at again, as a new volume is
     }
@@ -144,23 +144,23 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   ask(s.request, *known.march, box, s.cuts);
 }
 
-void VolumeUnit::complete_picture(Substitution& s, compositor::RenderService& service, const March& march,
-                                  volume::Image& picture, volume::FrameCounts& counts) {
+void VolumeUnit::complete_image(Substitution& s, compositor::RenderService& service, const March& march,
+                                volume::Image& image, volume::FrameCounts& counts) {
   // The nodes leave out the rim that shows nothing.
   volume::Image whole(volume::footprint(s.request, s.request.region));
   std::fill(whole.rgba.begin(), whole.rgba.end(), volume::neutral_value(s.request.op));
-  compositor::blend(s.request.op, whole, picture.view());
-  picture = std::move(whole);
+  compositor::blend(s.request.op, whole, image.view());
+  image = std::move(whole);
   for (std::size_t part = 1; part < s.cuts.parts.size(); ++part) {
     s.request.clip_planes = s.cuts.parts[part];
     const TimedShare timed(clock_, &FrameShares::render);
     const compositor::Rendered rendered = service.render(s.request);
-    compositor::blend(s.request.op, picture, rendered.image);
+    compositor::blend(s.request.op, image, rendered.image);
     counts += rendered.counts;
   }
   s.request.depth = s.opaque;
-  if (needs_finish(march)) finish_picture(march, picture);
-  if (march.sum && march.sum->everywhere) cover_entered(s.ray_ends, s.request, march.sum->alpha, picture);
+  if (needs_finish(march)) finish_image(march, image);
+  if (march.sum && march.sum->everywhere) cover_entered(s.ray_ends, s.request, march.sum->alpha, image);
 }
 
 March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& service,
@@ -169,7 +169,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
   const MarchContext measured{context(),        s.run,          stages(s.pipeline.program, *record),
                               s.volume.texture, s.volume.range, !s.cuts.clipping.empty(),
                               &*s.capture};
-  std::optional<ApplicationPicture> looked_at;
+  std::optional<ApplicationImage> looked_at;
   const March* best = nullptr;
   double least = 0;
   for (const March& march : marches) {
@@ -180,8 +180,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     compose_request(s);
     hide_behind_geometry(s);
     if (!looked_at) {
-      s.drawn =
-          application_picture(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
+      s.drawn = application_image(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
       if (!s.drawn) break;
       looked_at = fullest_part(*s.drawn);
     }
@@ -190,15 +189,15 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     s.ray_ends = ends_of(*box, s.cuts);
     ask(s.request, march, *box, s.cuts);
     const compositor::Rendered rendered = service.render(s.request);
-    volume::Image picture = copy_of(rendered.image);
+    volume::Image image = copy_of(rendered.image);
     volume::FrameCounts counts;
-    complete_picture(s, service, march, picture, counts);
-    const double difference = difference_between(s.pipeline, *looked_at, picture.view()).mean_square;
+    complete_image(s, service, march, image, counts);
+    const double difference = difference_between(s.pipeline, *looked_at, image.view()).mean_square;
     if (best != nullptr && difference >= least) continue;
     best = &march;
     least = difference;
   }
-  if (best == nullptr) throw Doubt{"the driver offers no float framebuffer to compare pictures in"};
+  if (best == nullptr) throw Refusal{"the driver offers no float framebuffer to compare images in"};
   return *best;
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "spu/report/counters.h"
-#include "spu/volume/last_picture.h"
+#include "spu/volume/last_image.h"
 #include "spu/volume/own_nodes.h"
 
 namespace understudy::spu {
@@ -30,11 +30,11 @@ compositor::RenderService& RenderSession::service() {
     throw compositor::ServiceLost("waiting for a new group of render nodes");
   }
   try {
-    service_ = with_last_picture(connect(), !never_left_out(Omission::unchanged_pictures),
-                                 [this](std::string_view why) { heard_of_picture(why); });
+    service_ = with_last_image(connect(), !disabled_optimizations(Optimization::unchanged_images),
+                               [this](std::string_view why) { heard_of_image(why); });
     // The ray caster of this process is the viewer's own time.
-    if (options_.pipeline > 0 && service_->nodes() > 0) {
-      auto pipeline = std::make_unique<OneFrameBehind>(std::move(service_));
+    if (options_.frame_latency > 0 && service_->nodes() > 0) {
+      auto pipeline = std::make_unique<FrameLatency>(std::move(service_));
       pipeline_ = pipeline.get();
       service_ = std::move(pipeline);
     }
@@ -51,13 +51,13 @@ compositor::RenderService& RenderSession::service() {
   return *service_;
 }
 
-void RenderSession::heard_of_picture(std::string_view why_cast) {
+void RenderSession::heard_of_image(std::string_view why_cast) {
   const bool cast = !why_cast.empty();
   ledger_.note([&](FrameRecord& frame) {
-    Amount& pictures = frame.amount(Omission::unchanged_pictures);
-    ++(cast ? pictures.done : pictures.left_out);
+    Amount& images = frame.amount(Optimization::unchanged_images);
+    ++(cast ? images.done : images.left_out);
   });
-  if (cast) count_done(Omission::unchanged_pictures, why_cast);
+  if (cast) count_done(Optimization::unchanged_images, why_cast);
 }
 
 void RenderSession::allow_behind(bool allowed) {
@@ -67,13 +67,13 @@ void RenderSession::allow_behind(bool allowed) {
 void RenderSession::note_shown() {
   if (pipeline_ == nullptr || !pipeline_->is_behind()) return;
   behind_shown_ = true;
-  process_counters().pictures_behind.fetch_add(1, std::memory_order_relaxed);
+  process_counters().images_behind.fetch_add(1, std::memory_order_relaxed);
 }
 
 std::unique_ptr<compositor::RenderService> RenderSession::connect() {
   if (options_.nodes > 0 && address_.empty() && !connected_once_) address_ = start_own_nodes(options_.nodes);
   if (address_.empty()) return compositor::embedded_service();
-  return compositor::linked_service(address_, connected_once_ ? later_patience_ms : first_patience_ms);
+  return compositor::remote_render_service(address_, connected_once_ ? later_patience_ms : first_patience_ms);
 }
 
 bool RenderSession::launcher_tells() const {

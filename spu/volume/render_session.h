@@ -12,8 +12,8 @@
 
 #include "compositor/service.h"
 #include "spu/options.h"
+#include "spu/volume/frame_latency.h"
 #include "spu/volume/frame_ledger.h"
-#include "spu/volume/one_frame_behind.h"
 
 namespace understudy::spu {
 
@@ -23,7 +23,9 @@ class RenderSession {
 
   const Options& options() const { return options_; }
 
-  bool never_left_out(Omission omission) const { return options_.never_left_out[std::size_t(omission)]; }
+  bool disabled_optimizations(Optimization optimization) const {
+    return options_.disabled_optimizations[std::size_t(optimization)];
+  }
 
   FrameLedger& ledger() { return ledger_; }
 
@@ -38,13 +40,13 @@ class RenderSession {
   std::uint64_t generation() const { return generation_; }
 
   /// Told at frame ends: whether this thread's window is one that can be asked to draw itself again. Only then
-  /// pictures may be behind.
+  /// images may be behind.
   void window_can_be_asked(bool can) { window_can_be_asked_ = can; }
   bool window_can_be_asked() const { return window_can_be_asked_; }
-  /// Whether the next pictures may be those of the frame before (`--pipeline`); without nodes they never are.
-  /// Needs the lock.
+  /// Whether the next images may be those of the frame before (`--frame-latency`); without nodes they never
+  /// are. Needs the lock.
   void allow_behind(bool allowed);
-  /// The latest picture is to be shown: counted where it is behind. Needs the lock.
+  /// The latest image is to be shown: counted where it is behind. Needs the lock.
   void note_shown();
   /// Whether one has been shown that was behind since this was last asked.
   bool take_behind() { return behind_shown_.exchange(false); }
@@ -66,14 +68,14 @@ class RenderSession {
   /// Whoever started the nodes says itself what became of them; then nothing is said here.
   bool launcher_tells() const;
   std::unique_ptr<compositor::RenderService> connect();
-  void heard_of_picture(std::string_view why_cast);
+  void heard_of_image(std::string_view why_cast);
 
   const Options options_;
   FrameLedger ledger_;
   std::mutex mutex_;
   std::string address_;  ///< of the nodes; empty: embedded
   std::unique_ptr<compositor::RenderService> service_;
-  OneFrameBehind* pipeline_ = nullptr;  ///< the service, where pictures may be behind
+  FrameLatency* pipeline_ = nullptr;  ///< the service, where images may be behind
   std::atomic<bool> window_can_be_asked_ = false;
   std::atomic<bool> behind_shown_ = false;
   std::uint64_t generation_ = 0;

@@ -1,4 +1,4 @@
-// Composited frames as files: float pictures that can be compared to the last bit (`understudy compare`).
+// Composited frames as files: float images that can be compared to the last bit (`understudy compare`).
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// From a request to the picture in the application's framebuffer.
+// From a request to the image in the application's framebuffer.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -14,20 +14,20 @@
 namespace understudy::spu {
 namespace {
 
-/// Magenta wherever the volume is: a picture that proves where it came from.
-void tint(volume::Image& picture) {
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    const float alpha = picture.rgba[i + 3];
-    picture.rgba[i] = alpha;
-    picture.rgba[i + 1] = 0;
-    picture.rgba[i + 2] = alpha;
+/// Magenta wherever the volume is: an image that proves where it came from.
+void tint(volume::Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const float alpha = image.rgba[i + 3];
+    image.rgba[i] = alpha;
+    image.rgba[i + 1] = 0;
+    image.rgba[i + 2] = alpha;
   }
 }
 
 }  // namespace
 
-/// A picture on its way to the framebuffer.
-struct VolumeUnit::Picture {
+/// An image on its way to the framebuffer.
+struct VolumeUnit::RenderedImage {
   volume::ImageView shown;  ///< the service's, gone with its next one; or the one that is kept here
   volume::Image kept;
   volume::FrameCounts counts;
@@ -44,8 +44,8 @@ bool VolumeUnit::is_finished_here(const Substitution& s) {
 
 bool VolumeUnit::may_be_behind(const Substitution& s) {
   const Options& options = session_->options();
-  if (options.pipeline == 0 || options.has_budget() || !options.save_frames.empty()) return false;
-  // What is compared with this frame's request, or shown together with another picture, belongs to this frame.
+  if (options.frame_latency == 0 || options.has_budget() || !options.save_frames.empty()) return false;
+  // What is compared with this frame's request, or shown together with another image, belongs to this frame.
   if (to_be_verified(s) || is_finished_here(s) || s.pipeline.blending.alpha_stands_apart()) return false;
   // Framebuffer objects may be kept, and no window shows them again.
   GLint framebuffer = 0;
@@ -53,26 +53,26 @@ bool VolumeUnit::may_be_behind(const Substitution& s) {
   return framebuffer == 0;
 }
 
-void VolumeUnit::cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture) {
+void VolumeUnit::cast_own_samples(compositor::RenderService& service, Substitution& s, RenderedImage& image) {
   {
     const TimedShare timed(clock_, &FrameShares::render);
     session_->allow_behind(may_be_behind(s));
     const compositor::Rendered rendered = service.render(s.request);
     session_->allow_behind(false);
     session_->note_shown();
-    picture.shown = rendered.image;
-    picture.counts += rendered.counts;
+    image.shown = rendered.image;
+    image.counts += rendered.counts;
   }
   if (is_finished_here(s)) {
     const TimedShare timed(clock_, &FrameShares::presentation);
-    picture.keep();
-    complete_picture(s, service, *s.volume.march, picture.kept, picture.counts);
-    picture.shown = picture.kept.view();
+    image.keep();
+    complete_image(s, service, *s.volume.march, image.kept, image.counts);
+    image.shown = image.kept.view();
   }
   if (s.proxy) s.request.depth = s.opaque;
 }
 
-bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitution& s, Picture& picture) {
+bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitution& s, RenderedImage& image) {
   const Options& options = session_->options();
   BudgetCounters& counters = s.volume.counters->budget;
   std::optional<volume::RenderRequest> request;
@@ -93,14 +93,14 @@ bool VolumeUnit::cast_within_budget(compositor::RenderService& service, Substitu
   {
     const TimedShare timed(clock_, &FrameShares::render);
     const compositor::Rendered rendered = service.render(*request);
-    picture.shown = rendered.image;
-    picture.counts += rendered.counts;
+    image.shown = rendered.image;
+    image.counts += rendered.counts;
     repeated = rendered.repeated;
   }
   note([](FrameRecord& frame) { ++frame.within_budget; });
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   const TimedShare timed(clock_, &FrameShares::budget);
-  s.volume.budget->look_at(service, picture.shown, repeated ? std::nullopt : std::optional(took.count()),
+  s.volume.budget->look_at(service, image.shown, repeated ? std::nullopt : std::optional(took.count()),
                            counters);
   return true;
 }
@@ -109,26 +109,28 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
                                      const std::function<void(const volume::ImageView&)>& check) {
   const Options& options = session_->options();
   const Blending& blending = s.pipeline.blending;
-  const auto left_out = [&](Omission omission) { return !session_->never_left_out(omission); };
-  s.request.leave_out = {left_out(Omission::empty_blocks), left_out(Omission::lesser_samples),
-                         left_out(Omission::footprints)};
-  if (!left_out(Omission::hidden_samples)) s.request.termination = 0;
-  Picture picture;
+  const auto left_out = [&](Optimization optimization) {
+    return !session_->disabled_optimizations(optimization);
+  };
+  s.request.optimizations = {left_out(Optimization::empty_bricks), left_out(Optimization::dominated_samples),
+                             left_out(Optimization::footprints)};
+  if (!left_out(Optimization::hidden_samples)) s.request.termination = 0;
+  RenderedImage image;
   const bool own = !options.has_budget() || to_be_verified(s);
   if (own) {
-    cast_own_samples(service, s, picture);
-    check(picture.shown);
+    cast_own_samples(service, s, image);
+    check(image.shown);
   }
-  if (options.has_budget() && !cast_within_budget(service, s, picture) && !own)
-    cast_own_samples(service, s, picture);
-  if (options.debug_tint || blending.alpha_stands_apart()) picture.keep();
-  const volume::ImageView shown = picture.shown;
+  if (options.has_budget() && !cast_within_budget(service, s, image) && !own)
+    cast_own_samples(service, s, image);
+  if (options.debug_tint || blending.alpha_stands_apart()) image.keep();
+  const volume::ImageView shown = image.shown;
   if (!options.save_frames.empty()) {
     const std::string trouble = save_frame(options.save_frames, saved_++, s.request.viewport, shown,
                                            volume::neutral_value(blending.op));
     if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
   }
-  if (options.debug_tint) tint(picture.kept);
+  if (options.debug_tint) tint(image.kept);
   const TimedShare timed(clock_, &FrameShares::presentation);
   if (!presenter_) presenter_ = std::make_unique<Presenter>(context());
   if (blending.alpha_stands_apart() && s.proxy) {
@@ -147,15 +149,16 @@ volume::FrameCounts VolumeUnit::show(compositor::RenderService& service, Substit
     request.op = blending.alpha.op;
     request.fog.reset();
     // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
-    if (s.pipeline.target.alpha_bits <= 8 && left_out(Omission::hidden_samples)) request.termination = 1e-3F;
+    if (s.pipeline.target.alpha_bits <= 8 && left_out(Optimization::hidden_samples))
+      request.termination = 1e-3F;
     const TimedShare also_rendered(clock_, &FrameShares::render);
     const compositor::Rendered alpha = service.render(request);
-    picture.counts += alpha.counts;
+    image.counts += alpha.counts;
     presenter_->present(shown, blending, s.pipeline.target, &alpha.image);
   } else {
     presenter_->present(shown, blending, s.pipeline.target, nullptr);
   }
-  return picture.counts;
+  return image.counts;
 }
 
 }  // namespace understudy::spu

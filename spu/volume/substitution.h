@@ -1,18 +1,18 @@
-// What is found out about one run on its way to a picture.
+// What is found out about one run on its way to an image.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "spu/volume/geometry/slab.h"
+#include "spu/volume/geometry/slice_segment.h"
 #include "spu/volume/verify.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
 
 /// Ends the substitution of one run: the application draws, and the reason goes to the report.
-struct Doubt {
+struct Refusal {
   std::string reason;
 };
 
@@ -45,9 +45,9 @@ struct VolumeUnit::Substitution {
   std::vector<volume::HalfSpace> ray_ends{};  ///< planes where its rays begin and end
   /// Of the application's opaque geometry, where the request's own depth tells ends of rays as well.
   std::optional<volume::DepthImage> opaque{};
-  std::vector<ObservedSlab> slabs{};  ///< what may be the second coordinates of slabs
+  std::vector<ObservedSegment> slice_segments{};  ///< what may be the second coordinates of segments
   volume::RenderRequest request{};
-  std::optional<ApplicationPicture> drawn{};  ///< the application's own, where that was drawn already
+  std::optional<ApplicationImage> drawn{};  ///< the application's own, where that was drawn already
 };
 
 }  // namespace understudy::spu

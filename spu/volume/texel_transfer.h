@@ -5,8 +5,8 @@
 #include <span>
 
 #include "compositor/service.h"
+#include "spu/volume/block_hashes.h"
 #include "spu/volume/texels.h"
-#include "spu/volume/tile_hashes.h"
 
 namespace understudy::spu {
 
@@ -18,11 +18,11 @@ struct Transferred {
 
 /// Sends all of `volume.stored`; `hashes` are new.
 Transferred send_volume(compositor::RenderService& service, const volume::VolumeDescription& volume,
-                        TexelSource& source, TileHashes& hashes);
+                        TexelSource& source, BlockHashes& hashes);
 
 /// Reads `regions` again and sends what differs there from what `hashes` know. Where something does, the
 /// version of `volume` grows; otherwise the service hears nothing.
 Transferred send_changes(compositor::RenderService& service, volume::VolumeDescription& volume,
-                         std::span<const volume::TexelBox> regions, TexelSource& source, TileHashes& hashes);
+                         std::span<const volume::TexelBox> regions, TexelSource& source, BlockHashes& hashes);
 
 }  // namespace understudy::spu

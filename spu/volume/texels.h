@@ -1,8 +1,8 @@
 // The volume itself, read from the driver.
 //
 // Whatever way the texels went up (whole, slice by slice, from a buffer, copied, defined twice), the driver
-// holds the result; it is read when a draw is recognised, slab by slab, and goes straight into bricks. No copy
-// stays here.
+// holds the result; it is read when a draw is recognised, slice range by slice range, and goes straight into
+// bricks. No copy stays here.
 #pragma once
 
 #include <memory>

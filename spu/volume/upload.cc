@@ -22,24 +22,24 @@ volume::TexelBox texels_of(const volume::Box& region, const std::array<int, 3>& 
   return box;
 }
 
-/// The region, and where the far ends of its slabs may lie.
-volume::Box with_slabs(volume::Box region, const std::vector<ObservedSlab>& slabs) {
+/// The region, and where the far ends of its segments may lie.
+volume::Box with_slice_segments(volume::Box region, const std::vector<ObservedSegment>& slice_segments) {
   const volume::Box without = region;
-  for (const ObservedSlab& observed : slabs) {
+  for (const ObservedSegment& observed : slice_segments) {
     for (std::size_t k = 0; k < 3; ++k) {
-      region.low[k] = std::min(region.low[k], without.low[k] - observed.slab.reach[k]);
-      region.high[k] = std::max(region.high[k], without.high[k] + observed.slab.reach[k]);
+      region.low[k] = std::min(region.low[k], without.low[k] - observed.slice_segment.reach[k]);
+      region.high[k] = std::max(region.high[k], without.high[k] + observed.slice_segment.reach[k]);
     }
   }
   return region;
 }
 
-/// Cells around their own that nodes need for slabs: whole blocks, so that a view that turns sends nothing
+/// Cells around their own that nodes need for segments: whole blocks, so that a view that turns sends nothing
 /// anew.
-int margin_of(const std::vector<ObservedSlab>& slabs, const std::array<int, 3>& size) {
+int ghost_layer_of(const std::vector<ObservedSegment>& slice_segments, const std::array<int, 3>& size) {
   double cells = 0;
-  for (const ObservedSlab& observed : slabs) {
-    for (std::size_t k = 0; k < 3; ++k) cells = std::max(cells, observed.slab.reach[k] * size[k]);
+  for (const ObservedSegment& observed : slice_segments) {
+    for (std::size_t k = 0; k < 3; ++k) cells = std::max(cells, observed.slice_segment.reach[k] * size[k]);
   }
   constexpr int block = 8;
   return block * int(std::ceil(cells / block));
@@ -56,7 +56,7 @@ void VolumeUnit::describe_volume(Substitution& s) {
   TextureDescription texture;
   auto reason = describe_texture(context(), s.pipeline.volume.target, s.pipeline.volume.unit, texture);
   gl.ActiveTexture(GLenum(active));
-  if (reason) throw Doubt{*reason};
+  if (reason) throw Refusal{*reason};
   if (s.pipeline.stack) {
     texture.size[2] = int(s.stack.size());
     texture.wrap[2] = volume::Wrap::edge;
@@ -77,21 +77,21 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
   wanted.wrap = texture.wrap;
   wanted.border = texture.border;
   const bool kept = known.generation == session_->generation();
-  wanted.stored = texels_of(with_slabs(s.slices.region, s.slabs), texture.size);
-  wanted.margin = margin_of(s.slabs, texture.size);
-  if (session_->options().has_budget()) wanted.margin = std::max(wanted.margin, budget_margin);
-  if (kept) wanted.margin = std::max(wanted.margin, known.description.margin);
+  wanted.stored = texels_of(with_slice_segments(s.slices.region, s.slice_segments), texture.size);
+  wanted.ghost_layer = ghost_layer_of(s.slice_segments, texture.size);
+  if (session_->options().has_budget()) wanted.ghost_layer = std::max(wanted.ghost_layer, budget_ghost_layer);
+  if (kept) wanted.ghost_layer = std::max(wanted.ghost_layer, known.description.ghost_layer);
   if (kept && volume::contains(known.description.stored, wanted.stored)) {
     wanted.stored = known.description.stored;
   } else if (kept) {
     // The view showed a part first and shows more now: take the whole, once.
     wanted.stored = {{0, 0, 0}, texture.size};
   }
-  const bool everything = session_->never_left_out(Omission::unchanged_texels);
+  const bool everything = session_->disabled_optimizations(Optimization::unchanged_texels);
   const bool changed_at_most = kept && wanted == known.description && !everything;
   if (changed_at_most && known.texture_version == s.texture_version) {
     note([&](FrameRecord& frame) {
-      frame.amount(Omission::unchanged_texels).left_out +=
+      frame.amount(Optimization::unchanged_texels).left_out +=
           volume::texels_in(wanted.stored) * volume::bytes_per_texel(wanted.type);
     });
     return;
@@ -119,7 +119,7 @@ void VolumeUnit::upload(Substitution& s, compositor::RenderService& service) {
     } else {
       if (wanted.id == 0) wanted.id = session_->new_volume_id();
       ++wanted.version;
-      known.hashes = TileHashes(wanted.stored, wanted.type);
+      known.hashes = BlockHashes(wanted.stored, wanted.type);
       transferred = send_volume(service, wanted, *source, known.hashes);
     }
   }
@@ -134,11 +134,11 @@ void VolumeUnit::count_transferred(VolumeCounters& volume, const Transferred& tr
   volume.texel_bytes_sent.fetch_add(transferred.sent, std::memory_order_relaxed);
   volume.texel_bytes_left_out.fetch_add(transferred.left_out, std::memory_order_relaxed);
   note([&](FrameRecord& frame) {
-    Amount& texels = frame.amount(Omission::unchanged_texels);
+    Amount& texels = frame.amount(Optimization::unchanged_texels);
     texels.done += transferred.sent;
     texels.left_out += transferred.left_out;
   });
-  if (transferred.sent > 0) count_done(Omission::unchanged_texels, why);
+  if (transferred.sent > 0) count_done(Optimization::unchanged_texels, why);
 }
 
 }  // namespace understudy::spu

@@ -9,7 +9,7 @@
 namespace understudy::spu {
 namespace {
 
-/// The application's blending with an alpha that goes the way of the colour, as the nodes' pictures have it.
+/// The application's blending with an alpha that goes the way of the colour, as the nodes' images have it.
 class ColourBlending {
  public:
   ColourBlending(const DispatchTable& gl, const Blending& blending) : gl_(gl) {
@@ -69,28 +69,28 @@ void ApplicationDrawing::add(const Run& run) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound));
 }
 
-ApplicationPicture ApplicationDrawing::picture(const volume::Rect& rect) const {
+ApplicationImage ApplicationDrawing::image(const volume::Rect& rect) const {
   const DispatchTable& gl = *context_.gl;
   std::array<GLint, 2> bound{};
   gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound[0]);
   gl.GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound[1]);
-  ApplicationPicture drawn{rect, framebuffer_->pixels(rect)};
+  ApplicationImage drawn{rect, framebuffer_->pixels(rect)};
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
   return drawn;
 }
 
-std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
-                                                      const volume::RenderRequest& request,
-                                                      const volume::Rect& rect) {
+std::optional<ApplicationImage> application_image(const GlContext& context, const Run& run,
+                                                  const volume::RenderRequest& request,
+                                                  const volume::Rect& rect) {
   if (rect.empty()) return std::nullopt;
   ApplicationDrawing drawing(context, run.pipeline(), request);
   drawing.add(run);
   if (!drawing.complete()) return std::nullopt;
-  return drawing.picture(rect);
+  return drawing.image(rect);
 }
 
-Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,
+Difference difference_between(const Pipeline& pipeline, const ApplicationImage& drawn,
                               const volume::ImageView& image) {
   const volume::Rect& rect = drawn.rect;
   const bool minimum = pipeline.blending.op == volume::Operator::min;
@@ -123,7 +123,7 @@ Difference difference_between(const Pipeline& pipeline, const ApplicationPicture
 std::optional<Difference> compare_with_application(const GlContext& context, const Run& run,
                                                    const volume::RenderRequest& request,
                                                    const volume::ImageView& image) {
-  const auto drawn = application_picture(context, run, request, image.rect);
+  const auto drawn = application_image(context, run, request, image.rect);
   if (!drawn) return std::nullopt;
   return difference_between(run.pipeline(), *drawn, image);
 }

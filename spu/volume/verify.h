@@ -1,8 +1,8 @@
-// Trust, and check: the application's own run is drawn off screen and compared with the picture that would
+// Trust, and check: the application's own run is drawn off screen and compared with the image that would
 // replace it.
 //
 // The framebuffer is float. An 8-bit one loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha
-// 2/255), and would judge the exact picture by the application's rounding.
+// 2/255), and would judge the exact image by the application's rounding.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct Difference {
 };
 
 /// Four floats a pixel of `rect`.
-struct ApplicationPicture {
+struct ApplicationImage {
   volume::Rect rect;
   std::vector<float> rgba;
 };
@@ -38,7 +38,7 @@ class ApplicationDrawing {
   bool complete() const { return framebuffer_ && framebuffer_->complete(); }
   /// Draws the run's calls in the state that they were made for.
   void add(const Run& run);
-  ApplicationPicture picture(const volume::Rect& rect) const;
+  ApplicationImage image(const volume::Rect& rect) const;
 
  private:
   const GlContext& context_;
@@ -46,13 +46,13 @@ class ApplicationDrawing {
 };
 
 /// That of one run. Null when the driver cannot provide the framebuffer.
-std::optional<ApplicationPicture> application_picture(const GlContext& context, const Run& run,
-                                                      const volume::RenderRequest& request,
-                                                      const volume::Rect& rect);
+std::optional<ApplicationImage> application_image(const GlContext& context, const Run& run,
+                                                  const volume::RenderRequest& request,
+                                                  const volume::Rect& rect);
 
 /// Between that and `image`, which is empty outside of its rectangle, both as the application's framebuffer
 /// could show them: clamped to [0,1], or, where it is float, as parts of the largest value.
-Difference difference_between(const Pipeline& pipeline, const ApplicationPicture& drawn,
+Difference difference_between(const Pipeline& pipeline, const ApplicationImage& drawn,
                               const volume::ImageView& image);
 
 /// Both of these. Null when the driver cannot provide the framebuffer.

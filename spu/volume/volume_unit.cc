@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "spu/report/left_out.h"
+#include "spu/report/skipped_work.h"
 #include "spu/track/track.h"
 #include "spu/volume/conditional_render.h"
+#include "spu/volume/deferred_depth_write.h"
 #include "spu/volume/depth.h"
-#include "spu/volume/depth_debt.h"
 #include "spu/volume/draw_slots.h"
 #include "spu/volume/geometry/feedback.h"
 #include "spu/volume/merging/merging.h"
@@ -68,7 +68,7 @@ std::vector<volume::HalfSpace> clip_planes_in_texture_space(const DispatchTable&
   for (GLint i = 0; i < count; ++i) {
     if (!gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) continue;
     if (!clip_to_eye) clip_to_eye = volume::inverse(projection_matrix(gl));
-    if (!clip_to_eye) throw Doubt{"the projection matrix is singular"};
+    if (!clip_to_eye) throw Refusal{"the projection matrix is singular"};
     std::array<double, 4> eye{};
     gl.GetClipPlane(GLenum(GL_CLIP_PLANE0 + i), eye.data());
     const auto texture = plane_times(plane_times(eye, *clip_to_eye), texture_to_clip);
@@ -89,7 +89,7 @@ bool clips_in_shader(const DispatchTable& gl) {
 /// What fixed-function fog goes by: how far vertices lie from the plane through the eye.
 std::vector<float> eye_distances(const DispatchTable& gl, std::span<const ObservedVertex> vertices) {
   const auto clip_to_eye = volume::inverse(projection_matrix(gl));
-  if (!clip_to_eye) throw Doubt{"the projection matrix is singular"};
+  if (!clip_to_eye) throw Refusal{"the projection matrix is singular"};
   std::vector<float> distances;
   for (const ObservedVertex& vertex : vertices) {
     const volume::Vec4 eye = volume::transform(*clip_to_eye, vertex.clip);
@@ -182,7 +182,7 @@ void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
   count_reason(*volume.counters, reason);
   volume.last_reason = reason;
   if (new_reason && say) {
-    fmt::print(stderr, "understudy: volume {} left to the application: {}\n", texture, reason);
+    fmt::print(stderr, "understudy: volume {} not substituted: {}\n", texture, reason);
   }
 }
 
@@ -206,7 +206,7 @@ bool VolumeUnit::begins_run() {
     if (conditional_render) return false;
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
-    reason = known(texture).given_back;
+    reason = known(texture).handed_back;
     if (conditional_render) reason = "the slices are rendered conditionally";
     if (reason.empty() && chain_.group().is_rendered_to(texture))
       reason = "the volume texture is rendered into, or another texture shares its texels";
@@ -250,12 +250,12 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
     return false;
   }
   try {
-    if (const std::string& reason = known(texture).given_back; !reason.empty()) throw Doubt{reason};
+    if (const std::string& reason = known(texture).handed_back; !reason.empty()) throw Refusal{reason};
     substitute(closed);
     return true;
-  } catch (const Doubt& doubt) {
+  } catch (const Refusal& refusal) {
     ++known(texture).refusals;
-    leave(texture, doubt.reason);
+    leave(texture, refusal.reason);
   } catch (const NothingVisible&) {
   } catch (const compositor::RequestRefused& refused) {
     leave(texture, refused.what());
@@ -310,7 +310,7 @@ bool VolumeUnit::is_a_stack(const Run& run) {
     find_geometry(trial);
     other_stacks_ = 0;
     return true;
-  } catch (const Doubt&) {
+  } catch (const Refusal&) {
     // Each look costs a drawing in feedback mode: whoever draws other things from many textures is soon left
     // alone.
     if (++other_stacks_ >= patient_refusals) stacks_possible_ = false;
@@ -338,9 +338,9 @@ void VolumeUnit::observe(Substitution& s) {
     const ProgramStages& parts = stages(s.pipeline.program, *record);
     s.fragment.inputs = parts.inputs;
     const bool one_draw = s.run.draws == 1 && parts.observer != 0;
-    if (!parts.trouble.empty() && !one_draw) throw Doubt{parts.trouble};
+    if (!parts.trouble.empty() && !one_draw) throw Refusal{parts.trouble};
     if (record->vertex_shader) {
-      if (clips_in_shader(gl)) throw Doubt{"clip planes cut what a vertex shader draws"};
+      if (clips_in_shader(gl)) throw Refusal{"clip planes cut what a vertex shader draws"};
       const std::string known_coordinate = s.volume.march ? s.volume.march->space.input : std::string();
       Capture capture = capture_vertices(context(), s.run, parts, known_coordinate);
       if (!capture.fit && !known_coordinate.empty()) capture = capture_vertices(context(), s.run, parts);
@@ -350,8 +350,8 @@ void VolumeUnit::observe(Substitution& s) {
         s.capture = std::move(capture);
         return;
       }
-      if (!parts.trouble.empty()) throw Doubt{parts.trouble};
-      if (!capture.fit) throw Doubt{"no output of the vertex shader is an affine map of the position"};
+      if (!parts.trouble.empty()) throw Refusal{parts.trouble};
+      if (!capture.fit) throw Refusal{"no output of the vertex shader is an affine map of the position"};
       s.polygons = std::move(capture.polygons);
       s.fit = capture.fit;
       if (s.pipeline.stack) {
@@ -370,11 +370,11 @@ void VolumeUnit::observe(Substitution& s) {
                          {"gl_FrontColor", GL_FLOAT_VEC4, 4, false}};
     if (s.pipeline.assembly) append_untold_inputs(s.fragment.inputs);
   }
-  if (gl.IsEnabled(GL_COLOR_SUM)) throw Doubt{"a secondary colour is added after texturing"};
+  if (gl.IsEnabled(GL_COLOR_SUM)) throw Refusal{"a secondary colour is added after texturing"};
   GLint colour_control = 0;
   gl.GetIntegerv(GL_LIGHT_MODEL_COLOR_CONTROL, &colour_control);
   if (gl.IsEnabled(GL_LIGHTING) && colour_control == GL_SEPARATE_SPECULAR_COLOR) {
-    throw Doubt{"specular colour is added after texturing"};
+    throw Refusal{"specular colour is added after texturing"};
   }
   s.polygons = observe_by_feedback(context(), s.run);
   if (s.polygons.count() == 0) throw NothingVisible{};
@@ -384,7 +384,7 @@ void VolumeUnit::observe(Substitution& s) {
     s.fragment.inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
   }
   if (!s.polygons.constant_colour)
-    throw Doubt{"the colour varies over the slices (lighting with a varying normal)"};
+    throw Refusal{"the colour varies over the slices (lighting with a varying normal)"};
   s.fragment.coordinate = "gl_TexCoord[0]";
   for (const StageInput& input : s.fragment.inputs) {
     if (input.name == "gl_TexCoord[0]") {
@@ -396,7 +396,7 @@ void VolumeUnit::observe(Substitution& s) {
     } else if (s.pipeline.assembly) {
       s.fragment.first.push_back({0.25F, 0.25F, 0.25F, 1});
     } else {
-      throw Doubt{"the fragment shader reads " + input.name + ", which feedback does not tell"};
+      throw Refusal{"the fragment shader reads " + input.name + ", which feedback does not tell"};
     }
   }
   s.fragment.last = s.fragment.first;
@@ -411,17 +411,18 @@ void VolumeUnit::observe(Substitution& s) {
 
 void VolumeUnit::find_geometry(Substitution& s) {
   if (!s.fit) s.fit = fit_camera(s.polygons.vertices);
-  if (!s.fit) throw Doubt{"the draw does not span the volume (a single slice or face)"};
-  if (s.fit->residual > max_fit_residual) throw Doubt{"positions are not an affine map of texture coordinates"};
+  if (!s.fit) throw Refusal{"the draw does not span the volume (a single slice or face)"};
+  if (s.fit->residual > max_fit_residual)
+    throw Refusal{"positions are not an affine map of texture coordinates"};
   if (s.polygons.clipped) {
     s.request.clip_planes = clip_planes_in_texture_space(*context().gl, s.fit->texture_to_clip);
   }
   SliceFinding finding = find_slices(s.polygons, *s.fit, s.request.clip_planes, order_of(s.pipeline));
-  if (const auto* reason = std::get_if<std::string>(&finding)) throw Doubt{*reason};
+  if (const auto* reason = std::get_if<std::string>(&finding)) throw Refusal{*reason};
   s.slices = std::get<SliceSet>(finding);
   if (!s.capture || s.pipeline.stack) return;
-  s.slabs = find_slabs(*s.capture, s.polygons.vertices, s.fragment.inputs, s.slices, *s.fit);
-  for (const ObservedSlab& observed : s.slabs) s.fragment.slab_ends.push_back(observed.input);
+  s.slice_segments = find_slice_segments(*s.capture, s.polygons.vertices, s.fragment.inputs, s.slices, *s.fit);
+  for (const ObservedSegment& observed : s.slice_segments) s.fragment.segment_ends.push_back(observed.input);
 }
 
 void VolumeUnit::compose_request(Substitution& s) {
@@ -454,13 +455,14 @@ void VolumeUnit::hide_behind_geometry(Substitution& s) {
   if (!s.request.depth) return;
   // A scene without opaque geometry sends none.
   const std::uint64_t bytes = sizeof(float) * s.request.depth->depth.size();
-  const bool absent = hides_nothing(*s.request.depth) && !session_->never_left_out(Omission::absent_depth);
+  const bool absent =
+      hides_nothing(*s.request.depth) && !session_->disabled_optimizations(Optimization::absent_depth);
   if (absent) s.request.depth.reset();
   note([&](FrameRecord& frame) {
-    Amount& depth = frame.amount(Omission::absent_depth);
+    Amount& depth = frame.amount(Optimization::absent_depth);
     (absent ? depth.left_out : depth.done) += bytes;
   });
-  if (!absent) count_done(Omission::absent_depth, "opaque geometry stands in the picture");
+  if (!absent) count_done(Optimization::absent_depth, "opaque geometry stands in the image");
 }
 
 bool VolumeUnit::to_be_verified(const Substitution& s) const {
@@ -480,8 +482,8 @@ void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
   if (!difference) return;
   if (s.eye_inside && difference->psnr() < std::max(options.verify_psnr, inside_psnr)) {
     s.volume.left_inside = fmt::format(
-        "seen from inside, its picture differs from the application's own by {:.1f} dB", difference->psnr());
-    throw Doubt{s.volume.left_inside};
+        "seen from inside, its image differs from the application's own by {:.1f} dB", difference->psnr());
+    throw Refusal{s.volume.left_inside};
   }
   s.volume.verified_inside = s.eye_inside;
   judge(s.volume, *difference);
@@ -495,10 +497,10 @@ void VolumeUnit::judge(KnownVolume& known, const Difference& difference) {
   note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
   const double tolerance = session_->options().verify_psnr;
   if (difference.psnr() < tolerance) {
-    known.given_back =
-        fmt::format("its picture differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
+    known.handed_back =
+        fmt::format("its image differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
                     difference.psnr(), tolerance);
-    throw Doubt{known.given_back};
+    throw Refusal{known.handed_back};
   }
 }
 
@@ -516,7 +518,7 @@ void VolumeUnit::substitute(std::unique_ptr<Run>& closed) {
   observe(s);
   if (!s.proxy) find_geometry(s);
   for (const GLuint texture : s.stack) {
-    if (chain_.group().is_rendered_to(texture)) throw Doubt{"a texture of the stack is rendered into"};
+    if (chain_.group().is_rendered_to(texture)) throw Refusal{"a texture of the stack is rendered into"};
     // Any two stacks, and any two states of one, differ in the mixture.
     constexpr std::uint64_t prime = 0x100000001b3;
     s.texture_version = (s.texture_version * prime) ^ texture;
@@ -555,17 +557,17 @@ void VolumeUnit::count_substituted(KnownVolume& known, const volume::FrameCounts
 
 void VolumeUnit::settle_depth(const Substitution& s) {
   if (!s.pipeline.depth_test || !s.pipeline.depth_write) return;
-  const std::string_view why = s.volume.frames == 0                               ? "the first of the volume"
-                               : s.volume.depth_looked_at                         ? "somebody looked at it"
-                               : session_->never_left_out(Omission::unseen_depth) ? "asked to"
-                                                                                  : "";
+  const std::string_view why = s.volume.frames == 0       ? "the first of the volume"
+                               : s.volume.depth_looked_at ? "somebody looked at it"
+                               : session_->disabled_optimizations(Optimization::unseen_depth) ? "asked to"
+                                                                                              : "";
   note([&](FrameRecord& frame) {
-    Amount& runs = frame.amount(Omission::unseen_depth);
+    Amount& runs = frame.amount(Optimization::unseen_depth);
     ++(why.empty() ? runs.left_out : runs.done);
   });
   if (!why.empty()) {
     pay_depth(*context().gl, s.run);
-    count_done(Omission::unseen_depth, why);
+    count_done(Optimization::unseen_depth, why);
   }
   if (s.volume.depth_looked_at) return;
   depth_watched_ = s.run.volume_texture();

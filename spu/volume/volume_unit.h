@@ -3,7 +3,7 @@
 //   watching ──(a draw that may be a volume)──► deferring ──(any other call, a frame end)──► close the run:
 //     observe geometry → fit camera → find slices → classification → texels (once) → render → present
 //   Runs through the textures of one volume wait between recognition and render for each other (merging/).
-//   Any doubt on that way ends in the application's own drawing: the run is replayed as it was.
+//   Any refusal on that way ends in the application's own drawing: the run is replayed as it was.
 #pragma once
 
 #include <chrono>
@@ -17,6 +17,7 @@
 
 #include "spu/chain.h"
 #include "spu/report/counters.h"
+#include "spu/volume/block_hashes.h"
 #include "spu/volume/budget/budget.h"
 #include "spu/volume/classification/probe.h"
 #include "spu/volume/context.h"
@@ -28,7 +29,6 @@
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
 #include "spu/volume/stack_detection.h"
-#include "spu/volume/tile_hashes.h"
 
 namespace understudy::spu {
 
@@ -41,7 +41,7 @@ struct KnownVolume {
   volume::VolumeDescription description;  ///< as the service has it
   std::uint64_t generation = 0;           ///< of the service that has it; 0: none
   std::uint64_t texture_version = 0;      ///< of the texture, whose texels it has
-  TileHashes hashes;                      ///< of the texels that it has
+  BlockHashes hashes;                     ///< of the texels that it has
   TextureDescription texture;
   std::array<float, 2> range{0, 1};
   std::optional<Probed> probed;
@@ -49,9 +49,9 @@ struct KnownVolume {
   std::optional<March> march;       ///< how its ray caster marches, where it is drawn by one
   MarchInputs march_inputs;         ///< what the march was measured under
   bool depth_looked_at = false;     ///< somebody used the depth that its slices write
-  std::string given_back;           ///< why the volume is left to the application for good; empty: it is not
+  std::string handed_back;          ///< why the volume is not substituted for good; empty: it is not
   std::string left_inside;          ///< why it is left while the eye is inside; empty: it is not
-  bool verified_inside = false;     ///< a picture with the eye inside was like the application's
+  bool verified_inside = false;     ///< an image with the eye inside was like the application's
   std::string last_reason;          ///< the last reason for leaving it that was said
   int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
@@ -104,10 +104,10 @@ class VolumeUnit final : public Unit {
 
  private:
   struct Substitution;
-  struct Picture;
+  struct RenderedImage;
   struct Merging;
 
-  /// The picture of the run is in the framebuffer; else the application's calls are to be played.
+  /// The image of the run is in the framebuffer; else the application's calls are to be played.
   bool shows(std::unique_ptr<Run>& closed);
   void substitute(std::unique_ptr<Run>& closed);
   bool begins_run();
@@ -130,23 +130,23 @@ class VolumeUnit final : public Unit {
   void place_fog(Substitution& s, const MeasuredFog& measured);
   void compose_request(Substitution& s);
   void compose_proxy_request(Substitution& s, compositor::RenderService& service);
-  /// The march whose picture is most like the application's.
+  /// The march whose image is most like the application's.
   March choose_march(Substitution& s, compositor::RenderService& service, const std::vector<March>& marches);
-  /// From the nodes' picture of a ray caster to what it shows, together with the parts that cropping has left
+  /// From the nodes' image of a ray caster to what it shows, together with the parts that cropping has left
   /// behind the nearest.
-  void complete_picture(Substitution& s, compositor::RenderService& service, const March& march,
-                        volume::Image& picture, volume::FrameCounts& counts);
+  void complete_image(Substitution& s, compositor::RenderService& service, const March& march,
+                      volume::Image& image, volume::FrameCounts& counts);
   void hide_behind_geometry(Substitution& s);
-  /// Renders the request and puts the picture where the slices would be; `check` sees it before, and may throw.
+  /// Renders the request and puts the image where the slices would be; `check` sees it before, and may throw.
   volume::FrameCounts show(compositor::RenderService& service, Substitution& s,
                            const std::function<void(const volume::ImageView&)>& check);
-  /// Not every picture of the nodes is what the application shows of it.
+  /// Not every image of the nodes is what the application shows of it.
   static bool is_finished_here(const Substitution& s);
   bool may_be_behind(const Substitution& s);
-  void cast_own_samples(compositor::RenderService& service, Substitution& s, Picture& picture);
+  void cast_own_samples(compositor::RenderService& service, Substitution& s, RenderedImage& image);
   /// With samples as the error or the time that was asked for wants them; false where they must be the
   /// application's own.
-  bool cast_within_budget(compositor::RenderService& service, Substitution& s, Picture& picture);
+  bool cast_within_budget(compositor::RenderService& service, Substitution& s, RenderedImage& image);
   bool to_be_verified(const Substitution& s) const;
   void verify(Substitution& s, const volume::ImageView& image);
   void judge(KnownVolume& known, const Difference& difference);

@@ -1,4 +1,4 @@
-// The picture is right: nearer to the slices that the viewer meant than the viewer's own, the same on any
+// The image is right: nearer to the slices that the viewer meant than the viewer's own, the same on any
 // number of ranks, and where opaque geometry stands before the volume.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,26 +7,26 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/picture.h"
-#include "tests/clients/stage.h"
+#include "apps/understudy/image.h"
+#include "tests/clients/command_test.h"
 #include "tests/emulation/viewer_frame.h"
 
 namespace clients {
 namespace {
 
-using understudy::launcher::Picture;
-using understudy::launcher::read_picture;
+using understudy::launcher::Image;
+using understudy::launcher::read_image;
 
 const Words one_view = {"--azimuth", "35", "--elevation", "25", "--background", "0.2", "0.1", "0.3"};
 
-class EveryMode : public Stage, public testing::WithParamInterface<const char*> {};
+class EveryMode : public GlServer, public testing::WithParamInterface<const char*> {};
 
-std::vector<double> channels(const viewer_test::Picture& picture) {
-  return {picture.rgb.begin(), picture.rgb.end()};
+std::vector<double> channels(const viewer_test::Image& image) {
+  return {image.rgb.begin(), image.rgb.end()};
 }
 
 /// The composited float frame over the viewer's background; channels 0 to 255.
-std::vector<double> over_background(const Picture& frame, const std::vector<double>& background) {
+std::vector<double> over_background(const Image& frame, const std::vector<double>& background) {
   std::vector<double> result;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x)
@@ -37,7 +37,7 @@ std::vector<double> over_background(const Picture& frame, const std::vector<doub
   return result;
 }
 
-TEST_P(EveryMode, ThePictureIsNearerToTheSlicesInDoublePrecisionThanTheViewersOwn) {
+TEST_P(EveryMode, TheImageIsNearerToTheSlicesInDoublePrecisionThanTheViewersOwn) {
   if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
   const std::string mode = GetParam();
   const Words view = one_view + Words{"--no-frame"};
@@ -52,7 +52,7 @@ TEST_P(EveryMode, ThePictureIsNearerToTheSlicesInDoublePrecisionThanTheViewersOw
   const auto background = description.at("background").get<std::vector<double>>();
   const double bare = viewer_test::difference(channels(png("bare.png")), meant).rms;
   const double under = viewer_test::difference(channels(png("under.png")), meant).rms;
-  const Picture frame = read_picture(file("frames") / "frame_0000.pfm");
+  const Image frame = read_image(file("frames") / "frame_0000.pfm");
   ASSERT_TRUE(frame.has_alpha);
   const viewer_test::Difference floats = viewer_test::difference(over_background(frame, background), meant);
   fmt::print(
@@ -79,7 +79,7 @@ TEST_P(EveryMode, OpaqueGeometryBeforeTheVolumeStaysWhereItWas) {
 INSTANTIATE_TEST_SUITE_P(Viewer, EveryMode, testing::Values("rgba", "table", "core"),
                          [](const auto& info) { return std::string(info.param); });
 
-class Ranks : public Stage {};
+class Ranks : public GlServer {};
 
 constexpr int frames = 3;
 
@@ -88,7 +88,7 @@ double largest_difference(const std::filesystem::path& a, const std::filesystem:
   double largest = 0;
   for (int number = 0; number < frames; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
-    const Picture first = read_picture(a / name), second = read_picture(b / name);
+    const Image first = read_image(a / name), second = read_image(b / name);
     if (!first.has_alpha || !second.has_alpha || first.rgba.size() != second.rgba.size()) return HUGE_VAL;
     for (std::size_t i = 0; i < first.rgba.size(); ++i)
       largest = std::max(largest, std::abs(double{first.rgba[i]} - double{second.rgba[i]}));
@@ -96,7 +96,7 @@ double largest_difference(const std::filesystem::path& a, const std::filesystem:
   return largest;
 }
 
-TEST_F(Ranks, AnyNumberOfThemGivesTheSamePictures) {
+TEST_F(Ranks, AnyNumberOfThemGivesTheSameImages) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const Words viewer =
       engine_viewer("core", one_view + Words{"--frames", std::to_string(frames), "--orbit", "50"});
@@ -111,7 +111,7 @@ TEST_F(Ranks, AnyNumberOfThemGivesTheSamePictures) {
     ASSERT_EQ(report.at("nodes"), count) << outcome.err;
     ASSERT_EQ(report.at("frames_substituted"), frames) << outcome.err;
   }
-  const Picture first = read_picture(folder(0) / "frame_0000.pfm");
+  const Image first = read_image(folder(0) / "frame_0000.pfm");
   EXPECT_GT(*std::max_element(first.rgba.begin(), first.rgba.end()), 0.5) << "there is something to see";
   for (std::size_t i = 0; i < ranks.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {

@@ -1,11 +1,11 @@
-// The same pictures from nodes that cast rays on the CPU, by OpenGL, or by whichever is faster, and a report
+// The same images from nodes that cast rays on the CPU, by OpenGL, or by whichever is faster, and a report
 // that says which it was and why.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
@@ -15,28 +15,28 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-class Backend : public Stage {
+class Backend : public GlServer {
  protected:
   /// The last of so many frames on two nodes, and what the report says of backends. A view that rests would be
   /// drawn once.
   std::vector<std::string> draw(const std::string& backend, const std::string& frames,
-                                const std::string& picture) {
+                                const std::string& image) {
     run_well(under({"-n", "2", "--backend", backend, "--report", file("r.json")}) +
-             engine_viewer("table", {"--frames", frames, "--orbit", "60", "--screenshot", file(picture)}));
+             engine_viewer("table", {"--frames", frames, "--orbit", "60", "--screenshot", file(image)}));
     EXPECT_GT(substituted(json("r.json")), 0) << backend;
     return json("r.json")["backends"].get<std::vector<std::string>>();
   }
 };
 
-TEST_F(Backend, OfTheNodesIsToldAndDrawsTheSamePicture) {
+TEST_F(Backend, OfTheNodesIsToldAndDrawsTheSameImage) {
   if (const std::string reason = missing({Need::engine, Need::mpi}); !reason.empty()) GTEST_SKIP() << reason;
   EXPECT_THAT(draw("cpu", "1", "cpu.png"), IsEmpty());
   EXPECT_THAT(draw("gl", "1", "gl.png"), testing::AllOf(SizeIs(2), Each(HasSubstr("GL, as asked: "))));
   EXPECT_THAT(draw("gl:osmesa", "1", "osmesa.png"), testing::AllOf(SizeIs(2), Each(HasSubstr("on OSMesa"))));
   EXPECT_THAT(draw("auto", "7", "auto.png"),
               testing::AllOf(testing::Not(IsEmpty()), Each(HasSubstr("ns a sample"))));
-  for (const char* picture : {"gl.png", "osmesa.png", "auto.png"})
-    EXPECT_LE(told(picture, png("cpu.png"), png(picture)).max, 1) << picture;
+  for (const char* image : {"gl.png", "osmesa.png", "auto.png"})
+    EXPECT_LE(told(image, png("cpu.png"), png(image)).max, 1) << image;
   EXPECT_EQ(leftovers(), "");
 }
 

@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
+#include "tests/clients/command_test.h"
 #include "tests/clients/osgvolume_command.h"
-#include "tests/clients/stage.h"
 
 namespace clients {
 namespace {
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class BadInput : public Stage {
+class BadInput : public GlServer {
  protected:
   Words viewer(const fs::path& volume, const Words& options = {}) const {
     return Words{(programs / "understudy-viewer").string(),
@@ -78,9 +78,9 @@ TEST_F(BadInput, WithoutADisplayEveryViewerFailsAsItWouldAlone) {
   for (const Words& words : viewers) {
     // osgvolume says "could not create display" and ends with status 0; that, too, is its own affair.
     const Outcome bare = run(words, no_display);
-    for (const char* door : {"audit", "preload", "folder"}) {
-      const Outcome below = run(under({"--door", door}) + words, no_display);
-      fmt::print("{} without a display: alone {}, behind {} {}\n", words.front(), bare.status, door,
+    for (const char* injection : {"audit", "preload", "folder"}) {
+      const Outcome below = run(under({"--injection", injection}) + words, no_display);
+      fmt::print("{} without a display: alone {}, behind {} {}\n", words.front(), bare.status, injection,
                  below.status);
       EXPECT_EQ(below.status, bare.status) << below.err;
     }
@@ -96,7 +96,7 @@ TEST_F(BadInput, AViewerThatDoesNotExistIsNamedAndTheStatusIsTheShells) {
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(BadInput, VoxelsThatAreNoNumbersGiveAFinitePictureEverywhereElse) {
+TEST_F(BadInput, VoxelsThatAreNoNumbersGiveAFiniteImageEverywhereElse) {
   constexpr int edge = 48;
   std::vector<float> voxels;
   for (int z = 0; z < edge; ++z)
@@ -112,13 +112,13 @@ TEST_F(BadInput, VoxelsThatAreNoNumbersGiveAFinitePictureEverywhereElse) {
     const Outcome outcome = run_well(under({"--save-frames", file(mode), "--report", file("report.json")}) +
                                      words + Words{"--screenshot", file("under.png")});
     ASSERT_EQ(substituted(json("report.json")), 1) << outcome.err;
-    const auto frame = understudy::launcher::read_picture(file(mode) / "frame_0000.pfm");
+    const auto frame = understudy::launcher::read_image(file(mode) / "frame_0000.pfm");
     EXPECT_TRUE(std::all_of(frame.rgba.begin(), frame.rgba.end(), [](float v) { return std::isfinite(v); }));
     EXPECT_GE(told(mode + ", a volume with NaN and infinities", png("bare.png"), png("under.png")).psnr, 35);
   }
 }
 
-class Serve : public Stage {
+class Serve : public GlServer {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
@@ -131,7 +131,7 @@ class Serve : public Stage {
 TEST_F(Serve, ATakenSocketIsNamedAndStaysTheFirstOnes) {
   if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
   const fs::path socket = file("nodes.sock");
-  Child first(on_stage(serve(socket)), file(""));
+  Child first(on_gl_server(serve(socket)), file(""));
   ASSERT_TRUE(
       comes_true([&] { return !first.running() || first.out().find("2 nodes at") != std::string::npos; }));
   ASSERT_TRUE(first.running()) << first.err();

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
@@ -21,7 +21,7 @@ std::filesystem::path path_of(const Volume& volume) {
   return std::filesystem::path(SOURCE_FOLDER) / "../shared/data" / volume.file;
 }
 
-class BudgetStage : public Stage {
+class BudgetRun : public GlServer {
  protected:
   /// Eight frames of the viewer with a budget; false where the volume is not at hand.
   bool show(const Volume& volume, const Words& budget) {
@@ -63,7 +63,7 @@ const std::array volumes{
         "cthead", "cthead_256x256x113_int16be.raw.gz", {"--type", "i16", "--big-endian", "--preset", "bone"}}};
 const std::array errors{"8/255", "2/255", "0.5/255"};
 
-class ErrorBudget : public BudgetStage, public testing::WithParamInterface<std::tuple<int, int>> {};
+class ErrorBudget : public BudgetRun, public testing::WithParamInterface<std::tuple<int, int>> {};
 
 TEST_P(ErrorBudget, IsKept) {
   const auto [volume, error] = GetParam();
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, ErrorBudget, testing::Combine(testing::Range(0
                                               std::get<1>(info.param));
                          });
 
-class Budgets : public BudgetStage {};
+class Budgets : public BudgetRun {};
 
 TEST_F(Budgets, AreKeptByRanksToo) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;

@@ -51,7 +51,7 @@ void one_buffer() {
   XWindow::rest();
 }
 
-/// More pictures than anybody could want to see.
+/// More images than anybody could want to see.
 void many_flushes() {
   const XWindow window(Buffers::one);
   fill_window(blue);

@@ -2,7 +2,7 @@
 //
 // What Understudy asks of the driver itself stays in the recording: it has the slices' vertices computed by the
 // viewer's own pipeline (feedback mode, or transform feedback without rasterisation), which makes no pixel, and
-// draws triangles over the picture: its probes of the transfer function into a framebuffer of its own, and the
+// draws triangles over the image: its probes of the transfer function into a framebuffer of its own, and the
 // result into the window.
 // osgvolume's slices write depth besides, so its first frame has them once more, for depth alone; as nothing
 // looks at that depth, no later frame has.
@@ -13,7 +13,7 @@
 #include "tests/apps/viewer/virtual_display.h"
 #include "tests/clients/osgvolume_command.h"
 #include "tests/clients/recording.h"
-#include "tests/clients/recording_stage.h"
+#include "tests/clients/recording_test.h"
 
 namespace clients {
 namespace {
@@ -22,9 +22,9 @@ using testing::Each;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr const char* whole_picture = "glDrawArrays(mode = GL_TRIANGLES, first = 0, count = 3)";
+constexpr const char* whole_image = "glDrawArrays(mode = GL_TRIANGLES, first = 0, count = 3)";
 
-class DriverCalls : public RecordingStage {
+class DriverCalls : public RecordingServer {
  protected:
   std::vector<RecordedFrame> bare(const RecordedLibrary& library, const Words& viewer,
                                   const std::map<std::string, std::string>& environment) const {
@@ -51,10 +51,10 @@ class DriverCalls : public RecordingStage {
           summary(below[i].onto_window), summary(below[i].onto_own), summary(below[i].depth_alone),
           summary(below[i].without_pixels));
       EXPECT_THAT(bare[i].onto_window, Not(IsEmpty()));
-      EXPECT_THAT(bare[i].onto_window, Each(Not(whole_picture)));
+      EXPECT_THAT(bare[i].onto_window, Each(Not(whole_image)));
       EXPECT_THAT(below[i].onto_window, Not(IsEmpty())) << "the result has to get there";
-      EXPECT_THAT(below[i].onto_window, Each(whole_picture));
-      EXPECT_THAT(below[i].onto_own, Each(whole_picture));
+      EXPECT_THAT(below[i].onto_window, Each(whole_image));
+      EXPECT_THAT(below[i].onto_own, Each(whole_image));
       if (i > 0) {
         EXPECT_THAT(below[i].depth_alone, IsEmpty());
       }

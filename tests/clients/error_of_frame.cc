@@ -14,7 +14,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
 #include "volume/file/volume_file.h"
 #include "volume/matrix.h"
 #include "volume/reference/pixel_integral.h"
@@ -94,16 +94,16 @@ Json compared(const std::string& described, const std::string& frame, const std:
   const Field field = texture_field(texture, Filter::linear, texels);
   const RenderRequest request = request_of(description);
   const Medium medium = Medium::of_samples(std::get<TransferFunction>(request.classification), 1);
-  const understudy::launcher::Picture picture = understudy::launcher::read_picture(frame);
-  if (!picture.has_alpha) throw std::runtime_error(frame + " has no alpha beside it");
+  const understudy::launcher::Image image = understudy::launcher::read_image(frame);
+  if (!image.has_alpha) throw std::runtime_error(frame + " has no alpha beside it");
   std::mutex mutex;
   double greatest = 0, sum = 0, brightest = 0;
   int pixels = 0;
-  tbb::parallel_for(0, (picture.height + every - 1) / every, [&](int row) {
+  tbb::parallel_for(0, (image.height + every - 1) / every, [&](int row) {
     const int y = row * every;
-    for (int x = 0; x < picture.width; x += every) {
+    for (int x = 0; x < image.width; x += every) {
       const auto exact = pixel_integral(field, texture.size, request, medium, x, y);
-      const float* const shown = picture.pixel(x, picture.height - 1 - y);
+      const float* const shown = image.pixel(x, image.height - 1 - y);
       const std::scoped_lock lock(mutex);
       ++pixels;
       brightest = std::max(brightest, exact[3]);

@@ -1,5 +1,5 @@
 // Every operator, opaque geometry and two volumes against the slices in double precision: the viewer alone,
-// with the ray caster in its process, and on two ranks; the composited float frames and the pictures of 8 bits.
+// with the ray caster in its process, and on two ranks; the composited float frames and the images of 8 bits.
 // Every channel of every pixel has its own bound, which follows from the precisions below
 // (`tests/emulation/slices.h`).
 #include <fmt/format.h>
@@ -8,15 +8,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/picture.h"
-#include "tests/clients/stage.h"
+#include "apps/understudy/image.h"
+#include "tests/clients/command_test.h"
 #include "tests/emulation/precision.h"
 #include "tests/emulation/viewer_frame.h"
 
 namespace clients {
 namespace {
 
-using understudy::launcher::read_picture;
+using understudy::launcher::read_image;
 
 using emulation::drivers;
 using emulation::float_step;
@@ -33,13 +33,13 @@ struct Scene {
   int volumes = 1;
 };
 
-std::vector<double> screenshot(const viewer_test::Picture& picture) {
+std::vector<double> screenshot(const viewer_test::Image& image) {
   std::vector<double> channels;
-  for (const std::uint8_t channel : picture.rgb) channels.push_back(channel / 255.0);
+  for (const std::uint8_t channel : image.rgb) channels.push_back(channel / 255.0);
   return channels;
 }
 
-class Judged : public Stage, public testing::WithParamInterface<Scene> {
+class Judged : public GlServer, public testing::WithParamInterface<Scene> {
  protected:
   /// No voxel is 0, so that a minimum has something to tell; edges and smooth places, three different sizes.
   std::string volume() const {
@@ -80,16 +80,16 @@ class Judged : public Stage, public testing::WithParamInterface<Scene> {
            GetParam().options;
   }
 
-  /// Prints how `drawn` lies to `picture`, and expects it within its bounds, give or take `slack`.
-  void expect_within(const std::string& what, const emulation::Picture& picture,
-                     const std::vector<double>& drawn, int channels, double slack) const {
-    const emulation::Verdict verdict = emulation::judge(picture, drawn, channels, slack);
+  /// Prints how `drawn` lies to `image`, and expects it within its bounds, give or take `slack`.
+  void expect_within(const std::string& what, const emulation::Image& image, const std::vector<double>& drawn,
+                     int channels, double slack) const {
+    const emulation::Verdict verdict = emulation::judge(image, drawn, channels, slack);
     fmt::print("{}: RMS {:.2e}, max {:.2e}, beyond the bounds by {:.2e} ({} of {}), RMS of the bounds {:.2e}\n",
                what, verdict.rms, verdict.max, verdict.beyond, verdict.outside, drawn.size(), verdict.width);
     EXPECT_EQ(verdict.outside, 0) << what;
   }
 
-  /// A volume's own picture, had its slices lain a little elsewhere.
+  /// A volume's own image, had its slices lain a little elsewhere.
   static std::vector<double> moved(const emulation::Frame& frame, std::size_t number) {
     emulation::Volume volume = frame.volumes[number];
     const double distance = volume.offsets[1] - volume.offsets[0];
@@ -98,7 +98,7 @@ class Judged : public Stage, public testing::WithParamInterface<Scene> {
   }
 };
 
-TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
+TEST_P(Judged, ImagesLieWithinTheBoundsOfTheirArithmetic) {
   volume();
   run_well(viewer() + Words{"--screenshot", file("bare.png"), "--describe", file("scene.json")});
   const emulation::Frame frame = emulation::viewer_frame(json("scene.json"));
@@ -108,8 +108,8 @@ TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
   expect_within("the viewer alone", emulation::draw(frame, drivers, bytes, none), screenshot(png("bare.png")),
                 3, 1e-9);
 
-  const emulation::Picture shown = emulation::draw(frame, ours, none, emulation::presented(bytes));
-  std::vector<emulation::Picture> alone;
+  const emulation::Image shown = emulation::draw(frame, ours, none, emulation::presented(bytes));
+  std::vector<emulation::Image> alone;
   for (const emulation::Volume& volume : frame.volumes)
     alone.push_back(emulation::draw_alone(frame, volume, ours));
   for (const char* ranks : {"0", "2"}) {
@@ -122,7 +122,7 @@ TEST_P(Judged, PicturesLieWithinTheBoundsOfTheirArithmetic) {
     ASSERT_EQ(substituted(json("report.json")), GetParam().volumes) << outcome.err;
     expect_within(name + ", 8 bits", shown, screenshot(png("under.png")), 3, ray_termination);
     for (std::size_t number = 0; number < alone.size(); ++number) {
-      const auto saved = read_picture(folder / fmt::format("frame_{:04}.pfm", number));
+      const auto saved = read_image(folder / fmt::format("frame_{:04}.pfm", number));
       // Each blend rounds twice.
       double brightest = 1;
       for (const float value : saved.rgba)

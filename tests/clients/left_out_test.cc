@@ -1,4 +1,4 @@
-// What is left out, item by item: a viewer with it and without it shows the same pictures, to the item's
+// What is left out, item by item: a viewer with it and without it shows the same images, to the item's
 // tolerance, and the report tells what it saved.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,23 +8,23 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/picture.h"
-#include "spu/report/omission.h"
-#include "tests/clients/stage.h"
+#include "apps/understudy/image.h"
+#include "spu/report/optimization.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
 
-using understudy::launcher::Picture;
-using understudy::launcher::read_picture;
-using understudy::spu::Omission;
-using understudy::spu::omission_table;
-using understudy::spu::OmissionText;
+using understudy::launcher::Image;
+using understudy::launcher::read_image;
+using understudy::spu::Optimization;
+using understudy::spu::optimization_table;
+using understudy::spu::OptimizationText;
 
 constexpr int frames = 4;
 
 struct Case {
-  Omission omission;
+  Optimization optimization;
   Words viewer;             ///< what shows something that can be left out
   Words options = {};       ///< of `understudy run`
   std::uint64_t still = 0;  ///< amount that is left out nevertheless
@@ -36,19 +36,19 @@ const char* const rising = R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity
                                          {"at": 1, "colour": [1, 1, 1], "opacity": 1}]})";
 
 const std::array cases{
-    Case{Omission::empty_blocks, {"--orbit", "10"}},
-    Case{Omission::hidden_samples, {"--orbit", "10", "--preset", "step"}},
-    Case{Omission::lesser_samples, {"--orbit", "10", "--operator", "max", "--table", "rising.json"}},
-    Case{Omission::footprints, {"--orbit", "10", "--preset", "sparse"}, {"-n", "3"}},
-    Case{Omission::unchanged_pictures, {}},
-    Case{Omission::unchanged_pictures, {"--second"}},
-    Case{Omission::unchanged_texels, {"--orbit", "10"}},
-    Case{Omission::known_colours, {"--orbit", "10"}},
-    Case{Omission::absent_depth, {"--orbit", "10"}},
-    Case{Omission::unseen_depth, {"--orbit", "10", "--write-depth"}},
+    Case{Optimization::empty_bricks, {"--orbit", "10"}},
+    Case{Optimization::hidden_samples, {"--orbit", "10", "--preset", "step"}},
+    Case{Optimization::dominated_samples, {"--orbit", "10", "--operator", "max", "--table", "rising.json"}},
+    Case{Optimization::footprints, {"--orbit", "10", "--preset", "sparse"}, {"-n", "3"}},
+    Case{Optimization::unchanged_images, {}},
+    Case{Optimization::unchanged_images, {"--second"}},
+    Case{Optimization::unchanged_texels, {"--orbit", "10"}},
+    Case{Optimization::known_colours, {"--orbit", "10"}},
+    Case{Optimization::absent_depth, {"--orbit", "10"}},
+    Case{Optimization::unseen_depth, {"--orbit", "10", "--write-depth"}},
 };
 
-double largest_difference(const Picture& a, const Picture& b) {
+double largest_difference(const Image& a, const Image& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   double most = 0;
   for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)
@@ -56,7 +56,7 @@ double largest_difference(const Picture& a, const Picture& b) {
   return most;
 }
 
-class LeftOut : public Stage, public testing::WithParamInterface<std::size_t> {
+class LeftOut : public GlServer, public testing::WithParamInterface<std::size_t> {
  protected:
   /// Frames as floats and as shown, and the report, all beginning with `name`.
   nlohmann::json show(const Case& shown, const std::string& name, const Words& options) {
@@ -76,7 +76,7 @@ class LeftOut : public Stage, public testing::WithParamInterface<std::size_t> {
   Outcome outcome;
 };
 
-TEST_P(LeftOut, ChangesNoPicture) {
+TEST_P(LeftOut, ChangesNoImage) {
   const Case& shown = cases[GetParam()];
   const bool nodes = !shown.options.empty();
   if (const std::string lacking = missing(nodes ? std::initializer_list<Need>{Need::engine, Need::mpi}
@@ -84,10 +84,10 @@ TEST_P(LeftOut, ChangesNoPicture) {
       !lacking.empty())
     GTEST_SKIP() << lacking;
   std::ofstream(file("rising.json")) << rising;
-  const OmissionText& about = understudy::spu::text_of(shown.omission);
+  const OptimizationText& about = understudy::spu::text_of(shown.optimization);
   const nlohmann::json with = show(shown, "with", {});
   const Outcome told = outcome;
-  const nlohmann::json without = show(shown, "without", {"--never-leave-out", about.name});
+  const nlohmann::json without = show(shown, "without", {"--disable-optimization", about.name});
 
   const nlohmann::json& item = with.at("left_out").at("items").at(about.name);
   const nlohmann::json& nevertheless = without.at("left_out").at("items").at(about.name);
@@ -97,17 +97,15 @@ TEST_P(LeftOut, ChangesNoPicture) {
   double most = 0;
   for (int frame = 0; frame < frames; ++frame) {
     const std::string png = fmt::format("frame_{:04}.png", frame);
-    EXPECT_LE(
-        largest_difference(read_picture(file("with_shown") / png), read_picture(file("without_shown") / png)),
-        about.tolerance > 0 ? 1.01 / 255 : 0);
+    EXPECT_LE(largest_difference(read_image(file("with_shown") / png), read_image(file("without_shown") / png)),
+              about.tolerance > 0 ? 1.01 / 255 : 0);
   }
   for (const auto& entry : std::filesystem::directory_iterator(file("with"))) {
     const std::string name = entry.path().filename().string();
     if (name.find("_alpha") == std::string::npos)
-      most =
-          std::max(most, largest_difference(read_picture(entry.path()), read_picture(file("without") / name)));
+      most = std::max(most, largest_difference(read_image(entry.path()), read_image(file("without") / name)));
   }
-  fmt::print("{} ({}): {} of {} {} left out, {} without; pictures differ by {:.1e}, tolerance {:.0e}\n",
+  fmt::print("{} ({}): {} of {} {} left out, {} without; images differ by {:.1e}, tolerance {:.0e}\n",
              about.name, fmt::join(shown.viewer, " "), left_out, left_out + done, about.unit, still, most,
              about.tolerance);
   EXPECT_LE(most, about.tolerance);
@@ -118,12 +116,12 @@ TEST_P(LeftOut, ChangesNoPicture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Items, LeftOut, testing::Range(std::size_t(0), cases.size()), [](const auto& info) {
-  std::string name = omission_table()[std::size_t(cases[info.param].omission)].name;
+  std::string name = optimization_table()[std::size_t(cases[info.param].optimization)].name;
   std::replace(name.begin(), name.end(), '-', '_');
   return fmt::format("{}_{}", name, info.param);
 });
 
-class Explained : public Stage {};
+class Explained : public GlServer {};
 
 TEST_F(Explained, FrameByFrameAndInTheEnd) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
@@ -132,23 +130,23 @@ TEST_F(Explained, FrameByFrameAndInTheEnd) {
                                           "--explain", "--report", file("report.json")}) +
                                    engine_viewer("core", {"--frames", "3", "--orbit", "5", "--no-frame"}));
   for (const char* const said :
-       {"frame 1: ", "frame 3: ", "left out: empty-blocks (", "not looked for: ", "the camera moved (2x)",
+       {"frame 1: ", "frame 3: ", "left out: empty-bricks (", "not looked for: ", "the camera moved (2x)",
         "blocks show something", "rays are seen through to their end", "samples reached these pixels"})
     EXPECT_NE(outcome.err.find(said), std::string::npos) << said << "\n" << outcome.err;
   const nlohmann::json report = json("report.json");
-  EXPECT_EQ(report.at("left_out").at("items").at("unchanged-pictures").at("because").at("the camera moved"), 2);
+  EXPECT_EQ(report.at("left_out").at("items").at("unchanged-images").at("because").at("the camera moved"), 2);
   const nlohmann::json& exchanged = report.at("exchanged");
   EXPECT_GT(exchanged.at("bytes"), 0);
   EXPECT_LT(exchanged.at("bytes"), exchanged.at("bytes_of_whole_windows"));
   EXPECT_LE(exchanged.at("messages"), exchanged.at("messages_of_whole_windows"));
-  EXPECT_GT(report.at("frames_detail").at(1).at("left_out").at("items").at("empty-blocks"), 0);
+  EXPECT_GT(report.at("frames_detail").at(1).at("left_out").at("items").at("empty-bricks"), 0);
   fmt::print("{}", outcome.err);
 }
 
 TEST_F(Explained, NamesOfItemsAreChecked) {
-  const Outcome refused = run(under({"--never-leave-out", "pixels"}) + Words{"true"});
+  const Outcome refused = run(under({"--disable-optimization", "pixels"}) + Words{"true"});
   EXPECT_EQ(refused.status, 2);
-  for (const OmissionText& about : omission_table())
+  for (const OptimizationText& about : optimization_table())
     EXPECT_NE(refused.err.find(about.name), std::string::npos) << refused.err;
 }
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 constexpr int frames = 20;
 constexpr int ranks = 3;
 
-class LostNode : public Stage, public testing::WithParamInterface<int> {
+class LostNode : public GlServer, public testing::WithParamInterface<int> {
  protected:
   /// The process of a rank; 0 when there is none.
   pid_t rank(int number) const {
@@ -65,15 +65,15 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
 
 TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
-  const auto viewer = [&](const std::filesystem::path& pictures) {
+  const auto viewer = [&](const std::filesystem::path& images) {
     return engine_viewer("table", {"--frames", std::to_string(frames), "--orbit", "3", "--print-times",
-                                   "--screenshot-frames", pictures.string()});
+                                   "--screenshot-frames", images.string()});
   };
   run_well(viewer(file("bare")));
 
-  Child child(
-      on_stage(under({"-n", std::to_string(ranks), "--report", file("report.json")}) + viewer(file("under"))),
-      file(""));
+  Child child(on_gl_server(under({"-n", std::to_string(ranks), "--report", file("report.json")}) +
+                           viewer(file("under"))),
+              file(""));
   const auto frame_is_out = [&](int number) {
     return comes_true([&] {
       return !child.running() || child.out().find(fmt::format("frame {}:", number)) != std::string::npos;

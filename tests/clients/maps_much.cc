@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include "tests/doors/clients/offscreen.h"
+#include "tests/injection/clients/offscreen.h"
 
 namespace {
 

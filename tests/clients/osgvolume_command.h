@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 

@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "tests/apps/viewer/virtual_display.h"
+#include "tests/clients/command_test.h"
 #include "tests/clients/osgvolume_command.h"
-#include "tests/clients/stage.h"
 
 namespace clients {
 namespace {
 
-class Osgvolume : public Stage {
+class Osgvolume : public GlServer {
  protected:
   void SetUp() override {
     const std::string lacking =
@@ -36,17 +36,17 @@ class Osgvolume : public Stage {
                      const std::string& report = "") {
     std::map<std::string, std::string> all = osgvolume_environment(display_->name());
     all.insert(environment.begin(), environment.end());
-    Child child(on_stage(prefix + osgvolume(), all), file(""));
-    viewer_test::Picture before;
+    Child child(on_gl_server(prefix + osgvolume(), all), file(""));
+    viewer_test::Image before;
     const bool holds_still = comes_true([&] {
       if (!child.running()) return true;
       if (!grab(name)) return false;
-      const viewer_test::Picture now = png(name);
+      const viewer_test::Image now = png(name);
       const bool same = now.rgb == before.rgb && shows_something(now);
       before = now;
       return same;
     });
-    EXPECT_TRUE(holds_still && child.running()) << "osgvolume showed no picture:\n" << child.err();
+    EXPECT_TRUE(holds_still && child.running()) << "osgvolume showed no image:\n" << child.err();
     if (!report.empty()) {
       EXPECT_TRUE(comes_true([&] { return std::filesystem::exists(file(report)); }));
     }
@@ -66,8 +66,8 @@ class Osgvolume : public Stage {
                .status == 0;
   }
 
-  static bool shows_something(const viewer_test::Picture& picture) {
-    std::set<std::uint8_t> shades(picture.rgb.begin(), picture.rgb.end());
+  static bool shows_something(const viewer_test::Image& image) {
+    std::set<std::uint8_t> shades(image.rgb.begin(), image.rgb.end());
     return shades.size() > 16;
   }
 };
@@ -83,27 +83,28 @@ TEST_F(Osgvolume, FourRanksDrawItsVolume) {
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(Osgvolume, TintedPixelsProveWhereThePictureCameFrom) {
+TEST_F(Osgvolume, TintedPixelsProveWhereTheImageCameFrom) {
   photograph(under({"-n", "4", "--debug-tint"}), "tinted.png");
   EXPECT_LT(told("osgvolume, bare and tinted", png("bare.png"), png("tinted.png")).psnr, 30);
 }
 
-TEST_F(Osgvolume, EveryDoorShowsTheSamePicture) {
+TEST_F(Osgvolume, EveryMethodShowsTheSameImage) {
   photograph(under({"--report", file("audit.json")}), "audit.png");
   ASSERT_GE(substituted(json("audit.json")), 1);
   EXPECT_GE(told("osgvolume, bare and embedded", png("bare.png"), png("audit.png")).psnr, 35);
-  for (const std::string door : {"preload", "folder"}) {
-    photograph(under({"--door", door, "--report", file(door + ".json")}), door + ".png");
-    EXPECT_GE(substituted(json(door + ".json")), 1) << door;
-    EXPECT_EQ(told("doors audit and " + door, png("audit.png"), png(door + ".png")).max, 0);
+  for (const std::string injection : {"preload", "folder"}) {
+    photograph(under({"--injection", injection, "--report", file(injection + ".json")}), injection + ".png");
+    EXPECT_GE(substituted(json(injection + ".json")), 1) << injection;
+    EXPECT_EQ(told("injection methods audit and " + injection, png("audit.png"), png(injection + ".png")).max,
+              0);
   }
 }
 
-TEST_F(Osgvolume, WithoutTheLauncherThePictureIsTheSame) {
+TEST_F(Osgvolume, WithoutTheLauncherTheImageIsTheSame) {
   photograph(under({}), "audit.png");
   const std::map<std::string, std::map<std::string, std::string>> ways = {
       {"preload", {{"LD_PRELOAD", libraries / "libunderstudy.so"}}},
-      {"folder", {{"LD_LIBRARY_PATH", libraries / "door"}}}};
+      {"folder", {{"LD_LIBRARY_PATH", libraries / "entry"}}}};
   for (auto [way, environment] : ways) {
     environment["UNDERSTUDY_REPORT"] = file(way + ".json");
     const Outcome outcome = photograph({}, way + ".png", environment, way + ".json");

@@ -1,4 +1,4 @@
-// Viewers whose nodes, or whose OpenGL, are behind a TCP connection: pictures are those of one machine, and
+// Viewers whose nodes, or whose OpenGL, are behind a TCP connection: images are those of one machine, and
 // whoever has not the secret is told so and leaves nothing behind.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,10 +13,10 @@
 #include <optional>
 #include <regex>
 
-#include "compositor/tcp/tcp_link.h"
+#include "compositor/tcp/tcp_connection.h"
 #include "compositor/tcp/tcp_socket.h"
 #include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 #include "tests/compositor/tcp/line.h"
 
 namespace clients {
@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 using understudy::compositor::Clock;
 using understudy::compositor::testing::Line;
 
-class OverTcp : public Stage {
+class OverTcp : public GlServer {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
@@ -37,9 +37,9 @@ class OverTcp : public Stage {
   /// `understudy serve` with two nodes at a port of its own.
   void serve(const Words& options = {}) {
     fs::create_directory(file("server"));
-    server_.emplace(on_stage(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket", socket(),
-                                   "--listen", ":0", "--secret-file", secret()} +
-                             options),
+    server_.emplace(on_gl_server(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket",
+                                       socket(), "--listen", ":0", "--secret-file", secret()} +
+                                 options),
                     file("server"));
     std::smatch found;
     std::string said;
@@ -72,7 +72,7 @@ class OverTcp : public Stage {
   }
 
   /// Children of the server and their children, but those of mpirun.
-  std::vector<pid_t> gate_and_its_children() const {
+  std::vector<pid_t> listener_and_its_children() const {
     std::vector<pid_t> found;
     for (const pid_t process : processes("understudy"))
       if (process != server_->pid()) found.push_back(process);
@@ -87,7 +87,7 @@ class OverTcp : public Stage {
   }
   std::size_t descriptors() const {
     std::size_t count = descriptors_of(server_->pid());
-    for (const pid_t process : gate_and_its_children()) count += descriptors_of(process);
+    for (const pid_t process : listener_and_its_children()) count += descriptors_of(process);
     return count;
   }
   static std::ptrdiff_t shared_memory() { return std::distance(fs::directory_iterator("/dev/shm"), {}); }
@@ -106,9 +106,9 @@ TEST_F(OverTcp, NodesDrawWhatTheyDrawAtAUnixSocket) {
       run_well(under(over_tcp() + Words{"--report", file("report.json")}) + frame("tcp.png"));
   const nlohmann::json report = json("report.json");
   EXPECT_EQ(substituted(report), 1) << outcome.err;
-  EXPECT_EQ(report.at("link").at("address"), address_);
-  EXPECT_GT(report.at("link").at("up").at("payload_bytes"), 256 * 256 * 110);
-  fmt::print("{}\n", report.at("link").dump());
+  EXPECT_EQ(report.at("connection").at("address"), address_);
+  EXPECT_GT(report.at("connection").at("up").at("payload_bytes"), 256 * 256 * 110);
+  fmt::print("{}\n", report.at("connection").dump());
   EXPECT_EQ(png("unix.png").rgb, png("tcp.png").rgb);
   run_well(under(over_tcp() + Words{"--pixels", "byte"}) + frame("byte.png"));
   EXPECT_GE(told("pixels of a byte", png("unix.png"), png("byte.png")).psnr, 45);
@@ -129,14 +129,14 @@ TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
       run_well(under(over_tcp("wrong") + Words{"--report", file("report.json")}) + frame("own.png"));
   EXPECT_THAT(wrong.err, HasSubstr("copy its --secret-file"));
   EXPECT_TRUE(comes_true([&] { return server_->err().find("was not let in") != std::string::npos; }));
-  EXPECT_EQ(json("report.json").at("link"), nullptr);
-  // A viewer that has no OpenGL is not started then, nor without a stage.
+  EXPECT_EQ(json("report.json").at("connection"), nullptr);
+  // A viewer that has no OpenGL is not started then, nor without a GL server.
   const Outcome none = run(under(Words{"--remote"} + over_tcp("wrong")) + frame("none.png"));
   EXPECT_EQ(none.status, 1) << none.err;
   EXPECT_FALSE(fs::exists(file("none.png")));
-  const Outcome no_stage = run(under(Words{"--remote"} + over_tcp()) + frame("none.png"));
-  EXPECT_EQ(no_stage.status, 1);
-  EXPECT_THAT(no_stage.err, HasSubstr("--stage"));
+  const Outcome no_gl_server = run(under(Words{"--remote"} + over_tcp()) + frame("none.png"));
+  EXPECT_EQ(no_gl_server.status, 1);
+  EXPECT_THAT(no_gl_server.err, HasSubstr("--gl-server"));
   const Outcome without = run(under({"--connect", address_}) + frame("none.png"));
   EXPECT_EQ(without.status, 2);
   EXPECT_THAT(without.err, HasSubstr("needs --secret-file"));
@@ -146,7 +146,7 @@ TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
 TEST_F(OverTcp, AThousandConnectionsLeaveNothingAtTheServer) {
   serve();
   run_well(under(over_tcp()) + frame("before.png"));
-  const auto quiet = [&] { return gate_and_its_children().size() == 1; };
+  const auto quiet = [&] { return listener_and_its_children().size() == 1; };
   ASSERT_TRUE(comes_true(quiet));
   const std::size_t before = descriptors();
   const auto memory_before = shared_memory();
@@ -172,7 +172,7 @@ TEST_F(OverTcp, AThousandConnectionsLeaveNothingAtTheServer) {
 }
 
 TEST_F(OverTcp, AStageDrawsForViewersWithoutOpenGL) {
-  serve({"--stage"});
+  serve({"--gl-server"});
   const Words without_opengl = {"env", "LIBGL_DRIVERS_PATH=/nowhere"};
   run_well(under({"--remote", "-n", "2"}) + without_opengl + frame("local.png"), {{"DISPLAY", ""}});
   const Outcome outcome = run_well(under(Words{"--remote", "--report", file("report.json")} + over_tcp()) +
@@ -180,22 +180,23 @@ TEST_F(OverTcp, AStageDrawsForViewersWithoutOpenGL) {
                                    {{"DISPLAY", ""}});
   const nlohmann::json report = json("report.json");
   EXPECT_EQ(report.at("remote"), true) << outcome.err;
-  EXPECT_GT(report.at("link").at("up").at("bytes"), 100'000);
+  EXPECT_GT(report.at("connection").at("up").at("bytes"), 100'000);
   EXPECT_EQ(png("local.png").rgb, png("tcp.png").rgb);
   end_server();
 }
 
 TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
-  serve({"--stage"});
+  serve({"--gl-server"});
   for (const Words& remote : {Words{"--remote"}, Words{}}) {
     const int frames = 40;
     run_well(under(remote + over_tcp()) + turning("flowing.png", frames));
     Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("held"));
-    Child child(on_stage(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
-                         turning("held.png", frames)),
-                file("held"));
-    // In the middle of a picture, most likely.
+    Child child(
+        on_gl_server(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
+                     turning("held.png", frames)),
+        file("held"));
+    // In the middle of an image, most likely.
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
     ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
     line.stand_still();
@@ -213,18 +214,19 @@ TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
 }
 
 TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
-  serve({"--stage"});
+  serve({"--gl-server"});
   run_well(turning("bare.png", 40));
-  const std::size_t processes_before = gate_and_its_children().size(), descriptors_before = descriptors();
+  const std::size_t processes_before = listener_and_its_children().size(), descriptors_before = descriptors();
   const auto quiet = [&] {
-    return gate_and_its_children().size() == processes_before && descriptors() <= descriptors_before;
+    return listener_and_its_children().size() == processes_before && descriptors() <= descriptors_before;
   };
   for (const Words& remote : {Words{}, Words{"--remote"}}) {
     Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("cut"));
-    Child child(on_stage(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
-                         turning("cut.png", 40)),
-                file("cut"));
+    Child child(
+        on_gl_server(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
+                     turning("cut.png", 40)),
+        file("cut"));
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
     ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
     line.cut();
@@ -236,7 +238,7 @@ TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
       EXPECT_LT(drawn_there, 40);
       EXPECT_EQ(png("bare.png").rgb, png("cut.png").rgb) << outcome.err;
     } else {
-      EXPECT_THAT(outcome.err, HasSubstr("the stage, which draws"));
+      EXPECT_THAT(outcome.err, HasSubstr("the GL server, which draws"));
     }
     EXPECT_TRUE(comes_true(quiet)) << server_->err();
   }
@@ -250,12 +252,12 @@ TEST_F(OverTcp, JpegWhileTheViewTurnsAndEveryBitOnceItRests) {
   if (const std::string lacking = missing({Need::x_server}); !lacking.empty()) GTEST_SKIP() << lacking;
   const auto display = viewer_test::VirtualDisplay::start();
   ASSERT_TRUE(display) << "Xvfb does not start";
-  serve({"--stage"});
+  serve({"--gl-server"});
   const auto bytes_down = [&](const std::string& name, const Words& options) {
     run_well(under(Words{"--remote", "--report", file(name + ".json")} + over_tcp() + options) +
                  Words{TURNS_AND_RESTS, file(name), "12"},
              {{"DISPLAY", display->name()}});
-    return json(name + ".json").at("link").at("down").at("payload_bytes").get<int>();
+    return json(name + ".json").at("connection").at("down").at("payload_bytes").get<int>();
   };
   const int exact = bytes_down("exact", {});
   const int lossy = bytes_down("lossy", {"--quality", "40"});

@@ -1,16 +1,16 @@
-// Pictures one frame behind while the camera moves, and the right one once it rests.
+// Images one frame late while the camera moves, and the right one once it rests.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
 
-class Pipeline : public Stage {
+class Pipeline : public GlServer {
  protected:
   struct Shown {
     std::string turning, resting;
@@ -33,13 +33,13 @@ TEST_F(Pipeline, ShowsTheFrameBeforeWhileTheCameraMovesAndTheRightOneOnceItRests
     GTEST_SKIP() << lacking;
   const Shown usual = turn_and_rest("usual", {"-n", "2"});
   EXPECT_EQ(usual.report.at("frames_substituted"), 12);
-  EXPECT_EQ(usual.report.at("pictures_behind"), 0);
+  EXPECT_EQ(usual.report.at("images_behind"), 0);
   EXPECT_EQ(usual.report.at("windows_asked"), 0);
   ASSERT_EQ(usual.resting.size(), 3U * 256 * 256);
   EXPECT_EQ(usual.turning, usual.resting);
 
-  const Shown behind = turn_and_rest("behind", {"-n", "2", "--pipeline", "1"});
-  EXPECT_GT(behind.report.at("pictures_behind"), 6);
+  const Shown behind = turn_and_rest("behind", {"-n", "2", "--frame-latency", "1"});
+  EXPECT_GT(behind.report.at("images_behind"), 6);
   EXPECT_GE(behind.report.at("windows_asked"), 1);
   EXPECT_NE(behind.said.find("drawn again 1 times"), std::string::npos) << behind.said;
   EXPECT_NE(behind.turning, usual.turning) << "the frame before";
@@ -48,8 +48,8 @@ TEST_F(Pipeline, ShowsTheFrameBeforeWhileTheCameraMovesAndTheRightOneOnceItRests
 
 TEST_F(Pipeline, IsOfNoUseWithoutNodes) {
   if (const std::string lacking = missing({Need::x_server}); !lacking.empty()) GTEST_SKIP() << lacking;
-  const Shown embedded = turn_and_rest("embedded", {"--pipeline", "1"});
-  EXPECT_EQ(embedded.report.at("pictures_behind"), 0);
+  const Shown embedded = turn_and_rest("embedded", {"--frame-latency", "1"});
+  EXPECT_EQ(embedded.report.at("images_behind"), 0);
   EXPECT_EQ(embedded.turning, embedded.resting);
 }
 

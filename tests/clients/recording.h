@@ -1,5 +1,5 @@
 // apitrace's recording of the OpenGL calls that reach a driver, by frame, and what a recorded draw could do to
-// a picture.
+// an image.
 #pragma once
 
 #include <filesystem>

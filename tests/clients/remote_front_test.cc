@@ -28,25 +28,24 @@ class RemoteFront : public RemoteViewer {
 
   Words remotely() const { return under({"--remote", "--report", file("report.json")}) + without_opengl(); }
 
-  static Colour at(const viewer_test::Picture& picture, int x, int y) {
-    const std::size_t first = (std::size_t(y) * std::size_t(picture.width) + std::size_t(x)) * 3;
-    return {picture.rgb[first], picture.rgb[first + 1], picture.rgb[first + 2]};
+  static Colour at(const viewer_test::Image& image, int x, int y) {
+    const std::size_t first = (std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * 3;
+    return {image.rgb[first], image.rgb[first + 1], image.rgb[first + 2]};
   }
 
   /// Whether all of the window is `left` in its left half and `right` in its right one.
-  static bool has_halves(const viewer_test::Picture& picture, Colour left, Colour right) {
+  static bool has_halves(const viewer_test::Image& image, Colour left, Colour right) {
     for (int y = 0; y < window_size; ++y)
       for (int x = 0; x < window_size; ++x)
-        if (at(picture, x, y) != (x < window_size / 2 ? left : right)) return false;
+        if (at(image, x, y) != (x < window_size / 2 ? left : right)) return false;
     return true;
   }
 
   /// What is on the screen some time after the program has drawn all; the program has ended then.
-  viewer_test::Picture rests_at(const Words& command,
-                                const std::function<bool(const viewer_test::Picture&)>& as) {
-    Child child(on_stage(command, on_display()), file(""));
+  viewer_test::Image rests_at(const Words& command, const std::function<bool(const viewer_test::Image&)>& as) {
+    Child child(on_gl_server(command, on_display()), file(""));
     EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
-    viewer_test::Picture last;
+    viewer_test::Image last;
     EXPECT_TRUE(comes_true([&] {
       last = screen().value_or(last);
       return !child.running() || (!last.rgb.empty() && as(last));
@@ -61,23 +60,23 @@ class RemoteFront : public RemoteViewer {
   }
 
   void expect_halves(const std::string& way, Colour left, Colour right) {
-    const auto as_drawn = [&](const viewer_test::Picture& picture) { return has_halves(picture, left, right); };
+    const auto as_drawn = [&](const viewer_test::Image& image) { return has_halves(image, left, right); };
     EXPECT_TRUE(as_drawn(rests_at(remotely() + Words{DRAWS_IN_FRONT, way}, as_drawn))) << way;
   }
-  double frames() const { return json("report.json").at("remote_link").at("frames").get<double>(); }
+  double frames() const { return json("report.json").at("server_connection").at("frames").get<double>(); }
 
   /// The same glyphs as where GLX is a driver's.
   void expect_same_text(const std::string& font, const std::string& first, const std::string& count) {
     const Words writes = {WRITES_TEXT, font, first, count};
-    const auto has_text = [](const viewer_test::Picture& picture) {
-      return std::count(picture.rgb.begin(), picture.rgb.end(), 128) > 0;
+    const auto has_text = [](const viewer_test::Image& image) {
+      return std::count(image.rgb.begin(), image.rgb.end(), 128) > 0;
     };
-    const viewer_test::Picture local = rests_at(under() + writes, has_text);
+    const viewer_test::Image local = rests_at(under() + writes, has_text);
     std::size_t lit = 0;
     for (int y = 0; y < window_size; ++y)
       for (int x = 0; x < window_size; ++x) lit += at(local, x, y) == Colour{255, 255, 0} ? 1 : 0;
     EXPECT_GT(lit, 400U) << font;
-    const viewer_test::Picture remote = rests_at(remotely() + writes, has_text);
+    const viewer_test::Image remote = rests_at(remotely() + writes, has_text);
     EXPECT_TRUE(remote.rgb == local.rgb) << font;
   }
 };
@@ -88,7 +87,7 @@ TEST_F(RemoteFront, AWindowWithOneBufferIsShownByFlush) {
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(RemoteFront, FlushesDoNotWaitForPictures) {
+TEST_F(RemoteFront, FlushesDoNotWaitForImages) {
   expect_halves("many_flushes", green, blue);
   EXPECT_GE(frames(), 2);
   EXPECT_LT(frames(), 2048) << "of 4096 flushes";
@@ -125,7 +124,7 @@ TEST_F(RemoteFront, TextIsThatOfTheXServersFonts) {
 
 TEST_F(RemoteFront, ASpaceMovesOn) {
   // Unlike that of Mesa's own glXUseXFont, to which a glyph without pixels is an error.
-  Child child(on_stage(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
+  Child child(on_gl_server(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
   EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
   EXPECT_NE(child.out().find("moves by 6.00"), std::string::npos) << child.out() << child.err();
 }

@@ -1,4 +1,4 @@
-// Stages without EGL: they draw on OSMesa, and the viewer gets the pictures that it gets of EGL.
+// Stages without EGL: they draw on OSMesa, and the viewer gets the images that it gets of EGL.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,9 +40,9 @@ class RemoteOsmesa : public RemoteViewer {
     }
   }
 
-  void expect_same_pictures(const std::string& mode, const Words& nodes) const {
-    run_remote("egl", mode, nodes + Words{"--stage-opengl", "egl"});
-    const Outcome outcome = run_remote("osmesa", mode, nodes + Words{"--stage-opengl", "osmesa"});
+  void expect_same_images(const std::string& mode, const Words& nodes) const {
+    run_remote("egl", mode, nodes + Words{"--server-opengl", "egl"});
+    const Outcome outcome = run_remote("osmesa", mode, nodes + Words{"--server-opengl", "osmesa"});
     EXPECT_THAT(outcome.err, Not(HasSubstr("OSMesa"))) << "nobody is told what he asked for";
     expect_substituted_and_alike("egl", "osmesa");
     EXPECT_EQ(leftovers(), "");
@@ -50,21 +50,21 @@ class RemoteOsmesa : public RemoteViewer {
 };
 
 TEST_F(RemoteOsmesa, ShowsWhatAStageOnEglShows) {
-  expect_same_pictures("table", {});
+  expect_same_images("table", {});
 }
 
 TEST_F(RemoteOsmesa, CoreContextsAndNodes) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
-  expect_same_pictures("core", {"-n", "2"});
+  expect_same_images("core", {"-n", "2"});
 }
 
 /// libOSMesa is the system's, and Mesa's libraries for EGL are not there besides.
-TEST_F(RemoteOsmesa, TheStageOpensTheSystemsLibraryAlone) {
-  Child child(on_stage(under({"--remote", "--stage-opengl", "osmesa"}) +
-                           viewer("table", {"--frames", "100000", "--orbit", "1"}),
-                       {{"DISPLAY", display_->name()}}),
+TEST_F(RemoteOsmesa, TheGlServerOpensTheSystemsLibraryAlone) {
+  Child child(on_gl_server(under({"--remote", "--server-opengl", "osmesa"}) +
+                               viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                           {{"DISPLAY", display_->name()}}),
               file(""));
-  const auto mapped_by_a_stage = [&] {
+  const auto mapped_by_a_gl_server = [&] {
     for (const pid_t process : processes("understudy")) {
       std::string mapped = contents(fmt::format("/proc/{}/maps", process));
       if (mapped.find("libOSMesa") != std::string::npos) return mapped;
@@ -73,7 +73,7 @@ TEST_F(RemoteOsmesa, TheStageOpensTheSystemsLibraryAlone) {
   };
   std::string mapped;
   ASSERT_TRUE(comes_true([&] {
-    mapped = mapped_by_a_stage();
+    mapped = mapped_by_a_gl_server();
     return !mapped.empty() || !child.running();
   })) << child.err();
   EXPECT_THAT(mapped, HasSubstr((system_libraries / "libOSMesa").string()));
@@ -84,7 +84,7 @@ TEST_F(RemoteOsmesa, TheStageOpensTheSystemsLibraryAlone) {
 }
 
 TEST_F(RemoteOsmesa, TakesThePlaceOfEglAndSaysWhy) {
-  run_remote("egl", "table", {"--stage-opengl", "egl"});
+  run_remote("egl", "table", {"--server-opengl", "egl"});
   // Neither a vendor's library nor a driver.
   const Outcome no_vendor =
       run_remote("no_vendor", "table", {}, {{"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
@@ -97,17 +97,18 @@ TEST_F(RemoteOsmesa, TakesThePlaceOfEglAndSaysWhy) {
 }
 
 TEST_F(RemoteOsmesa, WhoAsksForEglAloneIsToldWhatIsMissing) {
-  const Outcome outcome = run(under({"--remote", "--stage-opengl", "egl"}) + viewer("table", {"--frames", "1"}),
-                              {{"DISPLAY", display_->name()}, {"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
+  const Outcome outcome =
+      run(under({"--remote", "--server-opengl", "egl"}) + viewer("table", {"--frames", "1"}),
+          {{"DISPLAY", display_->name()}, {"__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere"}});
   EXPECT_NE(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("install libegl-mesa0"));
   EXPECT_EQ(leftovers(), "");
 }
 
 TEST_F(RemoteOsmesa, AStageElsewhereIsNotThisRunsToChoose) {
-  const Outcome outcome = run_well(under({"--stage-opengl", "osmesa"}) + viewer("table", {"--frames", "1"}),
+  const Outcome outcome = run_well(under({"--server-opengl", "osmesa"}) + viewer("table", {"--frames", "1"}),
                                    {{"DISPLAY", display_->name()}});
-  EXPECT_THAT(outcome.err, HasSubstr("give it to understudy serve --stage"));
+  EXPECT_THAT(outcome.err, HasSubstr("give it to understudy serve --gl-server"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Viewers without OpenGL: their calls are made by a stage, and what comes home is the picture of a viewer that
-// runs where OpenGL is.
+// Viewers without OpenGL: their calls are made by a GL server, and what is gathered is the image of a viewer
+// that runs where OpenGL is.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -18,7 +18,7 @@ class Remote : public RemoteViewer {
  protected:
   void SetUp() override { start_display({Need::engine, Need::x_server, Need::imagemagick}); }
 
-  void expect_same_pictures(const std::string& mode, const Words& nodes) {
+  void expect_same_images(const std::string& mode, const Words& nodes) {
     const auto frames = [&](const std::string& folder) {
       return viewer(mode, {"--frames", "2", "--orbit", "50", "--screenshot-frames", file(folder)});
     };
@@ -30,9 +30,9 @@ class Remote : public RemoteViewer {
     EXPECT_EQ(report.at("remote"), true);
     EXPECT_EQ(report.at("frames"), 2);
     EXPECT_EQ(substituted(report), 2) << outcome.err;
-    EXPECT_EQ(report.at("remote_link").at("frames"), 2);
-    EXPECT_GT(report.at("remote_link").at("bytes_up"), 256 * 256 * 110);
-    fmt::print("{}: {}\n", mode, report.at("remote_link").dump());
+    EXPECT_EQ(report.at("server_connection").at("frames"), 2);
+    EXPECT_GT(report.at("server_connection").at("bytes_up"), 256 * 256 * 110);
+    fmt::print("{}: {}\n", mode, report.at("server_connection").dump());
     for (const char* name : {"frame_0000.png", "frame_0001.png"}) {
       EXPECT_GE(told(fmt::format("{}, {}", mode, name), png(fmt::format("local/{}", name)),
                      png(fmt::format("remote/{}", name)))
@@ -41,23 +41,24 @@ class Remote : public RemoteViewer {
     }
   }
 
-  static bool shows_something(const viewer_test::Picture& picture) {
-    return std::set<std::uint8_t>(picture.rgb.begin(), picture.rgb.end()).size() > 16;
+  static bool shows_something(const viewer_test::Image& image) {
+    return std::set<std::uint8_t>(image.rgb.begin(), image.rgb.end()).size() > 16;
   }
 
-  void expect_pictures_in_the_window(bool by_shared_memory) {
-    viewer_test::Picture local;
+  void expect_images_in_the_window(bool by_shared_memory) {
+    viewer_test::Image local;
     {
-      Child child(on_stage(under() + viewer("table", {}), on_display()), file(""));
+      Child child(on_gl_server(under() + viewer("table", {}), on_display()), file(""));
       ASSERT_TRUE(comes_true([&] {
-        const viewer_test::Picture before = local;
+        const viewer_test::Image before = local;
         local = screen().value_or(before);
         return !local.rgb.empty() && local.rgb == before.rgb && shows_something(local);
       })) << child.err();
       child.signal(SIGTERM);
       EXPECT_EQ(child.finish().status, 128 + SIGTERM);
     }
-    Child child(on_stage(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()), file(""));
+    Child child(on_gl_server(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()),
+                file(""));
     const bool shown = comes_true([&] {
       const auto now = screen();
       return !child.running() || (now && now->rgb == local.rgb);
@@ -69,7 +70,7 @@ class Remote : public RemoteViewer {
     EXPECT_NE(mapped.find("libunderstudy.so"), std::string::npos);
     for (const char* of_a_driver : {"libGLdispatch", "libGLX_", "libEGL_", "_dri.so", "libLLVM"})
       EXPECT_EQ(mapped.find(of_a_driver), std::string::npos) << of_a_driver;
-    EXPECT_EQ(mapped.find("/memfd:understudy-picture") != std::string::npos, by_shared_memory);
+    EXPECT_EQ(mapped.find("/memfd:understudy-image") != std::string::npos, by_shared_memory);
     child.signal(SIGTERM);
     EXPECT_EQ(child.finish().status, 128 + SIGTERM);
     EXPECT_EQ(leftovers(), "");
@@ -77,20 +78,20 @@ class Remote : public RemoteViewer {
 };
 
 TEST_F(Remote, ShowsWhatIsShownWhereOpenGLIs) {
-  expect_same_pictures("table", {});
+  expect_same_images("table", {});
   EXPECT_EQ(leftovers(), "");
 }
 
 TEST_F(Remote, CoreContextsAndNodes) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
-  expect_same_pictures("core", {"-n", "2"});
+  expect_same_images("core", {"-n", "2"});
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(Remote, PolygonsInStripsAreThoseOfOneProcess) {
+TEST_F(Remote, PolygonsInTilesAreThoseOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const auto frames = [&](const std::string& polygons) {
-    // A solid that reaches into the volume: its depth is read from all strips.
+    // A solid that reaches into the volume: its depth is read from all tiles.
     const Outcome outcome = run_well(
         under({"-n", "2", "--remote", "--polygons", polygons, "--report", file("report.json")}) +
             without_opengl() +
@@ -98,20 +99,20 @@ TEST_F(Remote, PolygonsInStripsAreThoseOfOneProcess) {
                    {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames", file(polygons)}),
         on_display());
     EXPECT_EQ(substituted(json("report.json")), 3) << outcome.err;
-    return json("report.json").at("strips");
+    return json("report.json").at("tiles");
   };
   EXPECT_EQ(frames("root"), nullptr);
-  const nlohmann::json strips = frames("strips");
-  EXPECT_EQ(strips.at("of"), 2);
-  EXPECT_EQ(strips.at("frames"), 3);
-  EXPECT_EQ(strips.at("given_up"), "");
+  const nlohmann::json tiles = frames("tiles");
+  EXPECT_EQ(tiles.at("of"), 2);
+  EXPECT_EQ(tiles.at("frames"), 3);
+  EXPECT_EQ(tiles.at("given_up"), "");
   for (const char* name : {"frame_0000.png", "frame_0001.png", "frame_0002.png"})
-    EXPECT_EQ(png(fmt::format("root/{}", name)).rgb, png(fmt::format("strips/{}", name)).rgb) << name;
+    EXPECT_EQ(png(fmt::format("root/{}", name)).rgb, png(fmt::format("tiles/{}", name)).rgb) << name;
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(Remote, PerfShowsWhichCallsWaitForTheStage) {
-  const std::string chain = fmt::format("perf(file={}) pack link", file("calls.json").string());
+TEST_F(Remote, PerfShowsWhichCallsWaitForTheGlServer) {
+  const std::string chain = fmt::format("perf(file={}) pack remote", file("calls.json").string());
   run_well(under({"--remote", "--chain", chain, "--report", file("report.json")}) + without_opengl() +
                viewer("table", {"--frames", "2"}),
            on_display());
@@ -120,13 +121,13 @@ TEST_F(Remote, PerfShowsWhichCallsWaitForTheStage) {
   const auto all = perf.at("all").at("round_trips").get<std::uint64_t>();
   EXPECT_GT(all, 0U);
   // Contexts, swaps and their ends wait as well.
-  EXPECT_LE(all, json("report.json").at("remote_link").at("round_trips").get<std::uint64_t>());
+  EXPECT_LE(all, json("report.json").at("server_connection").at("round_trips").get<std::uint64_t>());
   EXPECT_GT(perf.at("calls").at("glGetString").at("round_trips"), 0);
   EXPECT_EQ(perf.at("calls").at("glClear").at("round_trips"), 0);
 }
 
-TEST_F(Remote, StripsAreForStages) {
-  const Outcome outcome = run(under({"--polygons", "strips"}) + Words{"true"});
+TEST_F(Remote, TilesAreForStages) {
+  const Outcome outcome = run(under({"--polygons", "tiles"}) + Words{"true"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("add --remote"), std::string::npos) << outcome.err;
 }
@@ -143,7 +144,7 @@ TEST_F(Remote, OffScreen) {
   EXPECT_GE(told("off screen", png("local.png"), png("remote.png")).psnr, 50);
 }
 
-TEST_F(Remote, AForkedChildThatExitsLeavesTheStageToItsParent) {
+TEST_F(Remote, AForkedChildThatExitsLeavesTheGlServerToItsParent) {
   const Words forks = {FORKS, "child_only_exits"};
   const Outcome local = run_well(under() + forks);
   const Outcome remote = run_well(under({"--remote"}) + without_opengl() + forks);
@@ -156,51 +157,51 @@ TEST_F(Remote, WhatStaysTheSameDoesNotTravel) {
   const auto bytes_up = [&](const char* frames) {
     run_well(under({"--remote", "--report", file("report.json")}) + viewer("table", {"--frames", frames}),
              on_display());
-    return json("report.json").at("remote_link").at("bytes_up").get<double>();
+    return json("report.json").at("server_connection").at("bytes_up").get<double>();
   };
   const double a_frame = (bytes_up("30") - bytes_up("10")) / 20;
   fmt::print("a frame of a view that rests: {:.0f} bytes up\n", a_frame);
   EXPECT_LT(a_frame, 4096);
 }
 
-TEST_F(Remote, PicturesAreInTheWindow) {
-  expect_pictures_in_the_window(true);
+TEST_F(Remote, ImagesAreInTheWindow) {
+  expect_images_in_the_window(true);
 }
 
-TEST_F(Remote, PicturesAreInTheWindowOfAServerWithoutSharedMemory) {
+TEST_F(Remote, ImagesAreInTheWindowOfAServerWithoutSharedMemory) {
   display_.reset();
   display_.emplace(std::move(*viewer_test::VirtualDisplay::start("MIT-SHM")));
-  expect_pictures_in_the_window(false);
+  expect_images_in_the_window(false);
 }
 
 TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
   Child child(
-      on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      on_gl_server(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
       file(""));
-  // The stage that listens, and its process for the viewer.
-  const auto stages = [&] {
+  // The GL server that listens, and its process for the viewer.
+  const auto servers = [&] {
     std::vector<pid_t> found;
     for (const pid_t process : processes("understudy")) {
       if (process != child.pid()) found.push_back(process);
     }
     return found;
   };
-  // Not before the viewer draws: a stage that is gone then means that there is no OpenGL.
+  // Not before the viewer draws: a GL server that is gone then means that there is no OpenGL.
   ASSERT_TRUE(comes_true([&] {
     const auto now = screen();
-    return !child.running() || (now && shows_something(*now) && stages().size() == 2);
+    return !child.running() || (now && shows_something(*now) && servers().size() == 2);
   })) << child.err();
-  for (const pid_t process : stages()) kill(process, SIGKILL);
-  EXPECT_TRUE(comes_true([&] { return child.err().find("the stage, which draws") != std::string::npos; }))
+  for (const pid_t process : servers()) kill(process, SIGKILL);
+  EXPECT_TRUE(comes_true([&] { return child.err().find("the GL server, which draws") != std::string::npos; }))
       << child.err();
   child.signal(SIGTERM);
   EXPECT_EQ(child.finish().status, 128 + SIGTERM);
   EXPECT_EQ(leftovers(), "");
 }
 
-TEST_F(Remote, AViewerThatIsKilledEndsItsStage) {
+TEST_F(Remote, AViewerThatIsKilledEndsItsGlServer) {
   Child child(
-      on_stage(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      on_gl_server(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
       file(""));
   ASSERT_TRUE(comes_true([&] {
     const auto now = screen();

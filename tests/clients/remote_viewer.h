@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "tests/apps/viewer/virtual_display.h"
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 
-class RemoteViewer : public Stage {
+class RemoteViewer : public GlServer {
  protected:
   /// The test is skipped, or has failed, where there is no display afterwards.
   void start_display(std::initializer_list<Need> needs) {
@@ -44,7 +44,7 @@ class RemoteViewer : public Stage {
   static Words without_opengl() { return {"env", "LIBGL_DRIVERS_PATH=/nowhere"}; }
 
   /// What the X server shows; nothing while it cannot be grabbed.
-  std::optional<viewer_test::Picture> screen() const {
+  std::optional<viewer_test::Image> screen() const {
     const Words grab = {"import", "-window", "root", "png24:" + file("screen.png").string()};
     if (Child({grab, on_display()}, file("")).finish().status != 0) return std::nullopt;
     return png("screen.png");

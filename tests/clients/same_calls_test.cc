@@ -10,12 +10,12 @@
 #include "tests/apps/viewer/virtual_display.h"
 #include "tests/clients/osgvolume_command.h"
 #include "tests/clients/recording.h"
-#include "tests/clients/recording_stage.h"
+#include "tests/clients/recording_test.h"
 
 namespace clients {
 namespace {
 
-class SameCalls : public RecordingStage {
+class SameCalls : public RecordingServer {
  protected:
   void expect_same(const RecordedLibrary& library, const Words& viewer, Environment environment) const {
     const std::vector<std::string> bare = calls_in(dump_of_bare(library, viewer, environment));

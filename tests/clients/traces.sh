@@ -16,7 +16,7 @@ understudy=$programs/understudy
 
 declare -A needs=([osgvolume]='command -v osgvolume' [pyqtgraph]='/usr/bin/python3 -c "import pyqtgraph, OpenGL"'
   [pymol]='command -v pymol' [vtk]='/usr/bin/python3 -c "import vtk"')
-# Which of the saved pictures is the viewer's screenshot: the frame in its window, or what it read back itself.
+# Which of the saved images is the viewer's screenshot: the frame in its window, or what it read back itself.
 declare -A shot=([osgvolume]=frame [pyqtgraph]=frame [pymol]=read [vtk]=read)
 
 fail() { echo "traces.sh: $*" >&2; failed=1; }
@@ -51,10 +51,10 @@ for name in "${names[@]}"; do
   "$understudy" replay --native --save-frames "$folder/native" "$trace" || fail "$name: native replay"
   "$understudy" replay --chain 'pack unpack track driver' --save-frames "$folder/packed" "$trace" ||
     fail "$name: replay through pack and unpack"
-  diff -rq "$folder/native" "$folder/packed" || fail "$name: pack and unpack change pictures"
+  diff -rq "$folder/native" "$folder/packed" || fail "$name: pack and unpack change images"
   last=$(ls "$folder/native/${shot[$name]}"_*.png | tail -n 1)
   decibels=$(psnr "$last" "$folder/live.png")
-  echo "$name: $(ls "$folder/native" | wc -l) pictures, $decibels dB against its screenshot"
+  echo "$name: $(ls "$folder/native" | wc -l) images, $decibels dB against its screenshot"
   [ "$decibels" = inf ] || [ "${decibels%.*}" -ge 50 ] 2>/dev/null || fail "$name: the replay shows something else"
 
   RES=half WITH="$understudy run -n 2 --report $folder/live.json --" "$viewer" "$name" "$folder/live2.png" 5 \

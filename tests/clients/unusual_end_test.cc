@@ -6,12 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
 
-class UnusualEnd : public Stage {
+class UnusualEnd : public GlServer {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
@@ -36,7 +36,7 @@ TEST_F(UnusualEnd, AViewerThatLeavesInTheMidstOfAFrame) {
 
 TEST_F(UnusualEnd, AViewerThatIsKilled) {
   for (const int signal : {SIGKILL, SIGSEGV}) {
-    Child child(on_stage(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
+    Child child(on_gl_server(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
                 file(""));
     ASSERT_TRUE(
         comes_true([&] { return !child.running() || child.out().find("frame 3:") != std::string::npos; }));
@@ -53,7 +53,7 @@ TEST_F(UnusualEnd, AViewerThatIsKilled) {
 }
 
 TEST_F(UnusualEnd, ALauncherThatIsKilledTakesNodesAndViewerWithItAndTheNextOneCleansUp) {
-  Child child(on_stage(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
+  Child child(on_gl_server(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
               file(""));
   ASSERT_TRUE(
       comes_true([&] { return !child.running() || child.out().find("frame 3:") != std::string::npos; }));

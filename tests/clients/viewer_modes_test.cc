@@ -1,5 +1,5 @@
 // The bundled viewer's ways of drawing: substituted where the nodes can play the part, and otherwise the
-// viewer's own picture, bit for bit, with the reason.
+// viewer's own image, bit for bit, with the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 #include <string>
 #include <string_view>
 
-#include "apps/understudy/picture.h"
-#include "tests/clients/stage.h"
+#include "apps/understudy/image.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
 
-using understudy::launcher::Picture;
-using understudy::launcher::read_picture;
+using understudy::launcher::Image;
+using understudy::launcher::read_image;
 
 constexpr int frames = 2;
 
@@ -35,13 +35,13 @@ Words view(const Words& options) {
          options;
 }
 
-class ViewerModes : public Stage, public testing::WithParamInterface<Way> {};
+class ViewerModes : public GlServer, public testing::WithParamInterface<Way> {};
 
 TEST_P(ViewerModes, AreSubstitutedOrLeft) {
   if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
   const Way& way = GetParam();
-  const auto viewer = [&](const std::string& pictures) {
-    return engine_viewer(way.mode, view(way.options) + Words{"--screenshot-frames", file(pictures)});
+  const auto viewer = [&](const std::string& images) {
+    return engine_viewer(way.mode, view(way.options) + Words{"--screenshot-frames", file(images)});
   };
   run_well(viewer("bare"));
   const Outcome outcome = run_well(under({"--report", file("report.json")}) + viewer("under"));
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });
 
-class TimeSteps : public Stage, public testing::WithParamInterface<const char*> {};
+class TimeSteps : public GlServer, public testing::WithParamInterface<const char*> {};
 
 // The whole volume once; then, of a box in its middle, the tiles of 16^3 texels that it meets.
 TEST_P(TimeSteps, SendOnlyWhatChanges) {
@@ -117,7 +117,7 @@ TEST_P(TimeSteps, SendOnlyWhatChanges) {
   }
   for (int number = 0; number < 3; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
-    const Picture one = read_picture(file("frames0") / name), four = read_picture(file("frames4") / name);
+    const Image one = read_image(file("frames0") / name), four = read_image(file("frames4") / name);
     ASSERT_EQ(one.rgba.size(), four.rgba.size());
     float largest = 0;
     for (std::size_t i = 0; i < one.rgba.size(); ++i)
@@ -129,10 +129,10 @@ TEST_P(TimeSteps, SendOnlyWhatChanges) {
 INSTANTIATE_TEST_SUITE_P(Of, TimeSteps, testing::Values("whole", "part", "again"),
                          [](const auto& info) { return std::string(info.param); });
 
-/// An operator, or the pre-integrated slabs.
-class OperatorsOnRanks : public Stage, public testing::WithParamInterface<const char*> {};
+/// An operator, or the pre-integrated segments.
+class OperatorsOnRanks : public GlServer, public testing::WithParamInterface<const char*> {};
 
-TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
+TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const std::string name = GetParam();
   const Words way = name == "slabs" ? Words{"--mode", "preint"} : Words{"--operator", name};
@@ -161,7 +161,7 @@ TEST_P(OperatorsOnRanks, GiveThePictureOfOneProcess) {
   double largest = 0, brightest = 0;
   for (int number = 0; number < frames; ++number) {
     const std::string frame = fmt::format("frame_{:04}.pfm", number);
-    const Picture one = read_picture(file("frames0") / frame), two = read_picture(file("frames2") / frame);
+    const Image one = read_image(file("frames0") / frame), two = read_image(file("frames2") / frame);
     ASSERT_EQ(one.rgba.size(), two.rgba.size());
     for (std::size_t i = 0; i < one.rgba.size(); ++i) {
       // Where a minimum has no sample it is larger than any float framebuffer's colour.

@@ -4,14 +4,14 @@
 Every viewer that the script at UNDERSTUDY_VIEWERS (../shared/clients/viewer beside the checkout, if the variable is not
 set) knows is run five ways, which follow each other in every round: bare, under `understudy run` (embedded), under
 `understudy run -n 2`, with nothing but LD_PRELOAD=libunderstudy.so, and under `understudy run --remote -n 2` without any
-OpenGL of its own (stage), whose picture is held against that of `run -n 2`. The script is asked as
+OpenGL of its own (GL server), whose image is held against that of `run -n 2`. The script is asked as
 
-    [WITH="command…"] viewer NAME PICTURE.png FRAMES
+    [WITH="command…"] viewer NAME IMAGE.png FRAMES
 
 and prints a line "FRAME ms median X" where the viewer measures itself. Elsewhere frame times are Understudy's own; for the
-bare viewer those of a run whose volume is handed back to it after the first frame, because no picture is good enough.
+bare viewer those of a run whose volume is handed back to it after the first frame, because no image is good enough.
 
-Pictures, reports and the viewers' words are kept in out/viewers, and with them table.json and table.md.
+Images, reports and the viewers' words are kept in out/viewers, and with them table.json and table.md.
 """
 
 import argparse
@@ -30,7 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "out" / "viewers"
 UNDERSTUDY = ROOT / "build" / "bin" / "understudy"
 LIBRARY = ROOT / "build" / "lib" / "libunderstudy.so"
-WAYS = ("bare", "embedded", "2 ranks", "preload", "stage")
+WAYS = ("bare", "embedded", "2 ranks", "preload", "gl-server")
 
 # What a viewer needs, by the beginning of its name: what is there when it is installed, and the Debian packages that
 # bring it. Some of them exclude others.
@@ -55,7 +55,7 @@ def viewer_script():
     path = Path(os.environ.get("UNDERSTUDY_VIEWERS", ROOT.parent / "shared" / "clients" / "viewer"))
     if not os.access(path, os.X_OK):
         sys.exit(f"viewers: there is no script at {path} that runs viewers; "
-                 "set UNDERSTUDY_VIEWERS to one that takes NAME PICTURE.png FRAMES (tests/clients/viewers.py says how)")
+                 "set UNDERSTUDY_VIEWERS to one that takes NAME IMAGE.png FRAMES (tests/clients/viewers.py says how)")
     return path
 
 
@@ -129,9 +129,9 @@ class Run:
 
     def __init__(self, script, name, way, frames, seconds, watched=False):
         stem = f"{name}.{way.replace(' ', '_')}{'.watched' if watched else ''}"
-        self.picture = OUT / f"{stem}.png"
+        self.image = OUT / f"{stem}.png"
         report, saved = OUT / f"{stem}.json", OUT / f"{stem}.frames"
-        for old in (self.picture, report):
+        for old in (self.image, report):
             old.unlink(missing_ok=True)
         shutil.rmtree(saved, ignore_errors=True)
         environment = dict(os.environ)
@@ -140,20 +140,20 @@ class Run:
             "bare": f"{UNDERSTUDY} run --report {report} --" if watched else "",
             "embedded": f"{UNDERSTUDY} run --report {report} --",
             "2 ranks": f"{UNDERSTUDY} run -n 2 --report {report} --",
-            # Nobody writes a report here; a picture is saved for every run of slices that is substituted.
+            # Nobody writes a report here; an image is saved for every run of slices that is substituted.
             "preload": f"env LD_PRELOAD={LIBRARY} UNDERSTUDY_SAVE_FRAMES={saved}",
-            "stage": f"{UNDERSTUDY} run --remote -n 2 --report {report} -- env LIBGL_DRIVERS_PATH=/nowhere",
+            "gl-server": f"{UNDERSTUDY} run --remote -n 2 --report {report} -- env LIBGL_DRIVERS_PATH=/nowhere",
         }[way]
         if watched:
             environment["UNDERSTUDY_VERIFY_PSNR"] = "200"
-        # Some viewers draw one view again and again: times are of pictures that are cast. With LD_PRELOAD alone all is
+        # Some viewers draw one view again and again: times are of images that are cast. With LD_PRELOAD alone all is
         # as users have it.
         if way != "preload":
-            environment["UNDERSTUDY_NEVER_LEAVE_OUT"] = "unchanged-pictures"
+            environment["UNDERSTUDY_DISABLE_OPTIMIZATION"] = "unchanged-images"
         if way == "preload":
             saved.mkdir(parents=True)
         log = OUT / f"{stem}.log"
-        status = run_group([str(script), name, str(self.picture), str(frames)], environment, log, seconds)
+        status = run_group([str(script), name, str(self.image), str(frames)], environment, log, seconds)
         words = log.read_text(encoding="utf-8", errors="replace")
         self.report = json.loads(report.read_text(encoding="utf-8")) if report.exists() else None
         self.saved = len(list(saved.glob("*.pfm"))) if saved.exists() else 0
@@ -161,8 +161,8 @@ class Run:
         self.trouble = ""
         if status is None:
             self.trouble = f"no end after {seconds} s"
-        elif not self.picture.exists():
-            self.trouble = f"no picture (exit status {status}): see {log.relative_to(ROOT)}"
+        elif not self.image.exists():
+            self.trouble = f"no image (exit status {status}): see {log.relative_to(ROOT)}"
         measured = re.search(r"^FRAME ms median ([0-9.]+)", words, re.MULTILINE)
         self.own_time = measured is not None
         self.frame_ms = float(measured.group(1)) if measured else None
@@ -197,8 +197,8 @@ class Run:
         return self.report["time_ms"]["depth_median"] if self.report else None
 
     def line(self):
-        """What a frame takes of the line to the stage."""
-        return self.report.get("remote_link") if self.report else None
+        """What a frame takes of the line to the GL server."""
+        return self.report.get("server_connection") if self.report else None
 
     def calls_a_frame(self):
         if self.report is None or not self.report["frames"]:
@@ -207,7 +207,7 @@ class Run:
 
 
 def compared(a, b):
-    """PSNR in dB and largest difference of two pictures; infinite and 0 where they are equal."""
+    """PSNR in dB and largest difference of two images; infinite and 0 where they are equal."""
     done = subprocess.run([UNDERSTUDY, "compare", a, b], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           check=False)
     figures = dict(re.findall(r"^(max|PSNR) ([0-9.e+-]+|inf)", done.stdout, re.MULTILINE))
@@ -248,16 +248,16 @@ def row_of(script, name, arguments):
         if run is None:
             row["ways"][way] = {"trouble": runs[way][-1].trouble}
             continue
-        psnr, largest = compared(bare.picture, run.picture)
+        psnr, largest = compared(bare.image, run.image)
         row["ways"][way] = {"substituted": run.substituted(), "psnr": psnr, "max": largest}
-    ranks, stage = (next((run for run in reversed(runs[way]) if not run.trouble), None) for way in ("2 ranks", "stage"))
-    if ranks and stage:
-        row["ways"]["stage"]["psnr_to_2_ranks"] = compared(ranks.picture, stage.picture)[0]
-        row["line"] = stage.line()
+    ranks, server = (next((run for run in reversed(runs[way]) if not run.trouble), None) for way in ("2 ranks", "gl-server"))
+    if ranks and server:
+        row["ways"]["gl-server"]["psnr_to_2_ranks"] = compared(ranks.image, server.image)[0]
+        row["line"] = server.line()
     times = {way: median(run.frame_ms for run in runs[way]) for way in WAYS}
     row["frame_ms"] = times
     row["times_by"] = "the viewer" if bare.own_time else "Understudy"
-    for way in ("embedded", "2 ranks", "stage"):
+    for way in ("embedded", "2 ranks", "gl-server"):
         if times["bare"] and times[way]:
             row["frame_ratio"][way] = times["bare"] / times[way]
     embedded = next((run for run in runs["embedded"] if not run.trouble), None)
@@ -299,21 +299,21 @@ def markdown(rows):
                  *(share_cell(row.get(share), times.get("bare")) for share in ("recognition_ms", "depth_ms")),
                  f"{row['calls_a_frame']:.0f}" if row["calls_a_frame"] else "–", row["reason"] or "–"]
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join([*lines, "", *stage_lines(rows)]) + "\n"
+    return "\n".join([*lines, "", *gl_server_lines(rows)]) + "\n"
 
 
-def stage_lines(rows):
-    """The same viewers without OpenGL: all of it, and two nodes, are on a stage."""
+def gl_server_lines(rows):
+    """The same viewers without OpenGL: all of it, and two nodes, are on a GL server."""
     lines = ["| viewer without OpenGL | volume | PSNR to 2 ranks | ms | bytes up a frame, with all that is uploaded | down | round trips |",
              "|---|---|---|---|---|---|---|"]
     for row in rows:
-        way, line = row["ways"].get("stage"), row.get("line")
+        way, line = row["ways"].get("gl-server"), row.get("line")
         if way is None:
             continue
         if line is None:
             lines.append(f"| {row['viewer']} | {way.get('trouble', '–')} | – | – | – | – | – |")
             continue
-        psnr, time_of_frame, each = way["psnr_to_2_ranks"], row["frame_ms"].get("stage"), line["per_frame"]
+        psnr, time_of_frame, each = way["psnr_to_2_ranks"], row["frame_ms"].get("gl-server"), line["per_frame"]
         counts = [f"{each[key]:.0f}" if each[key] is not None else "–" for key in ("bytes_up", "bytes_down")]
         trips = f"{each['round_trips']:.1f}" if each["round_trips"] is not None else "–"
         lines.append(f"| {row['viewer']} | {'by nodes' if way['substituted'] else 'by the viewer'} | "
@@ -323,7 +323,7 @@ def stage_lines(rows):
 
 
 def jsonable(value):
-    """JSON knows no infinity: equal pictures have a PSNR of null."""
+    """JSON knows no infinity: equal images have a PSNR of null."""
     if isinstance(value, dict):
         return {key: jsonable(item) for key, item in value.items()}
     return None if value == float("inf") else value
@@ -372,7 +372,7 @@ def main():
         say("putting back what excluded others")
         install(removed)
     print(markdown(rows), end="")
-    say(f"the table, pictures, reports and the viewers' words are in {OUT.relative_to(ROOT)}")
+    say(f"the table, images, reports and the viewers' words are in {OUT.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

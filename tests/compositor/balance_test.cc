@@ -31,7 +31,7 @@ struct Group {
   volume::VolumeDescription description = describe({257, 257, 257}, volume::TexelType::u8);
   TexelBox lattice = volume::cell_lattice(description).box();
   BlockCosts costs{lattice, 8};
-  std::vector<double> slowness;
+  std::vector<double> relative_cost;
   double noise = 0.05;
   double ms_per_block = 1e-4;
   std::vector<std::size_t> most_blocks;
@@ -43,14 +43,14 @@ struct Group {
   int reversals = 0;
   int largest_step = 0;
 
-  Group(int ranks, unsigned seed) : slowness(std::size_t(ranks), 1.0), random(seed) {
+  Group(int ranks, unsigned seed) : relative_cost(std::size_t(ranks), 1.0), random(seed) {
     partition = volume::by_blocks(description, ranks);
     last_way.resize(partition.splits.size());
     std::uniform_real_distribution<double> uniform(0, 1);
     for (double& value : costs.values()) value = uniform(random) < 0.3 ? 1000 : 4;
   }
 
-  /// One picture; how far the slowest rank's time lies over the mean, without noise.
+  /// One image; how far the slowest rank's time lies over the mean, without noise.
   double draw(Balancer& balancer) {
     const Partition next = balancer.decide({partition, lattice, work, costs, ms_per_block, most_blocks});
     for (std::size_t i = 0; i < next.splits.size(); ++i) {
@@ -69,11 +69,11 @@ struct Group {
     std::uniform_real_distribution<double> uniform(1 - noise, 1 + noise);
     const auto boxes = volume::boxes(partition, description);  // throws if they do not tile
     for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
-      const double samples = sums.within(boxes[rank]), ms = 1e-4 * samples * slowness[rank];
+      const double samples = sums.within(boxes[rank]), ms = 1e-4 * samples * relative_cost[rank];
       work.push_back({ms * uniform(random), std::uint64_t(samples)});
       most = std::max(most, ms);
       all += 1e-4 * samples;
-      speed += 1 / slowness[rank];
+      speed += 1 / relative_cost[rank];
     }
     return most * speed / all;
   }
@@ -97,19 +97,19 @@ TEST(Balance, PredictingEvensOutASlowRankInTwoMovesAndThenRests) {
   for (int ranks = 2; ranks <= 8; ++ranks) {
     Group group(ranks, seed + unsigned(ranks));
     const auto balancer = predicting_balancer();
-    for (int picture = 0; picture < 20; ++picture) group.draw(*balancer);
+    for (int image = 0; image < 20; ++image) group.draw(*balancer);
     const int before = group.moves;
-    group.slowness[std::size_t(ranks) / 2] = 4;
+    group.relative_cost[std::size_t(ranks) / 2] = 4;
     const double unbalanced = group.draw(*balancer);
-    for (int picture = 0; picture < 6; ++picture) group.draw(*balancer);
+    for (int image = 0; image < 6; ++image) group.draw(*balancer);
     const double balanced = group.draw(*balancer);
     const int moved = group.moves - before;
-    // Two pictures to believe it, one or two decisions for every split.
+    // Two images to believe it, one or two decisions for every split.
     EXPECT_LT(balanced, 1.2) << ranks << " ranks";
     EXPECT_LT(balanced, 0.6 * unbalanced) << ranks << " ranks";
     EXPECT_LE(moved, 2 * (ranks - 1)) << ranks << " ranks";
     const int settled = group.moves;
-    for (int picture = 0; picture < 300; ++picture) group.draw(*balancer);
+    for (int image = 0; image < 300; ++image) group.draw(*balancer);
     EXPECT_LE(group.moves - settled, ranks) << ranks << " ranks: planes wander though nothing changes";
   }
 }
@@ -121,8 +121,8 @@ TEST(Balance, NoRankComesToHoldMoreThanItHasMemoryFor) {
       // One rank is so fast that nearly all of the volume would be its share.
       const std::size_t fast = std::size_t(ranks) / 2;
       for (Group* group : {&free, &bound}) {
-        std::ranges::fill(group->slowness, 50.0);
-        group->slowness[fast] = 1;
+        std::ranges::fill(group->relative_cost, 50.0);
+        group->relative_cost[fast] = 1;
       }
       const auto held = [&](const Group& group, std::size_t rank) {
         return blocks_in(volume::boxes(group.partition, group.description)[rank]);
@@ -133,7 +133,7 @@ TEST(Balance, NoRankComesToHoldMoreThanItHasMemoryFor) {
       const auto one = make_balancer(balance), other = make_balancer(balance);
       double unlimited = 0, limited = 0;
       std::size_t most = 0;
-      for (int picture = 0; picture < 60; ++picture) {
+      for (int image = 0; image < 60; ++image) {
         unlimited = free.draw(*one);
         limited = bound.draw(*other);
         ASSERT_LE(held(bound, fast), bound.most_blocks[fast]);
@@ -158,7 +158,7 @@ TEST(Balance, PredictingLearnsWhatExpectationDoesNotKnow) {
         for (int x = nx / 2; x < nx; ++x) really.values()[really.index({x, y, z})] *= 0.2;
     const auto balancer = predicting_balancer();
     double before = 0, after = 0;
-    for (int picture = 0; picture < 40; ++picture) {
+    for (int image = 0; image < 40; ++image) {
       const Partition next =
           balancer->decide({group.partition, group.lattice, group.work, group.costs, group.ms_per_block});
       group.partition = next;
@@ -171,7 +171,7 @@ TEST(Balance, PredictingLearnsWhatExpectationDoesNotKnow) {
         most = std::max(most, samples);
         all += samples;
       }
-      (picture == 0 ? before : after) = most * ranks / all;
+      (image == 0 ? before : after) = most * ranks / all;
     }
     std::printf("%d ranks: slowest %.2f times the mean, then %.2f\n", ranks, before, after);
     EXPECT_LT(after, 1.15) << ranks;
@@ -181,23 +181,23 @@ TEST(Balance, PredictingLearnsWhatExpectationDoesNotKnow) {
 
 TEST(Balance, PredictingStaysWhereMovingCostsMoreThanItGains) {
   Group group(4, 2403);
-  group.slowness[0] = 1.3;
-  group.ms_per_block = 10;  // a picture takes some 300 ms
+  group.relative_cost[0] = 1.3;
+  group.ms_per_block = 10;  // an image takes some 300 ms
   const auto balancer = predicting_balancer();
-  for (int picture = 0; picture < 5; ++picture) group.draw(*balancer);
+  for (int image = 0; image < 5; ++image) group.draw(*balancer);
   EXPECT_EQ(group.moves, 0);
   group.ms_per_block = 1e-4;
-  for (int picture = 0; picture < 5; ++picture) group.draw(*balancer);
+  for (int image = 0; image < 5; ++image) group.draw(*balancer);
   EXPECT_GT(group.moves, 0);
 }
 
 TEST(Balance, OneInterruptionMovesNothing) {
   Group group(4, 2404);
   const auto balancer = predicting_balancer();
-  for (int picture = 0; picture < 30; ++picture) group.draw(*balancer);
+  for (int image = 0; image < 30; ++image) group.draw(*balancer);
   const Partition settled = group.partition;
   group.work[2].ms *= 5;
-  for (int picture = 0; picture < 4; ++picture) group.draw(*balancer);
+  for (int image = 0; image < 4; ++image) group.draw(*balancer);
   EXPECT_EQ(group.partition, settled);
 }
 
@@ -206,11 +206,11 @@ TEST(Balance, MullerMovesOneSliceAtATimeAndKeepsTheInequality) {
   std::printf("seed %u\n", seed);
   for (int ranks = 2; ranks <= 8; ++ranks) {
     Group group(ranks, seed);
-    group.slowness[0] = 4;
+    group.relative_cost[0] = 4;
     const auto balancer = muller_balancer();
     const double before = group.draw(*balancer);
     double after = before;
-    for (int picture = 0; picture < 60; ++picture) after = group.draw(*balancer);
+    for (int image = 0; image < 60; ++image) after = group.draw(*balancer);
     EXPECT_LE(group.largest_step, 8);
     EXPECT_LT(after, before) << ranks << " ranks";
   }
@@ -251,7 +251,7 @@ TEST(Balance, DecisionsAreTheSameOnEveryRank) {
     const auto mine = make_balancer(balance), theirs = make_balancer(balance);
     std::uniform_real_distribution<double> uniform(0.2, 5);
     int moves = 0;
-    for (int picture = 0; picture < 50; ++picture) {
+    for (int image = 0; image < 50; ++image) {
       const BalanceInput input{here.partition, here.lattice, here.work, here.costs, here.ms_per_block};
       const Partition next = mine->decide(input);
       ASSERT_EQ(next, theirs->decide(input));
@@ -277,7 +277,7 @@ TEST(Balance, AnyTimesLeaveBoxesThatTileTheVolume) {
     Partition partition = volume::by_blocks(description, ranks);
     BlockCosts costs(lattice, trial % 3 == 0 ? 16 : 8);
     std::vector<RankWork> work;
-    for (int picture = 0; picture < 30; ++picture) {
+    for (int image = 0; image < 30; ++image) {
       for (double& value : costs.values()) value = double(random() % 4 == 0 ? random() % 1000 : 0);
       partition = balancer->decide({partition, lattice, work, costs, 1e-3});
       ASSERT_NO_THROW(volume::boxes(partition, description)) << "trial " << trial;
@@ -295,7 +295,7 @@ TEST(Moves, BringEveryBlockThatIsMissingOnceFromItsOwner) {
   for (int trial = 0; trial < 40; ++trial) {
     const int ranks = 1 + trial % 9;
     volume::VolumeDescription description = describe({70, 41, 55}, volume::TexelType::u8);
-    description.margin = trial % 3;
+    description.ghost_layer = trial % 3;
     const TexelBox lattice = volume::cell_lattice(description).box();
     const auto some_boxes = [&] {
       BlockCosts costs(lattice, 8);

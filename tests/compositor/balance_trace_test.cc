@@ -36,25 +36,25 @@ volume::TransferFunction table(double from, float opacity) {
   return table;
 }
 
-/// `vary` may change the request of a picture.
+/// `vary` may change the request of an image.
 TraceScene scene_of(const volume::testing::ScalarField& field,
                     std::function<void(int, volume::OrbitCamera&, volume::RenderRequest&)> vary,
                     bool slowed = false) {
   TraceScene scene;
   scene.description = volume::testing::describe({113, 97, 105}, volume::TexelType::u8);
-  scene.description.margin = 1;
-  scene.pictures = 80;
+  scene.description.ghost_layer = 1;
+  scene.images = 80;
   scene.seed = 2501;
-  scene.transfer_latency_ms = 0.005;  // pictures are small here
+  scene.transfer_latency_ms = 0.005;  // images are small here
   const auto texture =
       std::make_shared<volume::testing::Texture>(volume::testing::sampled(scene.description, field));
   scene.texels = [texture](std::uint64_t) { return texture->texels; };
-  scene.request = [vary = std::move(vary), description = scene.description](int picture) {
+  scene.request = [vary = std::move(vary), description = scene.description](int image) {
     volume::OrbitCamera camera;
-    camera.azimuth = 30 + 0.5 * picture;
+    camera.azimuth = 30 + 0.5 * image;
     volume::RenderRequest settings;  // what is to be varied beside the camera
     settings.classification = table(0.15, 0.05F);
-    vary(picture, camera, settings);
+    vary(image, camera, settings);
     volume::RenderRequest request = volume::orbit_request(description, {1, 1, 1}, camera, 128, 128, 1);
     request.classification = settings.classification;
     request.surfaces = settings.surfaces;
@@ -62,7 +62,7 @@ TraceScene scene_of(const volume::testing::ScalarField& field,
     return request;
   };
   if (slowed) {
-    scene.slowness = [](int picture, int rank) { return rank == 2 && picture >= 20 ? 4.0 : 1.0; };
+    scene.relative_cost = [](int image, int rank) { return rank == 2 && image >= 20 ? 4.0 : 1.0; };
     scene.events = {0, 20};
   }
   return scene;
@@ -126,9 +126,9 @@ TEST(BalanceTrace, RankSlowedToAQuarterUnderSurfacesVolumesAndLight) {
 TEST(BalanceTrace, TransferFunctionSwitched) {
   // Layers: one table shows those below, the other those above.
   const auto rising = volume::testing::linear_field({0.1, 0.05, 0.8}, 0);
-  TraceScene scene = scene_of(rising, [](int picture, volume::OrbitCamera&, volume::RenderRequest& request) {
+  TraceScene scene = scene_of(rising, [](int image, volume::OrbitCamera&, volume::RenderRequest& request) {
     volume::TransferFunction only = table(0, 0.02F);
-    const bool above = picture / 20 % 2 == 1;
+    const bool above = image / 20 % 2 == 1;
     for (std::size_t i = 0; i < only.entries.size(); ++i)
       if ((i > 120) != above) only.entries[i] = {};
     request.classification = only;
@@ -141,9 +141,9 @@ TEST(BalanceTrace, TransferFunctionSwitched) {
 
 TEST(BalanceTrace, CameraThatZooms) {
   play("zooming", scene_of(volume::testing::marschner_lobb_field(),
-                           [](int picture, volume::OrbitCamera& camera, volume::RenderRequest&) {
+                           [](int image, volume::OrbitCamera& camera, volume::RenderRequest&) {
                              camera.azimuth = 30;
-                             camera.distance = 2.3 + 1.5 * std::cos(picture * 0.157);
+                             camera.distance = 2.3 + 1.5 * std::cos(image * 0.157);
                            }));
 }
 

@@ -105,7 +105,7 @@ TEST(Blend, AnyTreeOfUpTo1024ImagesGivesTheProductInDouble) {
           layers.push_back(random_pixels(pixels, random));
           for (float& value : layers.back()) value *= thinness;
         }
-        const std::vector<float> picture = blended_as_a_tree(op, layers, 0, count, random);
+        const std::vector<float> image = blended_as_a_tree(op, layers, 0, count, random);
         for (std::size_t p = 0; p < 4 * pixels; p += 4) {
           std::array<double, 4> product{};
           for (std::size_t c = 0; c < 4; ++c) product[c] = double(layers[0][p + c]);
@@ -117,7 +117,7 @@ TEST(Blend, AnyTreeOfUpTo1024ImagesGivesTheProductInDouble) {
           for (std::size_t c = 0; c < 4; ++c) {
             // Sums are as exact as they are large.
             const double unit = op == Operator::add ? std::max(1.0, product[c]) : 1;
-            worst = std::max(worst, std::abs(double(picture[p + c]) - product[c]) / unit);
+            worst = std::max(worst, std::abs(double(image[p + c]) - product[c]) / unit);
           }
         }
       }

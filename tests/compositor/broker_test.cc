@@ -114,7 +114,7 @@ TEST_F(BrokerTest, HoldsApplicationsUntilANodeGroupIsThereAndHandsThemOver) {
   EXPECT_EQ(broker_->clients_handed_over(), 2U);
   // From now on the two talk directly, without the broker's help.
   Connection served(handed_over(*group));
-  served.send(MessageType::welcome, 1, encode(Hello{7}), soon());
+  served.send(MessageType::accepted, 1, encode(Hello{7}), soon());
   EXPECT_EQ(decode_hello(first->receive(soon()).payload).ranks, 7);
 }
 
@@ -196,17 +196,17 @@ TEST_F(BrokerTest, AProbeThatConnectsAndLeavesIsNotSpokenOf) {
   EXPECT_TRUE(said_.empty()) << said_[0];
 }
 
-TEST_F(BrokerTest, AStrangerWhoLeavesInTheMidstOfAWordIsSpokenOf) {
-  const auto stranger = connect();
-  ASSERT_EQ(::send(stranger->fd(), "U", 1, MSG_NOSIGNAL), 1);
+TEST_F(BrokerTest, APendingClientWhoLeavesInTheMidstOfAWordIsSpokenOf) {
+  const auto pending = connect();
+  ASSERT_EQ(::send(pending->fd(), "U", 1, MSG_NOSIGNAL), 1);
   step();
-  ASSERT_EQ(::shutdown(stranger->fd(), SHUT_RDWR), 0);
+  ASSERT_EQ(::shutdown(pending->fd(), SHUT_RDWR), 0);
   step();
   ASSERT_EQ(said_.size(), 1U);
   EXPECT_THAT(said_[0], HasSubstr("closed the connection"));
 }
 
-TEST_F(BrokerTest, AStrangerWhoSaysNothingIsDroppedInTheEndAndHoldsUpNobody) {
+TEST_F(BrokerTest, APendingClientWhoSaysNothingIsDroppedInTheEndAndHoldsUpNobody) {
   const auto silent = connect();
   MessageHeader header{.type = MessageType::hello_client};
   const auto half = connect();

@@ -15,8 +15,8 @@
 #include "compositor/blend.h"
 #include "compositor/exchange/cost.h"
 #include "compositor/exchange/counted_exchange.h"
-#include "compositor/exchange/thread_link.h"
-#include "tests/compositor/forwarding_link.h"
+#include "compositor/exchange/thread_communicator.h"
+#include "tests/compositor/forwarding_communicator.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -58,10 +58,10 @@ Scene random_scene(Operator op, int ranks, unsigned seed) {
 }
 
 // Front to back in double precision, one pixel after the other.
-double largest_error(const Scene& scene, const Image& picture) {
+double largest_error(const Scene& scene, const Image& image) {
   double worst = 0;
-  for (int y = picture.rect.y; y < picture.rect.y + picture.rect.height; ++y)
-    for (int x = picture.rect.x; x < picture.rect.x + picture.rect.width; ++x) {
+  for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y)
+    for (int x = image.rect.x; x < image.rect.x + image.rect.width; ++x) {
       std::array<double, 4> sum;
       sum.fill(volume::neutral_value(scene.op));
       for (const Rank rank : scene.order) {
@@ -76,16 +76,17 @@ double largest_error(const Scene& scene, const Image& picture) {
           if (scene.op == Operator::min) sum[c] = std::min(sum[c], double(pixel[c]));
         }
       }
-      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(picture.at(x, y)[c] - sum[c]));
+      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(image.at(x, y)[c] - sum[c]));
     }
   return worst;
 }
 
 // Counts the pixels that really travel.
-class CountingLink : public testing::ForwardingLink {
+class CountingCommunicator : public testing::ForwardingCommunicator {
  public:
-  CountingLink(Link& link, std::atomic<std::uint64_t>& bytes, std::atomic<int>& messages)
-      : ForwardingLink(link), bytes_(bytes), messages_(messages) {}
+  CountingCommunicator(Communicator& communicator, std::atomic<std::uint64_t>& bytes,
+                       std::atomic<int>& messages)
+      : ForwardingCommunicator(communicator), bytes_(bytes), messages_(messages) {}
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) {
       EXPECT_FALSE(message.bytes.empty());
@@ -93,7 +94,7 @@ class CountingLink : public testing::ForwardingLink {
       bytes_ += message.bytes.size();
       ++messages_;
     }
-    ForwardingLink::transfer(outgoing, incoming);
+    ForwardingCommunicator::transfer(outgoing, incoming);
   }
 
  private:
@@ -102,7 +103,7 @@ class CountingLink : public testing::ForwardingLink {
 };
 
 struct Result {
-  Image picture;
+  Image image;
   std::uint64_t bytes_told = 0;
   std::uint64_t bytes_counted = 0;
   int messages = 0;
@@ -121,14 +122,15 @@ Result exchanged(const Scene& scene, const Schedule& schedule, Layout layout = L
   std::atomic<int> messages = 0;
   run_ranks(
       int(scene.images.size()),
-      [&](Link& link) {
-        CountingLink counting(link, bytes, messages);
-        Exchanged done = exchange(scene.images[std::size_t(link.rank())], schedule, scene.op, layout, counting);
-        if (link.rank() != 0) {
-          EXPECT_TRUE(done.picture.rgba.empty());
+      [&](Communicator& communicator) {
+        CountingCommunicator counting(communicator, bytes, messages);
+        Exchanged done =
+            exchange(scene.images[std::size_t(communicator.rank())], schedule, scene.op, layout, counting);
+        if (communicator.rank() != 0) {
+          EXPECT_TRUE(done.image.rgba.empty());
           return;
         }
-        result.picture = std::move(done.picture);
+        result.image = std::move(done.image);
         result.bytes_told = done.bytes;
       },
       how == Messages::read_in_place);
@@ -153,9 +155,9 @@ TEST(DirectSend, EqualsSerialForAnyRankCountOperatorAndFootprint) {
         const Scene scene = random_scene(op, ranks, seed);
         const Result direct = exchanged(scene, Algorithm::direct_send),
                      one_by_one = exchanged(scene, Algorithm::serial);
-        ASSERT_EQ(direct.picture.rect, one_by_one.picture.rect);
-        ASSERT_EQ(direct.picture.rgba, one_by_one.picture.rgba);
-        worst = std::max(worst, largest_error(scene, direct.picture));
+        ASSERT_EQ(direct.image.rect, one_by_one.image.rect);
+        ASSERT_EQ(direct.image.rgba, one_by_one.image.rgba);
+        worst = std::max(worst, largest_error(scene, direct.image));
         ASSERT_EQ(direct.bytes_told, direct.bytes_counted);
         ASSERT_EQ(one_by_one.bytes_told, one_by_one.bytes_counted);
       }
@@ -166,16 +168,16 @@ TEST(DirectSend, EqualsSerialForAnyRankCountOperatorAndFootprint) {
 TEST(DirectSend, ServesSixteenAndMoreRanks) {
   for (const int ranks : {16, 23}) {
     const Scene scene = random_scene(Operator::over, ranks, unsigned(ranks));
-    EXPECT_EQ(exchanged(scene, Algorithm::direct_send).picture.rgba,
-              exchanged(scene, Algorithm::serial).picture.rgba);
+    EXPECT_EQ(exchanged(scene, Algorithm::direct_send).image.rgba,
+              exchanged(scene, Algorithm::serial).image.rgba);
   }
 }
 
-TEST(DirectSend, PictureCoversExactlyAllFootprints) {
+TEST(DirectSend, ImageCoversExactlyAllFootprints) {
   const Scene scene = random_scene(Operator::over, 5, 77);
   Rect whole;
   for (const Rect& footprint : scene.footprints) whole = bounding(whole, footprint);
-  EXPECT_EQ(exchanged(scene, Algorithm::direct_send).picture.rect, whole);
+  EXPECT_EQ(exchanged(scene, Algorithm::direct_send).image.rect, whole);
 }
 
 TEST(DirectSend, OneContributingRankMeansNoCompositing) {
@@ -186,7 +188,7 @@ TEST(DirectSend, OneContributingRankMeansNoCompositing) {
     for (std::size_t rank = 0; rank < 4; ++rank) scene.footprints[rank] = scene.images[rank].rect;
     std::iota(scene.images[only].rgba.begin(), scene.images[only].rgba.end(), 0.0F);
     const Result result = exchanged(scene, Algorithm::direct_send);
-    EXPECT_EQ(result.picture.rgba, scene.images[only].rgba);
+    EXPECT_EQ(result.image.rgba, scene.images[only].rgba);
     EXPECT_EQ(result.messages, only == 0 ? 0 : 1);  // to rank 0, as it is
   }
 }
@@ -196,12 +198,12 @@ TEST(DirectSend, NothingToShowMeansNoMessage) {
   for (std::size_t rank = 0; rank < 6; ++rank) scene.images[rank] = Image();
   std::ranges::fill(scene.footprints, Rect{});
   const Result result = exchanged(scene, Algorithm::direct_send);
-  EXPECT_TRUE(result.picture.rgba.empty());
+  EXPECT_TRUE(result.image.rgba.empty());
   EXPECT_EQ(result.messages, 0);
 }
 
-TEST(DirectSend, BytesFollowTheFootprintsAndNotThePicture) {
-  // Eight footprints of an eighth of the picture each, side by side.
+TEST(DirectSend, BytesFollowTheFootprintsAndNotTheImage) {
+  // Eight footprints of an eighth of the image each, side by side.
   Scene scene;
   for (int rank = 0; rank < 8; ++rank) {
     std::ranges::fill(scene.images.emplace_back(Rect{0, 16 * rank, 128, 16}).rgba, 0.5F);
@@ -209,10 +211,10 @@ TEST(DirectSend, BytesFollowTheFootprintsAndNotThePicture) {
     scene.order.push_back(rank);
   }
   const Result result = exchanged(scene, Algorithm::direct_send);
-  const std::uint64_t picture = 128 * 128 * 16;
-  std::printf("%llu bytes of a picture of %llu\n", static_cast<unsigned long long>(result.bytes_counted),
-              static_cast<unsigned long long>(picture));
-  EXPECT_LE(result.bytes_counted, picture);
+  const std::uint64_t image = 128 * 128 * 16;
+  std::printf("%llu bytes of an image of %llu\n", static_cast<unsigned long long>(result.bytes_counted),
+              static_cast<unsigned long long>(image));
+  EXPECT_LE(result.bytes_counted, image);
 }
 
 TEST(DirectSend, HoldsForManyThinLayersInOnePlace) {
@@ -227,12 +229,12 @@ TEST(DirectSend, HoldsForManyThinLayersInOnePlace) {
     scene.footprints.push_back(image.rect);
     scene.order.push_back(rank);
   }
-  const double error = largest_error(scene, exchanged(scene, Algorithm::direct_send).picture);
+  const double error = largest_error(scene, exchanged(scene, Algorithm::direct_send).image);
   std::printf("largest error over %d layers %.2g\n", layers, error);
   EXPECT_LE(error, 2e-6);
 }
 
-/// By how much a picture may lie off whose values are composed of so many images and were rounded on each of
+/// By how much an image may lie off whose values are composed of so many images and were rounded on each of
 /// so many travels: see settings.h. Sums are as exact as they are large.
 double bound_of(Layout layout, Operator op, int images, int travels) {
   const double largest = op == Operator::add ? images : 1;
@@ -271,9 +273,9 @@ TEST(Exchange, EveryAlgorithmLayoutAndOperatorGivesTheProductInDouble) {
             Schedule plan = schedule_of(scene, Algorithm(a));
             plan.packed = trial > 0;
             const Result result = exchanged(scene, plan, layout);
-            ASSERT_EQ(result.picture.rect, plan.whole);
+            ASSERT_EQ(result.image.rect, plan.whole);
             ASSERT_EQ(result.bytes_told, result.bytes_counted);
-            const double error = largest_error(scene, result.picture);
+            const double error = largest_error(scene, result.image);
             ASSERT_LE(error, bound_of(layout, op, ranks, int(plan.rounds.size())));
             worst = std::max(worst, error);
           }
@@ -294,7 +296,7 @@ TEST(Exchange, MessagesThatAreReadInPlaceAreThoseThatAreSent) {
         plan.packed = layout != Layout::rgba32f;
         const Result in_place = exchanged(scene, plan, layout),
                      sent = exchanged(scene, plan, layout, Messages::sent);
-        EXPECT_EQ(in_place.picture.rgba, sent.picture.rgba);
+        EXPECT_EQ(in_place.image.rgba, sent.image.rgba);
         EXPECT_EQ(in_place.bytes_told, sent.bytes_counted);
         EXPECT_EQ(in_place.messages, sent.messages);
       }
@@ -314,7 +316,7 @@ TEST(Exchange, RadixKHoldsForAnyFactors) {
   for (const std::vector<int>& factors :
        std::vector<std::vector<int>>{{12}, {2, 6}, {6, 2}, {3, 4}, {2, 3, 2}}) {
     const Result result = exchanged(scene, schedule_of(scene, Algorithm::radix_k, factors));
-    EXPECT_LE(largest_error(scene, result.picture), 2e-6);
+    EXPECT_LE(largest_error(scene, result.image), 2e-6);
   }
   EXPECT_THROW(schedule_of(scene, Algorithm::radix_k, std::vector<int>{5, 2}), std::invalid_argument);
   EXPECT_EQ(radix_factors(96), (std::vector<int>{4, 4, 2, 3}));
@@ -336,11 +338,11 @@ TEST(Exchange, MessagesAndPixelsAreThoseOfItsCost) {
       const Result all = exchanged(scene, plan);
       EXPECT_EQ(std::uint64_t(all.messages), counted.messages);
       EXPECT_EQ(all.bytes_counted, counted.bytes_sent);
-      EXPECT_EQ(all.picture.rgba, sparing.picture.rgba);
+      EXPECT_EQ(all.image.rgba, sparing.image.rgba);
     }
 }
 
-TEST(Exchange, UntouchedPixelsStayAtHome) {
+TEST(Exchange, UntouchedPixelsAreNotSent) {
   Scene scene;
   for (int rank = 0; rank < 4; ++rank) {
     Image& image = scene.images.emplace_back(Rect{0, 0, 64, 64});
@@ -353,7 +355,7 @@ TEST(Exchange, UntouchedPixelsStayAtHome) {
     for (std::size_t a = 0; a < algorithm_count; ++a) {
       const Result result = exchanged(scene, Algorithm(a));
       EXPECT_LE(result.bytes_counted, std::uint64_t(64 * 64 * 16) / 10) << name_of(Algorithm(a));
-      EXPECT_LE(largest_error(scene, result.picture), 2e-6);
+      EXPECT_LE(largest_error(scene, result.image), 2e-6);
     }
   }
 }
@@ -370,12 +372,12 @@ TEST(Exchange, MinimumLeavesUntouchedPixelsAloneInAnyLayout) {
   }
   for (const Layout layout : {Layout::rgba32f, Layout::rgba16f, Layout::rgba8}) {
     const Result result = exchanged(scene, schedule_of(scene, Algorithm::binary_swap), layout);
-    EXPECT_EQ(result.picture.at(0, 0)[0], 1.0F);
-    EXPECT_EQ(result.picture.at(8, 0)[0], volume::neutral_value(Operator::min));
+    EXPECT_EQ(result.image.at(0, 0)[0], 1.0F);
+    EXPECT_EQ(result.image.at(8, 0)[0], volume::neutral_value(Operator::min));
   }
 }
 
-TEST(Exchange, PartsGoHomeDirectlyFromRanksThatReachThePicture) {
+TEST(Exchange, PartsAreGatheredDirectlyFromRanksThatReachTheImage) {
   std::uint64_t travelled = 0, gathered = 0;
   for (std::size_t a = 0; a < algorithm_count; ++a)
     for (const int ranks : {1, 2, 3, 5, 8})
@@ -392,21 +394,21 @@ TEST(Exchange, PartsGoHomeDirectlyFromRanksThatReachThePicture) {
           std::vector<bool> reached_by;
           for (int rank = 0; rank < ranks; ++rank)
             reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
-          write_home(plan, reached_by);
+          write_gathered(plan, reached_by);
           // What was there before must not shine through.
           std::vector<float> memory(4 * plan.whole.pixels(), -7);
           std::atomic<std::uint64_t> bytes = 0;
           std::atomic<int> messages = 0;
           std::uint64_t told = 0;
-          run_ranks(ranks, [&](Link& link) {
-            CountingLink counting(link, bytes, messages);
-            const auto me = std::size_t(link.rank());
+          run_ranks(ranks, [&](Communicator& communicator) {
+            CountingCommunicator counting(communicator, bytes, messages);
+            const auto me = std::size_t(communicator.rank());
             const Exchanged done = exchange(scene.images[me], plan, op, Layout::rgba32f, counting,
                                             me == 0 || reached_by[me] ? std::span(memory) : std::span<float>());
-            EXPECT_TRUE(done.picture.rgba.empty());
+            EXPECT_TRUE(done.image.rgba.empty());
             if (me == 0) told = done.bytes;
           });
-          ASSERT_EQ(memory, usual.picture.rgba);
+          ASSERT_EQ(memory, usual.image.rgba);
           ASSERT_EQ(told, bytes);
           ASSERT_EQ(std::uint64_t(messages), cost(plan, Layout::rgba32f, {}).messages);
           if (Algorithm(a) == Algorithm::direct_send && trial < 2) {
@@ -419,15 +421,15 @@ TEST(Exchange, PartsGoHomeDirectlyFromRanksThatReachThePicture) {
   EXPECT_LT(double(travelled), 0.8 * double(gathered));
 }
 
-TEST(Exchange, PartsThatOverlapAreNotWrittenHome) {
+TEST(Exchange, PartsThatOverlapAreNotWrittenDirectly) {
   const Scene scene = random_scene(Operator::over, 4, 12);
   Schedule plan = schedule_of(scene, Algorithm::serial);
   const ExchangeCost before = cost(plan, Layout::rgba32f, {});
-  write_home(plan, std::vector<bool>(4, true));
+  write_gathered(plan, std::vector<bool>(4, true));
   EXPECT_EQ(cost(plan, Layout::rgba32f, {}).bytes_sent, before.bytes_sent);
   plan = schedule_of(scene, Algorithm::direct_send);
   const std::uint64_t gathered = cost(plan, Layout::rgba32f, {}).bytes_sent;
-  write_home(plan, std::vector<bool>(4, true));
+  write_gathered(plan, std::vector<bool>(4, true));
   EXPECT_LT(cost(plan, Layout::rgba32f, {}).bytes_sent, gathered);
 }
 
@@ -437,12 +439,12 @@ TEST(Exchange, AutoTakesFewMessagesWhereLatencyRulesAndFewBytesWhereBandwidthDoe
     scene.footprints.push_back({0, 0, 256, 256});
     scene.order.push_back(rank);
   }
-  const auto chosen = [&](const LinkCost& link) {
-    const Schedule best = cheapest(scene.order, scene.footprints, Layout::rgba32f, link);
+  const auto chosen = [&](const MessageCost& communicator) {
+    const Schedule best = cheapest(scene.order, scene.footprints, Layout::rgba32f, communicator);
     for (std::size_t a = 0; a < algorithm_count; ++a)
-      EXPECT_LE(cost(best, Layout::rgba32f, link).seconds,
-                cost(schedule_of(scene, Algorithm(a)), Layout::rgba32f, link).seconds);
-    return cost(best, Layout::rgba32f, link);
+      EXPECT_LE(cost(best, Layout::rgba32f, communicator).seconds,
+                cost(schedule_of(scene, Algorithm(a)), Layout::rgba32f, communicator).seconds);
+    return cost(best, Layout::rgba32f, communicator);
   };
   const ExchangeCost slow_start = chosen({.latency = 1, .per_byte = 0, .per_pixel = 0}),
                      narrow = chosen({.latency = 0, .per_byte = 1, .per_pixel = 0});
@@ -457,37 +459,38 @@ TEST(Exchange, AutoMovesLeastInAllWhereRanksShareOneProcessor) {
     scene.order.push_back(rank);
   }
   const auto sent = [&](double ranks_at_once) {
-    const LinkCost link{1e-6, 1e-9, 1e-9, ranks_at_once};
-    return cost(cheapest(scene.order, scene.footprints, Layout::rgba32f, link), Layout::rgba32f, link)
+    const MessageCost communicator{1e-6, 1e-9, 1e-9, ranks_at_once};
+    return cost(cheapest(scene.order, scene.footprints, Layout::rgba32f, communicator), Layout::rgba32f,
+                communicator)
         .pixels_sent;
   };
   EXPECT_EQ(sent(1), 7U * 256 * 256) << "every image once, as serial and tree do";
-  EXPECT_GT(sent(8), 7U * 256 * 256) << "in strips, and these once more";
+  EXPECT_GT(sent(8), 7U * 256 * 256) << "in regions, and these once more";
 }
 
-TEST(Exchange, CostOfAFullPictureIsThatOfThePapers) {
-  // Magallon, Hopf, Ertl 2001, section 3.2: serial N - 1 pictures to one rank; direct-send (N - 1)/N of a
-  // picture from each rank, and as much again in strips to rank 0.
+TEST(Exchange, CostOfAFullImageIsThatOfThePapers) {
+  // Magallon, Hopf, Ertl 2001, section 3.2: serial N - 1 images to one rank; direct-send (N - 1)/N of a
+  // image from each rank, and as much again in regions to rank 0.
   constexpr int ranks = 8;
-  constexpr std::uint64_t picture = 256 * 256;
+  constexpr std::uint64_t image = 256 * 256;
   std::vector<Rank> order(ranks);
   std::iota(order.begin(), order.end(), 0);
   const std::vector<Rect> footprints(ranks, Rect{0, 0, 256, 256});
   const auto of = [&](Algorithm algorithm) {
     return cost(schedule(algorithm, order, footprints), Layout::rgba32f, {});
   };
-  EXPECT_EQ(of(Algorithm::serial).pixels_sent, (ranks - 1) * picture);
-  EXPECT_EQ(of(Algorithm::tree).pixels_sent, (ranks - 1) * picture);
-  const std::uint64_t strips_home = picture * (ranks - 1) / ranks;
-  EXPECT_EQ(of(Algorithm::direct_send).pixels_sent, (ranks - 1) * picture + strips_home);
+  EXPECT_EQ(of(Algorithm::serial).pixels_sent, (ranks - 1) * image);
+  EXPECT_EQ(of(Algorithm::tree).pixels_sent, (ranks - 1) * image);
+  const std::uint64_t tiles_gathered = image * (ranks - 1) / ranks;
+  EXPECT_EQ(of(Algorithm::direct_send).pixels_sent, (ranks - 1) * image + tiles_gathered);
   EXPECT_EQ(of(Algorithm::direct_send).messages, ranks * (ranks - 1) + ranks - 1);
   // Halves, quarters, eighths: as many pixels, and 3 messages of each rank instead of 7.
-  EXPECT_EQ(of(Algorithm::binary_swap).pixels_sent, (ranks - 1) * picture + strips_home);
+  EXPECT_EQ(of(Algorithm::binary_swap).pixels_sent, (ranks - 1) * image + tiles_gathered);
   EXPECT_EQ(of(Algorithm::binary_swap).messages, ranks * 3 + ranks - 1);
 }
 
 // Keeps the length of every message that one rank sends, and of those it receives.
-class RecordingLink : public testing::ForwardingLink {
+class RecordingCommunicator : public testing::ForwardingCommunicator {
  public:
   struct Sent {
     Rank to = 0;
@@ -495,10 +498,10 @@ class RecordingLink : public testing::ForwardingLink {
     bool operator==(const Sent&) const = default;
   };
 
-  using ForwardingLink::ForwardingLink;
+  using ForwardingCommunicator::ForwardingCommunicator;
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) sent.push_back({message.to, message.bytes.size()});
-    ForwardingLink::transfer(outgoing, incoming);
+    ForwardingCommunicator::transfer(outgoing, incoming);
     for (const Incoming& message : incoming) received += *message.received;
   }
 
@@ -514,17 +517,17 @@ void expect_counted(const Scene& scene, const Schedule& plan, Layout layout,
   const CountedExchange counted = counted_exchange(plan, masks, scene.op, layout);
   std::vector<float> memory(reached_by.empty() ? 0 : 4 * plan.whole.pixels());
   std::uint64_t told = 0;
-  run_ranks(int(scene.images.size()), [&](Link& link) {
-    RecordingLink recording(link);
-    const auto me = std::size_t(link.rank());
+  run_ranks(int(scene.images.size()), [&](Communicator& communicator) {
+    RecordingCommunicator recording(communicator);
+    const auto me = std::size_t(communicator.rank());
     const bool reaches = !reached_by.empty() && (me == 0 || reached_by[me]);
     const Exchanged done = exchange(scene.images[me], plan, scene.op, layout, recording,
                                     reaches ? std::span(memory) : std::span<float>());
     if (me == 0) told = done.bytes;
-    std::vector<RecordingLink::Sent> expected;
+    std::vector<RecordingCommunicator::Sent> expected;
     for (const CountedRound& round : counted.rounds)
       for (const CountedMessage& message : round.messages)
-        if (message.from == link.rank()) expected.push_back({message.to, message.bytes});
+        if (message.from == communicator.rank()) expected.push_back({message.to, message.bytes});
     EXPECT_EQ(recording.sent, expected);
     EXPECT_EQ(recording.sent.size(), counted.ranks[me].messages_sent);
     EXPECT_EQ(recording.received, counted.ranks[me].bytes_received);
@@ -563,7 +566,7 @@ TEST(CountedExchange, EqualsEveryMessageOfEveryAlgorithmLayoutOperatorAndRankCou
             std::vector<bool> reached_by;
             for (int rank = 0; rank < ranks; ++rank)
               reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
-            write_home(plan, reached_by);
+            write_gathered(plan, reached_by);
             expect_counted(scene, plan, layout, reached_by);
             if (HasFailure()) return;
           }
@@ -597,9 +600,9 @@ TEST(ExchangeSettings, KnowTheNamesThatUsersGive) {
   EXPECT_TRUE(set_layout(settings, "half"));
   EXPECT_FALSE(set_layout(settings, ""));
   EXPECT_EQ(settings.layout, Layout::rgba16f);
-  EXPECT_TRUE(set_home(settings, "gathered"));
-  EXPECT_FALSE(set_home(settings, "away"));
-  EXPECT_EQ(settings.home, Home::gathered);
+  EXPECT_TRUE(set_gather(settings, "root"));
+  EXPECT_FALSE(set_gather(settings, "away"));
+  EXPECT_EQ(settings.gather, Gather::root);
   EXPECT_TRUE(set_overlap(settings, "off"));
   EXPECT_FALSE(set_overlap(settings, "perhaps"));
   EXPECT_EQ(settings.overlap, Overlap::off);
@@ -626,7 +629,7 @@ PixelMessage arrived(PixelMessage message) {
   return message;
 }
 
-// Bit for bit, whatever the numbers: also those that a picture should not hold.
+// Bit for bit, whatever the numbers: also those that an image should not hold.
 TEST(PixelMessages, FloatsArriveAsTheyWere) {
   std::mt19937 random(31);
   for (const Operator op : all_operators)
@@ -642,7 +645,7 @@ TEST(PixelMessages, FloatsArriveAsTheyWere) {
                 alike ? 0.5F + 0.001F * float(random() % 8) : std::bit_cast<float>(std::uint32_t(random()));
       const PixelMessage message =
           arrived(encode_pixels(image, image.rect, op, Layout::rgba32f, trial % 3 > 0));
-      EXPECT_LE(message.size(), room_for_pixels(image.rect, Layout::rgba32f).size());
+      EXPECT_LE(message.size(), space_for_pixels(image.rect, Layout::rgba32f).size());
       const Image same = read(message, image.rect, Layout::rgba32f, volume::neutral_value(op));
       ASSERT_EQ(std::memcmp(same.rgba.data(), image.rgba.data(), sizeof(float) * image.rgba.size()), 0)
           << trial;
@@ -689,7 +692,7 @@ TEST(PixelMessages, ThatDoNotFitTheirRectangleAreRefused) {
       const PixelMessage message = encode_pixels(image, image.rect, Operator::over, layout, packed);
       const std::vector<std::byte> whole(message.bytes().begin(), message.bytes().end());
       const auto decode = [&](const std::vector<std::byte>& bytes) {
-        PixelMessage arrived = room_for_pixels(image.rect, layout);
+        PixelMessage arrived = space_for_pixels(image.rect, layout);
         std::ranges::copy(bytes, arrived.room().begin());
         arrived.received() = bytes.size();
         return read(arrived, image.rect, layout, 0);
@@ -697,25 +700,25 @@ TEST(PixelMessages, ThatDoNotFitTheirRectangleAreRefused) {
       // 0, 1/2 and 1: a half has them, a byte has all but one.
       EXPECT_EQ(decode(whole).rgba == image.rgba, layout != Layout::rgba8);
       for (std::size_t length = 0; length < whole.size(); ++length)
-        EXPECT_THROW(decode({whole.begin(), whole.begin() + std::ptrdiff_t(length)}), LinkLost) << length;
+        EXPECT_THROW(decode({whole.begin(), whole.begin() + std::ptrdiff_t(length)}), RankLost) << length;
       for (std::size_t i = 8; i < whole.size(); ++i)
         for (const auto flip : {std::byte{0x80}, std::byte{0x0f}, std::byte{0x01}}) {
           std::vector<std::byte> changed = whole;
           changed[i] ^= flip;
           try {
             EXPECT_EQ(decode(changed).rgba.size(), image.rgba.size());
-          } catch (const LinkLost&) {
+          } catch (const RankLost&) {
           }
         }
     }
 }
 
-TEST(ThreadLink, ARankThatFailsLeavesNobodyWaiting) {
+TEST(ThreadCommunicator, ARankThatFailsLeavesNobodyWaiting) {
   EXPECT_THROW(run_ranks(3,
-                         [](Link& link) {
-                           if (link.rank() == 1) throw std::runtime_error("rank 1 gives up");
+                         [](Communicator& communicator) {
+                           if (communicator.rank() == 1) throw std::runtime_error("rank 1 gives up");
                            std::byte byte{};
-                           link.broadcast(1, {&byte, 1});
+                           communicator.broadcast(1, {&byte, 1});
                          }),
                std::runtime_error);
 }

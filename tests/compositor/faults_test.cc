@@ -1,4 +1,4 @@
-// What goes wrong with real nodes, and what becomes of it: the right picture or none, one line, and nothing
+// What goes wrong with real nodes, and what becomes of it: the right image or none, one line, and nothing
 // left.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/service/image_memory.h"
-#include "compositor/service/linked.h"
-#include "tests/compositor/belongings.h"
+#include "compositor/service/image_buffer.h"
+#include "compositor/service/remote_service.h"
+#include "tests/compositor/group_resources.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"
 
@@ -49,13 +49,13 @@ class Faults : public ::testing::Test {
     ASSERT_TRUE(launcher_->wait_for_group());
   }
   std::unique_ptr<RenderService> connect(const Patience& patience = {}) {
-    return linked_service(path_, patience);
+    return remote_render_service(path_, patience);
   }
   // An application without manners, which rank 0 has taken in.
   std::unique_ptr<Connection> raw_client() {
     auto result = std::make_unique<Connection>(connect_to(path_, soon()));
     result->send(MessageType::hello_client, 1, Bytes{}, soon());
-    EXPECT_EQ(result->receive(soon()).type, MessageType::welcome);
+    EXPECT_EQ(result->receive(soon()).type, MessageType::accepted);
     return result;
   }
   // By the place in the order of their start, which is that of ranks.
@@ -70,13 +70,13 @@ class Faults : public ::testing::Test {
                              std::filesystem::path("/proc") / std::to_string(rank(0)) / "fd", gone),
                          {});
   }
-  void expect_right_picture(RenderService& service) {
+  void expect_right_image(RenderService& service) {
     const auto embedded = embedded_service();
     upload(*embedded, texture_);
-    EXPECT_LE(largest_difference(picture_of(service, request_), picture_of(*embedded, request_)), 1e-5);
+    EXPECT_LE(largest_difference(image_of(service, request_), image_of(*embedded, request_)), 1e-5);
   }
 
-  Belongings before_;
+  GroupResources before_;
   std::optional<ScratchFolder> folder_ = std::optional<ScratchFolder>(std::in_place);
   std::string path_ = *folder_ / "control";
   std::unique_ptr<Launcher> launcher_;
@@ -87,7 +87,7 @@ class Faults : public ::testing::Test {
 
 class StoppedRank : public Faults, public ::testing::WithParamInterface<int> {};
 
-TEST_P(StoppedRank, ForFiveSecondsOnlyDelaysThePicture) {
+TEST_P(StoppedRank, ForFiveSecondsOnlyDelaysTheImage) {
   start(3);
   const auto linked = connect();
   upload(*linked, texture_);
@@ -97,8 +97,8 @@ TEST_P(StoppedRank, ForFiveSecondsOnlyDelaysThePicture) {
     std::this_thread::sleep_for(std::chrono::seconds(5));
     ::kill(stopped, SIGCONT);
   });
-  expect_right_picture(*linked);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
+  expect_right_image(*linked);
   EXPECT_FALSE(launcher_->ask([](Broker& b) { return b.lost(); }));
   EXPECT_TRUE(launcher_->said().empty());
 }
@@ -132,7 +132,7 @@ TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAPictureDisturbNobody) {
   start(3);
   const auto linked = connect();
   upload(*linked, texture_);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
   const std::ptrdiff_t descriptors = descriptors_of_rank_0();
   Texels all{texture_.description.id, {texture_.description.stored}, texture_.texels};
   for (int time = 0; time < 20; ++time) {
@@ -147,12 +147,12 @@ TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAPictureDisturbNobody) {
     texels.resize((texels.size() + 7) / 8 * 8);
     ask(MessageType::add_texels, texels);
     ask(MessageType::end_volume, encode_id(all.volume));
-    const ImageMemory memory = ImageMemory::create(160 * 120 * 16);
-    ask(MessageType::image_memory, encode_size(160 * 120 * 16), memory.fd());
+    const ImageBuffer memory = ImageBuffer::create(160 * 120 * 16);
+    ask(MessageType::image_buffer, encode_size(160 * 120 * 16), memory.fd());
     client->send(MessageType::render, 3, encode(request_), soon());
-    // And goes, without the picture.
+    // And goes, without the image.
   }
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
   EXPECT_TRUE(eventually([&] { return descriptors_of_rank_0() == descriptors; })) << descriptors_of_rank_0();
   EXPECT_TRUE(launcher_->said().empty());
 }
@@ -176,7 +176,7 @@ TEST_F(Faults, MessagesThatEndTooEarlyDisturbNobody) {
   const auto senseless = raw_client();
   senseless->send(MessageType::render, 2, Bytes(request).first(request.size() / 2 / 8 * 8), soon());
   EXPECT_EQ(senseless->receive(soon()).type, MessageType::refused);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
   EXPECT_TRUE(eventually([&] { return descriptors_of_rank_0() == descriptors + 1; }));
 }
 
@@ -185,8 +185,8 @@ TEST_F(Faults, AnotherVersionOfTheProtocolIsTurnedAway) {
   MessageHeader header{.type = MessageType::hello_client};
   ++header.version;
   // By the launcher, in one line, and by rank 0.
-  const Connection stranger(connect_to(path_, soon()));
-  ASSERT_GT(::send(stranger.fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
+  const Connection pending(connect_to(path_, soon()));
+  ASSERT_GT(::send(pending.fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   EXPECT_TRUE(eventually([&] { return launcher_->said().size() == 1; }));
   EXPECT_THAT(launcher_->said(), Contains(HasSubstr("version")));
   const auto client = raw_client();
@@ -195,10 +195,10 @@ TEST_F(Faults, AnotherVersionOfTheProtocolIsTurnedAway) {
   EXPECT_THROW(client->receive(soon()), ConnectionLost);
   const auto linked = connect();
   upload(*linked, texture_);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
 }
 
-TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsPictures) {
+TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsImages) {
   // Both ends of all of them are in this process.
   rlimit descriptors{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &descriptors), 0);
@@ -208,9 +208,9 @@ TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsPictures) {
   start(2);
   const auto linked = connect();
   upload(*linked, texture_);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
   const std::ptrdiff_t of_rank_0 = descriptors_of_rank_0();
-  int welcome = 0, refused = 0;
+  int accepted = 0, refused = 0;
   {
     std::vector<std::unique_ptr<Connection>> crowd;
     for (int i = 0; i < 1000; ++i) {
@@ -221,24 +221,24 @@ TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsPictures) {
         // It was refused before it had said what it is; the reason is there to be read.
       }
     }
-    expect_right_picture(*linked);
+    expect_right_image(*linked);
     for (const auto& one : crowd) {
       const MessageType answer = one->receive(soon()).type;
-      welcome += answer == MessageType::welcome;
+      accepted += answer == MessageType::accepted;
       refused += answer == MessageType::refused;
     }
   }
-  std::printf("of 1000, %d were taken in, %d refused\n", welcome, refused);
-  EXPECT_EQ(welcome + refused, 1000);
-  EXPECT_LT(welcome, int(limits::max_clients));
+  std::printf("of 1000, %d were taken in, %d refused\n", accepted, refused);
+  EXPECT_EQ(accepted + refused, 1000);
+  EXPECT_LT(accepted, int(limits::max_clients));
   EXPECT_TRUE(eventually([&] { return descriptors_of_rank_0() == of_rank_0; })) << descriptors_of_rank_0();
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
   const auto next = connect();
   upload(*next, texture_);
-  expect_right_picture(*next);
+  expect_right_image(*next);
 }
 
-TEST_F(Faults, PicturesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
+TEST_F(Faults, ImagesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
   start(2);
   const auto linked = connect();
   upload(*linked, texture_);
@@ -271,10 +271,10 @@ TEST_F(Faults, PicturesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
   const Rendered beside = linked->render(request);
   EXPECT_TRUE(beside.image.rect.empty());
   EXPECT_EQ(beside.counts.nodes_idle, 2U);
-  expect_right_picture(*linked);
+  expect_right_image(*linked);
 }
 
-TEST_F(Faults, MoreRanksThanVoxelsGiveTheRightPicture) {
+TEST_F(Faults, MoreRanksThanVoxelsGiveTheRightImage) {
   start(7);
   const auto linked = connect(), embedded = embedded_service();
   volume::VolumeId id = 20;
@@ -287,9 +287,8 @@ TEST_F(Faults, MoreRanksThanVoxelsGiveTheRightPicture) {
     upload(*linked, texture);
     upload(*embedded, texture);
     const volume::RenderRequest request = some_request(texture);
-    const volume::Image expected = picture_of(*embedded, request);
-    EXPECT_LE(largest_difference(picture_of(*linked, request), expected), 1e-5)
-        << size[0] << size[1] << size[2];
+    const volume::Image expected = image_of(*embedded, request);
+    EXPECT_LE(largest_difference(image_of(*linked, request), expected), 1e-5) << size[0] << size[1] << size[2];
     EXPECT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
   }
 }

@@ -1,4 +1,4 @@
-// Whether pictures on paper are those of the ray caster, and time follows what its header says.
+// Whether images on paper are those of the ray caster, and time follows what its header says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using compositor::Algorithm;
 using compositor::CountedExchange;
-using compositor::Home;
+using compositor::Gather;
 using compositor::Layout;
 using volume::testing::Texture;
 
@@ -104,7 +104,7 @@ TEST(FrameTime, DividesWorkByTheCoresThatRanksShare) {
 double exchange_time(Algorithm algorithm, int ranks, Costs costs) {
   const FrameParts parts = parts_with_samples(std::vector<std::uint64_t>(std::size_t(ranks), 0));
   const CountedExchange exchange =
-      counted(parts, algorithm, Home::gathered, volume::Operator::over, Layout::rgba32f);
+      counted(parts, algorithm, Gather::root, volume::Operator::over, Layout::rgba32f);
   return time_of(parts, exchange, costs).exchange;
 }
 

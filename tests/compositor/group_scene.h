@@ -30,7 +30,7 @@ inline volume::RenderRequest some_request(const Texture& texture,
   return request;
 }
 
-/// In slabs of three slices.
+/// In slice ranges of three slices.
 inline void upload(RenderService& service, const Texture& texture) {
   const volume::VolumeDescription& d = texture.description;
   service.begin_volume(d);
@@ -38,31 +38,31 @@ inline void upload(RenderService& service, const Texture& texture) {
   const std::size_t slice_bytes = texture.texels.size() / std::size_t(slices);
   for (int z = 0; z < slices; z += 3) {
     const int now = std::min(3, slices - z);
-    volume::TexelBox slab = d.stored;
-    slab.low[2] += z;
-    slab.high[2] = slab.low[2] + now;
+    volume::TexelBox slice_range = d.stored;
+    slice_range.low[2] += z;
+    slice_range.high[2] = slice_range.low[2] + now;
     service.add_texels(
-        d.id, {&slab, 1},
+        d.id, {&slice_range, 1},
         std::span(texture.texels).subspan(std::size_t(z) * slice_bytes, std::size_t(now) * slice_bytes));
   }
   service.end_volume(d.id);
 }
 
-/// A picture that outlives the next call, over the request's whole window, so that pictures can be compared.
-inline volume::Image whole_picture(const Rendered& rendered, const volume::RenderRequest& request) {
-  volume::Image picture(request.window);
+/// An image that outlives the next call, over the request's whole window, so that images can be compared.
+inline volume::Image whole_image(const Rendered& rendered, const volume::RenderRequest& request) {
+  volume::Image image(request.window);
   const float neutral = request.op == volume::Operator::min ? std::numeric_limits<float>::max() : 0.0F;
-  std::ranges::fill(picture.rgba, neutral);
+  std::ranges::fill(image.rgba, neutral);
   const volume::Rect& rect = rendered.image.rect;
   for (int y = 0; y < rect.height; ++y)
     std::ranges::copy(
         rendered.image.rgba.subspan(4 * std::size_t(y) * std::size_t(rect.width), 4 * std::size_t(rect.width)),
-        picture.at(rect.x, rect.y + y));
-  return picture;
+        image.at(rect.x, rect.y + y));
+  return image;
 }
 
-inline volume::Image picture_of(RenderService& service, const volume::RenderRequest& request) {
-  return whole_picture(service.render(request), request);
+inline volume::Image image_of(RenderService& service, const volume::RenderRequest& request) {
+  return whole_image(service.render(request), request);
 }
 
 inline double largest_difference(const volume::Image& a, const volume::Image& b) {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "compositor/node/node.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loading_service.h"
@@ -35,9 +35,11 @@ class LoadTest : public ::testing::Test {
   /// 0: in this process.
   std::unique_ptr<LoadingService> service(int ranks) {
     if (ranks == 0) return embedded_loading_service();
-    group_ = std::jthread([this, ranks] { run_ranks(ranks, [&](Link& link) { run_node(link, path_); }); });
+    group_ = std::jthread([this, ranks] {
+      run_ranks(ranks, [&](Communicator& communicator) { run_node(communicator, path_); });
+    });
     EXPECT_TRUE(launcher_->wait_for_group());
-    return linked_loading_service(path_, {});
+    return remote_loading_service(path_, {});
   }
   void dismiss() {
     launcher_->ask([](Broker& broker) { broker.dismiss_node_group(); });
@@ -74,20 +76,20 @@ std::vector<RankLoad> load(LoadingService& service, const LoadRequest& request) 
   return ranks;
 }
 
-TEST_F(LoadTest, WhatRanksReadGivesThePictureOfWhatIsSentAndEachReadsItsShare) {
+TEST_F(LoadTest, WhatRanksReadGivesTheImageOfWhatIsSentAndEachReadsItsShare) {
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32}) {
     const Texture texture = some_texture(7, type);
     const std::string file = write("v_41x37x29_" + std::string(name_of(type)) + ".raw", texture.texels);
     const auto sent = embedded_service();
     upload(*sent, texture);
     const volume::RenderRequest request = some_request(texture);
-    const volume::Image expected = picture_of(*sent, request);
+    const volume::Image expected = image_of(*sent, request);
     ASSERT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
     for (const int ranks : {0, 1, 3, 4}) {
       const auto loading = service(ranks);
       const std::vector<RankLoad> figures = load(*loading, {texture.description, file, {}, {}});
       ASSERT_EQ(figures.size(), std::size_t(std::max(ranks, 1)));
-      EXPECT_LE(largest_difference(picture_of(*loading, request), expected), 1e-5) << ranks;
+      EXPECT_LE(largest_difference(image_of(*loading, request), expected), 1e-5) << ranks;
       const volume::KdTree tree(texture.description, std::max(ranks, 1));
       for (std::size_t rank = 0; rank < figures.size(); ++rank) {
         const std::uint64_t share =
@@ -186,7 +188,7 @@ TEST_F(LoadTest, EveryTexelIsCountedOnceByHoweverManyRanks) {
   }
 }
 
-TEST_F(LoadTest, RanksTellTheirCellsAndWhatTheLastPictureTook) {
+TEST_F(LoadTest, RanksTellTheirCellsAndWhatTheLastImageTook) {
   const auto loading = service(3);
   const Texture texture = some_texture(7, TexelType::u8);
   load(*loading, {texture.description, write("v_41x37x29_u8.raw", texture.texels), {}, {}});
@@ -198,8 +200,8 @@ TEST_F(LoadTest, RanksTellTheirCellsAndWhatTheLastPictureTook) {
   double slowest = 0;
   for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
     EXPECT_EQ(ranks[rank].cells, tree.box(int(rank)));
-    samples += ranks[rank].picture_samples;
-    slowest = std::max(slowest, ranks[rank].picture_ms);
+    samples += ranks[rank].image_samples;
+    slowest = std::max(slowest, ranks[rank].image_ms);
   }
   EXPECT_EQ(samples, counts.samples_taken);
   EXPECT_EQ(slowest, counts.render_ms);

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "apps/bench/frame_parts.h"
-#include "compositor/service/linked.h"
+#include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 using namespace testing;
 
-TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
+TEST(MpiNode, ImagesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
   const auto embedded = embedded_service();
   const Texture texture = some_texture();
   upload(*embedded, texture);
@@ -32,7 +32,7 @@ TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
     const std::string path = folder / "control";
     auto launcher = std::make_unique<Launcher>(path);
     MpiGroup group(ranks, path);
-    const auto linked = linked_service(path, 60'000);
+    const auto linked = remote_render_service(path, 60'000);
     EXPECT_EQ(linked->nodes(), ranks);
     upload(*linked, texture);
     double worst = 0;
@@ -41,8 +41,7 @@ TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
       const volume::RenderRequest request = some_request(texture, op);
       const Rendered rendered = linked->render(request);
       counts = rendered.counts;
-      worst =
-          std::max(worst, largest_difference(whole_picture(rendered, request), picture_of(*embedded, request)));
+      worst = std::max(worst, largest_difference(whole_image(rendered, request), image_of(*embedded, request)));
     }
     std::printf(
         "%d ranks: at most %.2g apart; last frame %.2f ms to render, %.2f ms to composite, %llu bytes\n", ranks,
@@ -54,7 +53,7 @@ TEST(MpiNode, PicturesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
   }
 }
 
-TEST(MpiNode, PicturesStayTheSameWhileRanksAreBalanced) {
+TEST(MpiNode, ImagesStayTheSameWhileRanksAreBalanced) {
   // All there is to see lies in one corner: by blocks, one rank would have it all.
   const auto embedded = embedded_service();
   Texture texture = some_texture();
@@ -68,26 +67,26 @@ TEST(MpiNode, PicturesStayTheSameWhileRanksAreBalanced) {
     const std::string path = folder / "control";
     Launcher launcher(path);
     MpiGroup group(4, path, {"--balance", balance});
-    const auto linked = linked_service(path, 60'000);
+    const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
     double worst = 0;
-    for (int picture = 0; picture < 15; ++picture) {
+    for (int image = 0; image < 15; ++image) {
       volume::RenderRequest request = some_request(texture);
       auto& entries = std::get<volume::TransferFunction>(request.classification).entries;
-      if (picture % 5 == 4) std::ranges::reverse(entries);  // now the rest of it shows
-      worst = std::max(worst, largest_difference(picture_of(*linked, request), picture_of(*embedded, request)));
+      if (image % 5 == 4) std::ranges::reverse(entries);  // now the rest of it shows
+      worst = std::max(worst, largest_difference(image_of(*linked, request), image_of(*embedded, request)));
     }
     std::printf("%s: at most %.2g apart\n", balance, worst);
     EXPECT_LE(worst, 1e-5) << balance;
   }
 }
 
-TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
+TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedImage) {
   const auto embedded = embedded_service();
   const Texture texture = some_texture();
   upload(*embedded, texture);
   const volume::RenderRequest request = some_request(texture);
-  const volume::Image expected = picture_of(*embedded, request);
+  const volume::Image expected = image_of(*embedded, request);
   const std::vector<std::pair<std::vector<std::string>, double>> ways{
       {{"--exchange", "serial"}, 1e-5},
       {{"--exchange", "tree"}, 1e-5},
@@ -102,10 +101,10 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
     const std::string path = folder / "control";
     Launcher launcher(path);
     MpiGroup group(3, path, options);
-    const auto linked = linked_service(path, 60'000);
+    const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
     const Rendered rendered = linked->render(request);
-    const double apart = largest_difference(whole_picture(rendered, request), expected);
+    const double apart = largest_difference(whole_image(rendered, request), expected);
     std::printf("%-12s %-5s at most %.2g apart, %llu bytes\n", options[1].c_str(),
                 options.size() > 2 ? options[3].c_str() : "float", apart,
                 static_cast<unsigned long long>(rendered.counts.bytes_exchanged));
@@ -115,29 +114,29 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedPicture) {
 
 TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
   const Texture texture = some_texture();
-  const auto count = [&](const volume::RenderRequest& request, int ranks, Algorithm algorithm, Home home) {
+  const auto count = [&](const volume::RenderRequest& request, int ranks, Algorithm algorithm, Gather gather) {
     const volume::KdTree tree(texture.description, ranks);
     return bench::counted(bench::cast_parts(texture.description, texture.texels, request, tree), algorithm,
-                          home, request.op, Layout::rgba32f);
+                          gather, request.op, Layout::rgba32f);
   };
   for (int ranks = 1; ranks <= 8; ++ranks)
     for (std::size_t a = 0; a < algorithm_count; ++a) {
-      // All algorithms on some numbers of ranks, one on the others; each way home for each of both. (Groups
+      // All algorithms on some numbers of ranks, one on the others; each way back for each of both. (Groups
       // take seconds to start; `./run bench scaling` has all of them.)
       const bool all_algorithms = ranks == 2 || ranks == 3 || ranks == 5 || ranks == 8;
       if (!all_algorithms && a != std::size_t(ranks) % algorithm_count) continue;
-      const Home home = (ranks + int(a)) % 2 == 0 ? Home::direct : Home::gathered;
-      const std::string name(name_of(Algorithm(a))), way = home == Home::direct ? "direct" : "gathered";
+      const Gather gather = (ranks + int(a)) % 2 == 0 ? Gather::direct : Gather::root;
+      const std::string name(name_of(Algorithm(a))), way = gather == Gather::direct ? "direct" : "root";
       SCOPED_TRACE(::testing::Message() << ranks << " ranks, " << name << ", " << way);
       const ScratchFolder folder;
       const std::string path = folder / "control";
       Launcher launcher(path);
-      MpiGroup group(ranks, path, {"--exchange", name, "--home", way, "--overlap", "off", "--packed", "off"});
-      const auto linked = linked_service(path, 60'000);
+      MpiGroup group(ranks, path, {"--exchange", name, "--gather", way, "--overlap", "off", "--packed", "off"});
+      const auto linked = remote_render_service(path, 60'000);
       upload(*linked, texture);
       for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {
         volume::RenderRequest request = some_request(texture, op);
-        const CountedExchange counted = count(request, ranks, Algorithm(a), home);
+        const CountedExchange counted = count(request, ranks, Algorithm(a), gather);
         const Rendered rendered = linked->render(request);
         EXPECT_EQ(rendered.counts.bytes_exchanged, counted.bytes);
         EXPECT_EQ(rendered.counts.messages, counted.messages);
@@ -161,10 +160,10 @@ TEST(MpiNode, AGroupWithoutWorkLeavesTheProcessorsToOthers) {
   const std::string path = folder / "control";
   Launcher launcher(path);
   MpiGroup group(4, path);
-  const auto linked = linked_service(path, 60'000);
+  const auto linked = remote_render_service(path, 60'000);
   const Texture texture = some_texture();
   upload(*linked, texture);
-  picture_of(*linked, some_request(texture));
+  image_of(*linked, some_request(texture));
   std::map<pid_t, long long> before;
   for (const pid_t rank : group.ranks()) before[rank] = waits_of(rank);
   ASSERT_EQ(before.size(), 4U);
@@ -185,21 +184,21 @@ TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {
   volume::Image before;
   {
     MpiGroup group(3, path);
-    const auto linked = linked_service(path, 60'000);
+    const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
-    before = picture_of(*linked, request);
+    before = image_of(*linked, request);
     const std::vector<pid_t> ranks = group.ranks();
     ASSERT_EQ(ranks.size(), 3U);
     ::kill(ranks.back(), SIGKILL);
     // The group may answer a few more times before MPI notices; it must never hang.
-    EXPECT_THROW(for (;;) picture_of(*linked, request), ServiceLost);
+    EXPECT_THROW(for (;;) image_of(*linked, request), ServiceLost);
     EXPECT_TRUE(launcher.wait_for_loss());
     EXPECT_NE(group.wait(), 0);
   }
   MpiGroup next(2, path);
-  const auto linked = linked_service(path, 60'000);
+  const auto linked = remote_render_service(path, 60'000);
   upload(*linked, texture);
-  EXPECT_LE(largest_difference(picture_of(*linked, request), before), 1e-5);
+  EXPECT_LE(largest_difference(image_of(*linked, request), before), 1e-5);
 }
 
 TEST(MpiNode, AHangingRankEndsInServiceLostWithinTheTimeLimit) {
@@ -208,7 +207,7 @@ TEST(MpiNode, AHangingRankEndsInServiceLostWithinTheTimeLimit) {
   Launcher launcher(path);
   const Texture texture = some_texture();
   MpiGroup group(2, path);
-  const auto linked = linked_service(path, Patience{.render = std::chrono::milliseconds(2000)});
+  const auto linked = remote_render_service(path, Patience{.render = std::chrono::milliseconds(2000)});
   upload(*linked, texture);
   linked->render(some_request(texture));
   const std::vector<pid_t> ranks = group.ranks();

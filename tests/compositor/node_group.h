@@ -12,10 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "compositor/node/node.h"
 #include "compositor/service/connection.h"
-#include "compositor/service/linked.h"
+#include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 
 namespace understudy::compositor::testing {
@@ -32,15 +32,15 @@ constexpr ExchangeSettings drawn_first{.overlap = Overlap::off, .packed = false}
 // Ranks on threads, which end when the launcher closes its connection.
 class Group {
  public:
-  using Wrap = std::function<void(Link&, const std::function<void(Link&)>&)>;
+  using Wrap = std::function<void(Communicator&, const std::function<void(Communicator&)>&)>;
 
   Group(int ranks, const std::string& path, milliseconds stall_patience = limits::stall_patience,
         Wrap wrap = {}, ExchangeSettings exchange = drawn_first)
       : thread_([=, this] {
           try {
-            run_ranks(ranks, [&](Link& link) {
-              const auto run = [&](Link& l) { run_node(l, path, stall_patience, exchange); };
-              wrap ? wrap(link, run) : run(link);
+            run_ranks(ranks, [&](Communicator& communicator) {
+              const auto run = [&](Communicator& l) { run_node(l, path, stall_patience, exchange); };
+              wrap ? wrap(communicator, run) : run(communicator);
             });
           } catch (const std::exception& error) {
             std::printf("node group: %s\n", error.what());
@@ -68,12 +68,12 @@ class NodeGroupTest : public ::testing::Test {
     EXPECT_TRUE(launcher_->wait_for_group());
     return *groups_.back();
   }
-  std::unique_ptr<RenderService> connect() { return linked_service(path_, 20'000); }
+  std::unique_ptr<RenderService> connect() { return remote_render_service(path_, 20'000); }
   // An application that knows the protocol but has no manners.
   std::unique_ptr<Connection> raw_client() {
     auto result = std::make_unique<Connection>(connect_to(path_, soon()));
     result->send(MessageType::hello_client, 1, Bytes{}, soon());
-    EXPECT_EQ(result->receive(soon()).type, MessageType::welcome);
+    EXPECT_EQ(result->receive(soon()).type, MessageType::accepted);
     return result;
   }
 

@@ -31,18 +31,18 @@ TEST_F(NodeGroupTest, RanksWithNothingToShowAreIdleAndExchangeNothing) {
 TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
   // One exchange for both: what costs least may take more messages for the smaller parts.
   start(3, limits::stall_patience, {},
-        {Algorithm::direct_send, Layout::rgba32f, Home::direct, Overlap::off, false});
+        {Algorithm::direct_send, Layout::rgba32f, Gather::direct, Overlap::off, false});
   const auto linked = connect();
   const Texture texture = some_texture();
   upload(*linked, texture);
   volume::RenderRequest request = some_request(texture);
   const Rendered usual = linked->render(request);
   const volume::FrameCounts counts = usual.counts;
-  const volume::Image picture = whole_picture(usual, request);
-  request.leave_out.footprints = false;
+  const volume::Image image = whole_image(usual, request);
+  request.optimizations.footprints = false;
   const Rendered whole = linked->render(request);
   EXPECT_EQ(whole.image.rect, request.window);
-  EXPECT_LE(largest_difference(whole_picture(whole, request), picture), 4e-6);
+  EXPECT_LE(largest_difference(whole_image(whole, request), image), 4e-6);
   EXPECT_EQ(whole.counts.bytes_exchanged, counts.bytes_of_whole_windows) << "as was said before";
   EXPECT_EQ(whole.counts.messages, counts.messages_of_whole_windows);
   EXPECT_LT(counts.bytes_exchanged, counts.bytes_of_whole_windows);
@@ -50,7 +50,7 @@ TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
   EXPECT_GT(counts.messages, 0U);
 }
 
-TEST_F(NodeGroupTest, PartsGoHomeDirectlyOrGathered) {
+TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrGathered) {
   const Texture texture = some_texture();
   const volume::RenderRequest request = some_request(texture);
   const auto rendered_by = [&](const ExchangeSettings& settings, std::uint64_t& bytes) {
@@ -60,24 +60,24 @@ TEST_F(NodeGroupTest, PartsGoHomeDirectlyOrGathered) {
     const Rendered rendered = linked->render(request);
     bytes = rendered.counts.bytes_exchanged;
     EXPECT_GT(rendered.counts.bytes_of_whole_windows, bytes);
-    volume::Image picture = whole_picture(rendered, request);
-    // Larger pictures need other memory, which the ranks must see too.
+    volume::Image image = whole_image(rendered, request);
+    // Larger images need other memory, which the ranks must see too.
     volume::RenderRequest larger = request;
     larger.viewport = larger.window = {0, 0, 480, 360};
     EXPECT_GT(linked->render(larger).image.rect.pixels(), 4 * rendered.image.rect.pixels());
-    EXPECT_EQ(whole_picture(linked->render(request), request).rgba, picture.rgba);
+    EXPECT_EQ(whole_image(linked->render(request), request).rgba, image.rgba);
     launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
     EXPECT_TRUE(eventually([&] { return group.ended(); }));
-    return picture;
+    return image;
   };
   for (const Algorithm algorithm : {Algorithm::serial, Algorithm::tree, Algorithm::direct_send,
                                     Algorithm::binary_swap, Algorithm::radix_k}) {
     std::uint64_t direct = 0, gathered = 0;
-    EXPECT_EQ(rendered_by({algorithm, Layout::rgba32f, Home::direct, Overlap::off, false}, direct).rgba,
-              rendered_by({algorithm, Layout::rgba32f, Home::gathered, Overlap::off, false}, gathered).rgba);
+    EXPECT_EQ(rendered_by({algorithm, Layout::rgba32f, Gather::direct, Overlap::off, false}, direct).rgba,
+              rendered_by({algorithm, Layout::rgba32f, Gather::root, Overlap::off, false}, gathered).rgba);
     std::printf("%s: %llu bytes directly, %llu gathered\n", std::string(name_of(algorithm)).c_str(),
                 static_cast<unsigned long long>(direct), static_cast<unsigned long long>(gathered));
-    // One rank has all of a tree's picture in the end, and it may be rank 0.
+    // One rank has all of a tree's image in the end, and it may be rank 0.
     if (algorithm == Algorithm::serial || algorithm == Algorithm::tree) {
       EXPECT_LE(direct, gathered);
     } else {
@@ -99,7 +99,7 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
     request.termination = 0;
     const Rendered all = linked->render(request);
     const std::uint64_t bytes = all.counts.bytes_exchanged, samples = all.counts.samples;
-    const volume::Image picture = whole_picture(all, request);
+    const volume::Image image = whole_image(all, request);
     request.termination = 5e-6F;
     std::optional<volume::Image> first;
     for (int i = 0; i < 5; ++i) {
@@ -107,11 +107,11 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
       EXPECT_LT(rendered.counts.bytes_exchanged, bytes);
       EXPECT_EQ(rendered.counts.samples, samples);
       EXPECT_GT(rendered.counts.samples_hidden, 0U);
-      const volume::Image image = whole_picture(rendered, request);
-      EXPECT_LE(largest_difference(image, picture), 1e-5);
+      const volume::Image image = whole_image(rendered, request);
+      EXPECT_LE(largest_difference(image, image), 1e-5);
       if (!first) first = image;
-      EXPECT_EQ(image.rgba, first->rgba) << "whenever notes come";
-      // One that is refused leaves no note that counts.
+      EXPECT_EQ(image.rgba, first->rgba) << "whenever control messages come";
+      // One that is refused leaves no control message that counts.
       volume::RenderRequest wrong = request;
       wrong.version = 99;
       EXPECT_THROW(linked->render(wrong), RequestRefused);
@@ -129,11 +129,11 @@ TEST_F(NodeGroupTest, PartsMayTravelAsHalves) {
   volume::RenderRequest request = some_request(texture);
   const Rendered floats = linked->render(request);
   const std::uint64_t bytes = floats.counts.bytes_exchanged;
-  const volume::Image picture = whole_picture(floats, request);
+  const volume::Image image = whole_image(floats, request);
   request.may_travel_as_halves = true;
   const Rendered halves = linked->render(request);
   EXPECT_LT(double(halves.counts.bytes_exchanged), 0.6 * double(bytes));
-  const double off = largest_difference(whole_picture(halves, request), picture);
+  const double off = largest_difference(whole_image(halves, request), image);
   EXPECT_GT(off, 0);
   EXPECT_LE(off, 3.0 / 2048) << "three parts, each rounded";
 }

@@ -14,12 +14,12 @@
 #include <memory>
 #include <random>
 
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "compositor/node/node.h"
-#include "compositor/service/image_memory.h"
-#include "compositor/service/linked.h"
+#include "compositor/service/image_buffer.h"
 #include "compositor/service/rank_renderer.h"
-#include "tests/compositor/forwarding_link.h"
+#include "compositor/service/remote_service.h"
+#include "tests/compositor/forwarding_communicator.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/texel_box.h"
@@ -56,7 +56,7 @@ TEST_F(NodeGroupTest, IntegralsAreThoseOfOneProcess) {
     ASSERT_EQ(integrals.size(), pixels.size()) << ranks;
     for (std::size_t i = 0; i < pixels.size(); ++i)
       for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(integrals[i][k], expected[i][k], 1e-6) << ranks;
-    // A picture after them, and as many as time allows.
+    // An image after them, and as many as time allows.
     EXPECT_FALSE(service->render(request).image.rect.empty());
     EXPECT_LE(service->integrals(request, pixels, 0).size(), pixels.size());
     request.steps.reset();
@@ -80,8 +80,8 @@ TEST_F(NodeGroupTest, LinkedEqualsEmbeddedForAnyRankCountOperatorAndTexelType) {
       upload(*embedded, texture);
       for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add}) {
         const volume::RenderRequest request = some_request(texture, op);
-        const volume::Image expected = picture_of(*embedded, request);
-        worst = std::max(worst, largest_difference(picture_of(*linked, request), expected));
+        const volume::Image expected = image_of(*embedded, request);
+        worst = std::max(worst, largest_difference(image_of(*linked, request), expected));
         // The scene must be one in which something is to be seen.
         ASSERT_GT(largest_difference(expected, volume::Image(request.window)), 0.05);
       }
@@ -108,7 +108,7 @@ TEST_F(NodeGroupTest, CountsAreSummedOverRanks) {
   EXPECT_EQ(four.nodes_idle, 0U);
 }
 
-TEST_F(NodeGroupTest, PicturesFollowAWindowThatGrowsAndShrinks) {
+TEST_F(NodeGroupTest, ImagesFollowAWindowThatGrowsAndShrinks) {
   start(2);
   const auto linked = connect(), embedded = embedded_service();
   const Texture texture = some_texture();
@@ -117,7 +117,7 @@ TEST_F(NodeGroupTest, PicturesFollowAWindowThatGrowsAndShrinks) {
   for (const int side : {1, 40, 300, 10, 700, 120}) {
     const auto request =
         volume::testing::request_for(texture, volume::testing::usual_camera(side, side), side, side, 40);
-    EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5) << side;
+    EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5) << side;
   }
 }
 
@@ -132,12 +132,12 @@ TEST_F(NodeGroupTest, EachApplicationHasItsOwnVolumeIds) {
   const auto alone = embedded_service();
   upload(*alone, lobes);
   const volume::RenderRequest request = some_request(lobes);
-  const volume::Image expected = picture_of(*alone, request);
-  EXPECT_LE(largest_difference(picture_of(*first, request), expected), 1e-5);
-  EXPECT_GT(largest_difference(picture_of(*second, request), expected), 0.05);
+  const volume::Image expected = image_of(*alone, request);
+  EXPECT_LE(largest_difference(image_of(*first, request), expected), 1e-5);
+  EXPECT_GT(largest_difference(image_of(*second, request), expected), 0.05);
   second->forget_volume(7);
   EXPECT_THROW(second->render(request), RequestRefused);
-  EXPECT_LE(largest_difference(picture_of(*first, request), expected), 1e-5);
+  EXPECT_LE(largest_difference(image_of(*first, request), expected), 1e-5);
 }
 
 TEST_F(NodeGroupTest, AVolumeThatIsBegunAgainIsReplaced) {
@@ -152,7 +152,7 @@ TEST_F(NodeGroupTest, AVolumeThatIsBegunAgainIsReplaced) {
   volume::RenderRequest request = some_request(texture);
   EXPECT_THROW(linked->render(request), RequestRefused);  // asks for the old version
   request.version = 1;
-  EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
+  EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5);
 }
 
 // Boxes of a texture's own texels, one after the other.
@@ -167,7 +167,7 @@ std::vector<std::byte> texels_of(const Texture& texture, std::span<const volume:
   return bytes;
 }
 
-TEST_F(NodeGroupTest, ChangedTexelsGiveThePictureOfAFreshVolumeBitForBit) {
+TEST_F(NodeGroupTest, ChangedTexelsGiveTheImageOfAFreshVolumeBitForBit) {
   const unsigned seed = 1811;
   std::printf("seed %u\n", seed);
   std::mt19937 random(seed);
@@ -178,7 +178,7 @@ TEST_F(NodeGroupTest, ChangedTexelsGiveThePictureOfAFreshVolumeBitForBit) {
       Texture texture = some_texture(7, type);
       upload(*service, texture);
       volume::RenderRequest request = some_request(texture);
-      const volume::Image before = picture_of(*service, request);
+      const volume::Image before = image_of(*service, request);
       for (std::uint64_t version = 1; version <= 4; ++version) {
         std::vector<volume::TexelBox> boxes(1 + random() % 5);
         for (volume::TexelBox& box : boxes)
@@ -195,7 +195,7 @@ TEST_F(NodeGroupTest, ChangedTexelsGiveThePictureOfAFreshVolumeBitForBit) {
         service->add_texels(7, boxes, texels_of(texture, boxes));
         service->end_volume(7);
         request.version = version;
-        const volume::Image changed = picture_of(*service, request);
+        const volume::Image changed = image_of(*service, request);
         EXPECT_GT(largest_difference(changed, before), 0.01) << "the change is to be seen";
 
         Texture fresh = texture;
@@ -204,7 +204,7 @@ TEST_F(NodeGroupTest, ChangedTexelsGiveThePictureOfAFreshVolumeBitForBit) {
         upload(*service, fresh);
         volume::RenderRequest of_fresh = request;
         of_fresh.volume = 8;
-        EXPECT_EQ(largest_difference(picture_of(*service, of_fresh), changed), 0)
+        EXPECT_EQ(largest_difference(image_of(*service, of_fresh), changed), 0)
             << ranks << " ranks, version " << version;
       }
     }
@@ -219,26 +219,28 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   struct Counts {
     std::atomic<std::uint64_t> received = 0, broadcast = 0;
   } counts;
-  class Counting : public ForwardingLink {
+  class Counting : public ForwardingCommunicator {
    public:
-    Counting(Link& link, Counts& counts) : ForwardingLink(link), counts_(counts) {}
+    Counting(Communicator& communicator, Counts& counts)
+        : ForwardingCommunicator(communicator), counts_(counts) {}
     void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
       for (const Incoming& message : incoming) counts_.received += message.bytes.size();
-      ForwardingLink::transfer(outgoing, incoming);
+      ForwardingCommunicator::transfer(outgoing, incoming);
     }
     void broadcast(Rank root, std::span<std::byte> bytes) override {
       if (rank() != root) counts_.broadcast += bytes.size();
-      ForwardingLink::broadcast(root, bytes);
+      ForwardingCommunicator::broadcast(root, bytes);
     }
 
    private:
     Counts& counts_;
   };
   constexpr int ranks = 4;
-  start(ranks, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
-    Counting counting(link, counts);
-    run(counting);
-  });
+  start(ranks, limits::stall_patience,
+        [&](Communicator& communicator, const std::function<void(Communicator&)>& run) {
+          Counting counting(communicator, counts);
+          run(counting);
+        });
   const auto linked = connect();
   const Texture texture = some_texture();
   const volume::KdTree tree(texture.description, ranks);
@@ -277,10 +279,10 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   EXPECT_EQ(counts.received, 0U);
 }
 
-/// Slabs that reach to the next plane; tables of different seeds give different pictures.
-volume::RenderRequest some_slabs(const Texture& texture, int seed) {
+/// Segments that reach to the next plane; tables of different seeds give different images.
+volume::RenderRequest some_slice_segments(const Texture& texture, int seed) {
   volume::RenderRequest request = some_request(texture);
-  volume::PairTable pairs;
+  volume::PreIntegrationTable pairs;
   pairs.edge = 128;
   for (int back = 0; back < pairs.edge; ++back)
     for (int front = 0; front < pairs.edge; ++front) {
@@ -288,46 +290,48 @@ volume::RenderRequest some_slabs(const Texture& texture, int seed) {
       pairs.entries.push_back({f, b, float(seed) / 8, 0.02F + 0.1F * std::abs(f - b) + 0.02F * float(seed)});
     }
   request.classification = pairs;
-  volume::Slab& slab = request.slab.emplace();
+  volume::SliceSegment& slice_segment = request.slice_segment.emplace();
   const double square = volume::dot(request.planes.normal, request.planes.normal);
   for (std::size_t k = 0; k < 3; ++k) {
-    slab.offset[k] = request.planes.normal[k] * request.planes.spacing / square;
-    slab.reach[k] = std::abs(slab.offset[k]);
+    slice_segment.offset[k] = request.planes.normal[k] * request.planes.spacing / square;
+    slice_segment.reach[k] = std::abs(slice_segment.offset[k]);
   }
   return request;
 }
 
 // Counted where it arrives: on two ranks of three.
-TEST_F(NodeGroupTest, ATableOfPairsTravelsOnce) {
+TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
   std::atomic<std::uint64_t> broadcast = 0;
-  class Counting : public ForwardingLink {
+  class Counting : public ForwardingCommunicator {
    public:
-    Counting(Link& link, std::atomic<std::uint64_t>& bytes) : ForwardingLink(link), bytes_(bytes) {}
+    Counting(Communicator& communicator, std::atomic<std::uint64_t>& bytes)
+        : ForwardingCommunicator(communicator), bytes_(bytes) {}
     void broadcast(Rank root, std::span<std::byte> bytes) override {
       if (rank() != root) bytes_ += bytes.size();
-      ForwardingLink::broadcast(root, bytes);
+      ForwardingCommunicator::broadcast(root, bytes);
     }
 
    private:
     std::atomic<std::uint64_t>& bytes_;
   };
-  start(3, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
-    Counting counting(link, broadcast);
-    run(counting);
-  });
+  start(3, limits::stall_patience,
+        [&](Communicator& communicator, const std::function<void(Communicator&)>& run) {
+          Counting counting(communicator, broadcast);
+          run(counting);
+        });
   Texture texture = some_texture();
-  texture.description.margin = 8;
+  texture.description.ghost_layer = 8;
   const auto linked = connect(), other = connect(), embedded = embedded_service();
   for (RenderService* service : {linked.get(), other.get(), embedded.get()}) upload(*service, texture);
 
   constexpr std::uint64_t table = 2 * 128 * 128 * sizeof(volume::Rgba), no_table = 2 * 2000;
   std::vector<volume::Image> expected;
-  for (int seed = 0; seed <= limits::max_kept_pair_tables; ++seed)
-    expected.push_back(picture_of(*embedded, some_slabs(texture, seed)));
+  for (int seed = 0; seed <= limits::max_kept_pre_integration_tables; ++seed)
+    expected.push_back(image_of(*embedded, some_slice_segments(texture, seed)));
   const auto expect = [&](RenderService& service, int seed, bool sent) {
     broadcast = 0;
-    const volume::Image picture = picture_of(service, some_slabs(texture, seed));
-    EXPECT_LE(largest_difference(picture, expected[std::size_t(seed)]), 1e-5) << seed;
+    const volume::Image image = image_of(service, some_slice_segments(texture, seed));
+    EXPECT_LE(largest_difference(image, expected[std::size_t(seed)]), 1e-5) << seed;
     if (sent) {
       EXPECT_GE(broadcast, table) << seed;
       EXPECT_LT(broadcast, table + no_table) << seed;
@@ -351,29 +355,30 @@ TEST_F(NodeGroupTest, ATableOfPairsTravelsOnce) {
   expect(*linked, 0, false);
   expect(*other, 2, false);
   // One table more than there are places: the one not asked for longest makes room.
-  for (int seed = 2; seed <= limits::max_kept_pair_tables; ++seed) expect(*linked, seed, true);
+  for (int seed = 2; seed <= limits::max_kept_pre_integration_tables; ++seed) expect(*linked, seed, true);
   expect(*linked, 0, false);
   expect(*linked, 1, true);
 
   // A table that is refused is in no place, and neither is the one that made room for it.
-  volume::RenderRequest bad = some_slabs(texture, 0);
-  std::get<volume::PairTable>(bad.classification).entries.pop_back();
+  volume::RenderRequest bad = some_slice_segments(texture, 0);
+  std::get<volume::PreIntegrationTable>(bad.classification).entries.pop_back();
   EXPECT_THROW(linked->render(bad), RequestRefused);
   EXPECT_THROW(linked->render(bad), RequestRefused);
   expect(*linked, 0, false);
-  for (int seed = 1; seed < limits::max_kept_pair_tables; ++seed)
-    EXPECT_LE(largest_difference(picture_of(*linked, some_slabs(texture, seed)), expected[std::size_t(seed)]),
-              1e-5);
+  for (int seed = 1; seed < limits::max_kept_pre_integration_tables; ++seed)
+    EXPECT_LE(
+        largest_difference(image_of(*linked, some_slice_segments(texture, seed)), expected[std::size_t(seed)]),
+        1e-5);
 }
 
 // An application without manners names a table that it never sent.
-TEST_F(NodeGroupTest, ATableOfPairsThatIsNotThereIsARefusal) {
+TEST_F(NodeGroupTest, APreIntegrationTableThatIsNotThereIsARefusal) {
   start(2);
   const auto senseless = raw_client();
-  senseless->send(MessageType::render, 2, encode(some_slabs(some_texture(), 0), 0), soon());
+  senseless->send(MessageType::render, 2, encode(some_slice_segments(some_texture(), 0), 0), soon());
   const Message reply = senseless->receive(soon());
   EXPECT_EQ(reply.type, MessageType::refused);
-  EXPECT_THAT(decode_text(reply.payload), HasSubstr("holds no table of pairs"));
+  EXPECT_THAT(decode_text(reply.payload), HasSubstr("holds no pre-integration table"));
 }
 
 TEST_F(NodeGroupTest, WhatIsWrongWithAVolumeThatWasGivenUpConcernsNoOther) {
@@ -417,7 +422,7 @@ TEST_F(NodeGroupTest, LargeAndManyBoxesTravelInSeveralMessages) {
   }
   volume::RenderRequest request = some_request(texture);
   request.version = 1;
-  EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
+  EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5);
 }
 
 // What makes no sense is refused alike by both services, with a reason, and both go on serving.
@@ -489,11 +494,12 @@ TEST_F(NodeGroupTest, SenselessRequestsAreRefusedAndTheServiceGoesOn) {
 TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
   // Rank 1 reads nonsense where the others read the request.
   std::atomic<bool> armed = false;
-  class Corrupting : public ForwardingLink {
+  class Corrupting : public ForwardingCommunicator {
    public:
-    Corrupting(Link& link, std::atomic<bool>& armed) : ForwardingLink(link), armed_(armed) {}
+    Corrupting(Communicator& communicator, std::atomic<bool>& armed)
+        : ForwardingCommunicator(communicator), armed_(armed) {}
     void broadcast(Rank root, std::span<std::byte> bytes) override {
-      ForwardingLink::broadcast(root, bytes);
+      ForwardingCommunicator::broadcast(root, bytes);
       if (rank() == 1 && bytes.size() > 256 && armed_.exchange(false))
         std::ranges::fill(bytes, std::byte(0xff));
     }
@@ -501,10 +507,11 @@ TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
    private:
     std::atomic<bool>& armed_;
   };
-  start(3, limits::stall_patience, [&](Link& link, const std::function<void(Link&)>& run) {
-    Corrupting corrupting(link, armed);
-    run(corrupting);
-  });
+  start(3, limits::stall_patience,
+        [&](Communicator& communicator, const std::function<void(Communicator&)>& run) {
+          Corrupting corrupting(communicator, armed);
+          run(corrupting);
+        });
   const auto linked = connect();
   const Texture texture = some_texture();
   upload(*linked, texture);
@@ -512,7 +519,7 @@ TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
   EXPECT_THROW(linked->render(some_request(texture)), RequestRefused);
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
 
-  // A volume of which some ranks could not take a slab, because it came to them twice, is not kept half.
+  // A volume of which some ranks could not take a segment, because it came to them twice, is not kept half.
   linked->begin_volume(texture.description);
   linked->add_texels(texture.description.id, {&texture.description.stored, 1}, texture.texels);
   const volume::TexelBox first_slice{{0, 0, 0}, {41, 37, 1}};
@@ -559,17 +566,17 @@ TEST_F(NodeGroupTest, GarbageIsDroppedAndDisturbsNobody) {
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
 }
 
-TEST_F(NodeGroupTest, ImageMemoryThatCouldVanishIsNotUsed) {
+TEST_F(NodeGroupTest, ImageBufferThatCouldVanishIsNotUsed) {
   start(1);
   const auto client = raw_client();
   const FileDescriptor unsealed(::memfd_create("unsealed", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   ASSERT_EQ(::ftruncate(unsealed.get(), 4096), 0);
-  client->send(MessageType::image_memory, 2, encode_size(4096), soon(), unsealed.get());
+  client->send(MessageType::image_buffer, 2, encode_size(4096), soon(), unsealed.get());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("sealed"));
-  const ImageMemory small = ImageMemory::create(4096);
-  client->send(MessageType::image_memory, 3, encode_size(8192), soon(), small.fd());
+  const ImageBuffer small = ImageBuffer::create(4096);
+  client->send(MessageType::image_buffer, 3, encode_size(8192), soon(), small.fd());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("smaller"));
-  client->send(MessageType::image_memory, 4, encode_size(4096), soon());
+  client->send(MessageType::image_buffer, 4, encode_size(4096), soon());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("no descriptor"));
 }
 
@@ -579,13 +586,13 @@ TEST_F(NodeGroupTest, ALostGroupIsReportedAndANewConnectionWorks) {
   auto linked = connect();
   upload(*linked, texture);
   const volume::RenderRequest request = some_request(texture);
-  const volume::Image before = picture_of(*linked, request);
+  const volume::Image before = image_of(*linked, request);
   launcher_->ask([](Broker& b) { b.dismiss_node_group(); });
   EXPECT_TRUE(eventually([&] { return groups_.back()->ended(); }));
   std::string first;
   try {
     linked->render(request);
-    ADD_FAILURE() << "a picture without a group";
+    ADD_FAILURE() << "an image without a group";
   } catch (const ServiceLost& lost) {
     first = lost.what();
     EXPECT_THAT(first, HasSubstr(path_));
@@ -603,7 +610,7 @@ TEST_F(NodeGroupTest, ALostGroupIsReportedAndANewConnectionWorks) {
   EXPECT_EQ(linked->nodes(), 3);
   EXPECT_THROW(linked->render(request), RequestRefused);  // the new group has to be filled again
   upload(*linked, texture);
-  EXPECT_LE(largest_difference(picture_of(*linked, request), before), 1e-5);
+  EXPECT_LE(largest_difference(image_of(*linked, request), before), 1e-5);
 }
 
 TEST_F(NodeGroupTest, AnApplicationMayComeBeforeTheGroup) {
@@ -617,7 +624,7 @@ TEST_F(NodeGroupTest, AnApplicationMayComeBeforeTheGroup) {
 
 TEST_F(NodeGroupTest, WithoutAGroupPatienceEndsInServiceLost) {
   try {
-    linked_service(path_, 50);
+    remote_render_service(path_, 50);
     ADD_FAILURE();
   } catch (const ServiceLost& lost) {
     EXPECT_THAT(lost.what(), HasSubstr("within 50 ms"));
@@ -629,8 +636,8 @@ TEST_F(NodeGroupTest, WithoutAGroupPatienceEndsInServiceLost) {
   } catch (const ServiceLost& lost) {
     EXPECT_THAT(lost.what(), HasSubstr("apt install openmpi-bin"));
   }
-  EXPECT_THROW(linked_service("/nowhere/at/all", 50), ServiceLost);
-  EXPECT_THROW(linked_service(std::string(300, 'x'), 50), ServiceLost);
+  EXPECT_THROW(remote_render_service("/nowhere/at/all", 50), ServiceLost);
+  EXPECT_THROW(remote_render_service(std::string(300, 'x'), 50), ServiceLost);
 }
 
 // A node group that takes applications in and then misbehaves.
@@ -642,7 +649,7 @@ class BadGroup {
   }
   Connection take_in() {
     Connection client(control_.receive(soon()).attached);
-    client.send(MessageType::welcome, 1, encode(Hello{1}), soon());
+    client.send(MessageType::accepted, 1, encode(Hello{1}), soon());
     return client;
   }
 
@@ -653,7 +660,7 @@ class BadGroup {
 TEST_F(NodeGroupTest, AGroupThatNeverAnswersIsGivenUp) {
   BadGroup group(path_, *launcher_);
   std::unique_ptr<RenderService> linked;
-  std::jthread application([&] { linked = linked_service(path_, {.reply = milliseconds(50)}); });
+  std::jthread application([&] { linked = remote_render_service(path_, {.reply = milliseconds(50)}); });
   const Connection taken = group.take_in();
   application.join();
   try {
@@ -667,7 +674,7 @@ TEST_F(NodeGroupTest, AGroupThatNeverAnswersIsGivenUp) {
 TEST_F(NodeGroupTest, AGroupThatDoesNotReadIsGivenUp) {
   BadGroup group(path_, *launcher_);
   std::unique_ptr<RenderService> linked;
-  std::jthread application([&] { linked = linked_service(path_, {.send = milliseconds(50)}); });
+  std::jthread application([&] { linked = remote_render_service(path_, {.send = milliseconds(50)}); });
   const Connection taken = group.take_in();
   application.join();
   const std::vector<std::byte> slice(std::size_t(8) << 20);
@@ -679,7 +686,7 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
   BadGroup group(path_, *launcher_);
   const volume::RenderRequest request = some_request(some_texture());
   const std::vector<std::function<void(Connection&, const Message&)>> lies{
-      // A picture outside the window.
+      // An image outside the window.
       [](Connection& c, const Message& m) {
         c.send(MessageType::rendered, m.sequence, encode(RenderedReply{{0, 0, 100, 100}, {}}), soon());
       },
@@ -694,7 +701,7 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
       [](Connection& c, const Message& m) { c.send(MessageType::done, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message& m) { c.send(MessageType::rendered, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message&) { ::send(c.fd(), "x marks the spot, not a header", 30, MSG_NOSIGNAL); },
-      // Nothing more, in the midst of a picture; half an answer, and nothing more.
+      // Nothing more, in the midst of an image; half an answer, and nothing more.
       [](Connection& c, const Message&) { ::shutdown(c.fd(), SHUT_RDWR); },
       [](Connection& c, const Message& m) {
         MessageHeader header{.type = MessageType::rendered};
@@ -719,7 +726,9 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
 }
 
 TEST(NodeGroup, ALauncherThatIsNotThereEndsAllRanks) {
-  run_ranks(3, [](Link& link) { EXPECT_EQ(run_node(link, "/nowhere/at/all"), link.rank() != 0); });
+  run_ranks(3, [](Communicator& communicator) {
+    EXPECT_EQ(run_node(communicator, "/nowhere/at/all"), communicator.rank() != 0);
+  });
 }
 
 TEST(NodeGroup, LeavesNoDescriptorBehind) {
@@ -731,7 +740,7 @@ TEST(NodeGroup, LeavesNoDescriptorBehind) {
     Group group(2, path);
     ASSERT_TRUE(launcher->wait_for_group());
     for (int i = 0; i < 3; ++i) {
-      const auto linked = linked_service(path, 20'000);
+      const auto linked = remote_render_service(path, 20'000);
       const Texture texture = some_texture();
       upload(*linked, texture);
       for (const int side : {10, 50, 90}) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compositor/exchange/exchange.h"
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "compositor/service/rank_renderer.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/texel_box.h"
@@ -46,16 +46,16 @@ TEST(OpaqueTiles, WhatIsBehindThemIsCleared) {
   const RenderRequest request = wide_request(200, 90);
   const std::array<Rank, 3> order{2, 1, 0};
   const std::array<Rect, 3> footprints{Rect{0, 0, 200, 90}, Rect{128, 64, 20, 20}, Rect{0, 0, 70, 40}};
-  run_ranks(3, [&](Link& link) {
-    OpaqueTiles tiles(link, 1, request, order, footprints);
-    Image image = opaque_image(footprints[std::size_t(link.rank())]);
+  run_ranks(3, [&](Communicator& communicator) {
+    OpaqueTiles tiles(communicator, 1, request, order, footprints);
+    Image image = opaque_image(footprints[std::size_t(communicator.rank())]);
     cover_opaque_tiles(image, request, tiles);
     std::uint32_t mine = tiles.tell_rest();
-    std::vector<std::uint32_t> notes(3);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
-    tiles.clear_hidden(image, notes);
-    if (link.rank() == 0) {
-      EXPECT_EQ(notes, (std::vector<std::uint32_t>{0, 0, 1}))
+    std::vector<std::uint32_t> control_messages(3);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
+    tiles.clear_hidden(image, control_messages);
+    if (communicator.rank() == 0) {
+      EXPECT_EQ(control_messages, (std::vector<std::uint32_t>{0, 0, 1}))
           << "nobody is behind rank 0, and rank 1 covers no tile";
       EXPECT_TRUE(is_clear(image, {0, 0, 64, 32}));
       EXPECT_FALSE(is_clear(image, {64, 0, 1, 1})) << "a tile that is covered in part";
@@ -71,15 +71,15 @@ TEST(OpaqueTiles, WindowsMayBeginLeftOfAndBelowTheOrigin) {
   request.window = request.viewport = {-50, -40, 120, 100};
   const std::array<Rank, 2> order{1, 0};
   const std::array<Rect, 2> footprints{request.window, Rect{-50, -40, 50, 40}};
-  run_ranks(2, [&](Link& link) {
-    OpaqueTiles tiles(link, 1, request, order, footprints);
-    Image image = opaque_image(footprints[std::size_t(link.rank())]);
+  run_ranks(2, [&](Communicator& communicator) {
+    OpaqueTiles tiles(communicator, 1, request, order, footprints);
+    Image image = opaque_image(footprints[std::size_t(communicator.rank())]);
     cover_opaque_tiles(image, request, tiles);
     std::uint32_t mine = tiles.tell_rest();
-    std::vector<std::uint32_t> notes(2);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
-    tiles.clear_hidden(image, notes);
-    if (link.rank() == 0) {
+    std::vector<std::uint32_t> control_messages(2);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
+    tiles.clear_hidden(image, control_messages);
+    if (communicator.rank() == 0) {
       EXPECT_TRUE(is_clear(image, footprints[1]));
       EXPECT_FALSE(is_clear(image, {0, -40, 1, 1}));
       EXPECT_FALSE(is_clear(image, {-50, 0, 1, 1}));
@@ -92,60 +92,60 @@ TEST(OpaqueTiles, TilesEndAtTheWindow) {
   const RenderRequest request = wide_request(200, 90);
   const std::array<Rank, 2> order{0, 1};
   const std::array<Rect, 2> footprints{Rect{192, 64, 8, 26}, Rect{0, 0, 200, 90}};
-  run_ranks(2, [&](Link& link) {
-    OpaqueTiles tiles(link, 1, request, order, footprints);
-    Image image = opaque_image(footprints[std::size_t(link.rank())]);
+  run_ranks(2, [&](Communicator& communicator) {
+    OpaqueTiles tiles(communicator, 1, request, order, footprints);
+    Image image = opaque_image(footprints[std::size_t(communicator.rank())]);
     cover_opaque_tiles(image, request, tiles);
     std::uint32_t mine = tiles.tell_rest();
-    std::vector<std::uint32_t> notes(2);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
-    tiles.clear_hidden(image, notes);
-    if (link.rank() == 1) {
+    std::vector<std::uint32_t> control_messages(2);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
+    tiles.clear_hidden(image, control_messages);
+    if (communicator.rank() == 1) {
       EXPECT_TRUE(is_clear(image, footprints[0]));
       EXPECT_FALSE(is_clear(image, {191, 64, 1, 26}));
     }
   });
 }
 
-TEST(OpaqueTiles, NotesOfOtherPicturesCountForNothing) {
+TEST(OpaqueTiles, ControlMessagesOfOtherImagesCountForNothing) {
   const RenderRequest request = wide_request(64, 64);
   const std::array<Rank, 2> order{0, 1};
   const std::array<Rect, 2> footprints{request.window, request.window};
-  run_ranks(2, [&](Link& link) {
+  run_ranks(2, [&](Communicator& communicator) {
     {
-      // This picture is refused somewhere: nobody hears what was told.
-      OpaqueTiles tiles(link, 7, request, order, footprints);
-      if (link.rank() == 0) tiles.cover(request.window);
+      // This image is refused somewhere: nobody hears what was told.
+      OpaqueTiles tiles(communicator, 7, request, order, footprints);
+      if (communicator.rank() == 0) tiles.cover(request.window);
       tiles.tell_rest();
     }
-    OpaqueTiles tiles(link, 8, request, order, footprints);
-    if (link.rank() == 0) tiles.cover({0, 0, 32, 64});
+    OpaqueTiles tiles(communicator, 8, request, order, footprints);
+    if (communicator.rank() == 0) tiles.cover({0, 0, 32, 64});
     std::uint32_t mine = tiles.tell_rest();
-    std::vector<std::uint32_t> notes(2);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
+    std::vector<std::uint32_t> control_messages(2);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
     Image image = opaque_image(request.window);
-    tiles.clear_hidden(image, notes);
-    if (link.rank() == 1) {
+    tiles.clear_hidden(image, control_messages);
+    if (communicator.rank() == 1) {
       EXPECT_TRUE(is_clear(image, {0, 0, 32, 64}));
       EXPECT_FALSE(is_clear(image, {32, 0, 1, 1}));
     }
   });
 }
 
-TEST(OpaqueTiles, MoreThanANoteHolds) {
+TEST(OpaqueTiles, MoreThanAControlMessageHolds) {
   const RenderRequest request = wide_request(16384, 16384);
   const std::array<Rank, 2> order{1, 0};
   const std::array<Rect, 2> footprints{Rect{0, 0, 64, 64}, request.window};
-  run_ranks(2, [&](Link& link) {
-    OpaqueTiles tiles(link, 1, request, order, footprints);
-    if (link.rank() == 1) tiles.cover(request.window);
+  run_ranks(2, [&](Communicator& communicator) {
+    OpaqueTiles tiles(communicator, 1, request, order, footprints);
+    if (communicator.rank() == 1) tiles.cover(request.window);
     std::uint32_t mine = tiles.tell_rest();
-    std::vector<std::uint32_t> notes(2);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
+    std::vector<std::uint32_t> control_messages(2);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
     Image image = opaque_image(footprints[0]);
-    tiles.clear_hidden(image, notes);
-    if (link.rank() == 0) {
-      EXPECT_GT(notes[1], 1U);
+    tiles.clear_hidden(image, control_messages);
+    if (communicator.rank() == 0) {
+      EXPECT_GT(control_messages[1], 1U);
       EXPECT_TRUE(is_clear(image, image.rect));
     }
   });
@@ -153,7 +153,7 @@ TEST(OpaqueTiles, MoreThanANoteHolds) {
 
 /// Two ranks, of which the farther one begins when the nearer one has told of all that it covers.
 struct Drawn {
-  Image picture;
+  Image image;
   std::array<volume::FrameCounts, 2> counts;  ///< of the nearer and the farther one
   std::uint64_t bytes = 0;
 };
@@ -162,39 +162,39 @@ Drawn drawn(const Texture& texture, const RenderRequest& request, bool with_occl
   Drawn result;
   std::latch told(1);
   std::mutex mutex;
-  run_ranks(2, [&](Link& link) {
-    RankRenderer renderer(link.rank(), 2);
+  run_ranks(2, [&](Communicator& communicator) {
+    RankRenderer renderer(communicator.rank(), 2);
     renderer.begin(1, texture.description);
     const VolumeKey key{1, texture.description.id};
     const std::vector<volume::TexelBox> shares =
-        renderer.shares(key, {&texture.description.stored, 1}, link.rank());
+        renderer.shares(key, {&texture.description.stored, 1}, communicator.rank());
     std::vector<std::byte> texels(volume::texels_in(shares[0]));
     volume::copy_texels(shares[0], 1, texture.description.stored, texture.texels, shares[0], texels);
     renderer.add_texels(key, shares, texels);
     renderer.end(key);
 
     const std::vector<int> order = renderer.visibility_order(1, request);
-    const bool nearer = order[0] == link.rank();
-    OpaqueTiles tiles(link, 1, request, order, renderer.footprints(1, request));
+    const bool nearer = order[0] == communicator.rank();
+    OpaqueTiles tiles(communicator, 1, request, order, renderer.footprints(1, request));
     volume::FrameCounts counts;
     if (!nearer) told.wait();
     Image image = renderer.render(1, request, counts, with_occlusion ? &tiles : nullptr);
     std::uint32_t mine = tiles.tell_rest();
     if (nearer) told.count_down();
-    std::vector<std::uint32_t> notes(2);
-    link.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(notes)));
-    tiles.clear_hidden(image, notes);
+    std::vector<std::uint32_t> control_messages(2);
+    communicator.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(control_messages)));
+    tiles.clear_hidden(image, control_messages);
 
     Rect footprint = image.rect;
     std::vector<Rect> footprints(2);
-    link.gather_to_all(bytes_of(footprint), std::as_writable_bytes(std::span(footprints)));
+    communicator.gather_to_all(bytes_of(footprint), std::as_writable_bytes(std::span(footprints)));
     Exchanged exchanged = exchange(std::move(image), schedule(Algorithm::direct_send, order, footprints),
-                                   request.op, Layout::rgba32f, link);
+                                   request.op, Layout::rgba32f, communicator);
     const std::lock_guard lock(mutex);
     result.counts[nearer ? 0 : 1] = counts;
-    if (link.rank() != 0) return;
+    if (communicator.rank() != 0) return;
     result.bytes = exchanged.bytes;
-    result.picture = whole_picture({exchanged.picture.view(), {}}, request);
+    result.image = whole_image({exchanged.image.view(), {}}, request);
   });
   return result;
 }
@@ -208,7 +208,7 @@ TEST(OpaqueTiles, WhatIsBehindThemIsNeitherDrawnNorSent) {
   const Drawn all = drawn(texture, request);
   request.termination = 5e-6F;
   const Drawn usual = drawn(texture, request);
-  EXPECT_LE(largest_difference(usual.picture, all.picture), 1e-5);
+  EXPECT_LE(largest_difference(usual.image, all.image), 1e-5);
   ASSERT_EQ(usual.counts[1].samples, all.counts[1].samples);
   std::printf("the farther rank takes %llu of %llu samples, and %llu bytes travel instead of %llu\n",
               static_cast<unsigned long long>(usual.counts[1].samples_taken),

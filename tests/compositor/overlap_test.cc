@@ -1,4 +1,4 @@
-// Pictures that are composited while they are drawn.
+// Images that are composited while they are drawn.
 #include "compositor/node/overlap.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "tests/compositor/node_group.h"
 
 namespace understudy::compositor {
@@ -35,10 +35,10 @@ TEST(Bands, CoverARectangleFromTheBottomUp) {
   }
   EXPECT_EQ(bands_of({0, 0, 255, 255}).size(), 1U) << "too few pixels for more";
   EXPECT_EQ(bands_of({0, 0, 1024, 1024}).size(), 8U);
-  EXPECT_EQ(bands_of({}).size(), 1U) << "all ranks still agree on an empty picture";
+  EXPECT_EQ(bands_of({}).size(), 1U) << "all ranks still agree on an empty image";
 }
 
-TEST_F(NodeGroupTest, PicturesAreTheSameWhenTheyAreCompositedWhileTheyAreDrawn) {
+TEST_F(NodeGroupTest, ImagesAreTheSameWhenTheyAreCompositedWhileTheyAreDrawn) {
   const Texture texture = some_texture();
   std::vector<volume::RenderRequest> requests;
   for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min,
@@ -48,27 +48,27 @@ TEST_F(NodeGroupTest, PicturesAreTheSameWhenTheyAreCompositedWhileTheyAreDrawn) 
     requests.back().op = op;
   }
   requests.push_back(requests.front());
-  requests.back().leave_out.footprints = false;
+  requests.back().optimizations.footprints = false;
   requests.push_back(requests.front());
   requests.back().window = {100, 50, 480, 400};
   for (const int ranks : {2, 3, 5}) {
-    std::vector<Image> pictures;
+    std::vector<Image> images;
     std::vector<volume::FrameCounts> counts;
     for (const Overlap overlap : {Overlap::off, Overlap::on}) {
       const Group& group =
-          start(ranks, limits::stall_patience, {}, {Algorithm::direct_send, {}, Home::direct, overlap});
+          start(ranks, limits::stall_patience, {}, {Algorithm::direct_send, {}, Gather::direct, overlap});
       const auto linked = connect();
       upload(*linked, texture);
       for (std::size_t i = 0; i < requests.size(); ++i) {
         SCOPED_TRACE(::testing::Message() << ranks << " ranks, request " << i);
         const Rendered rendered = linked->render(requests[i]);
-        const Image picture = whole_picture(rendered, requests[i]);
+        const Image image = whole_image(rendered, requests[i]);
         if (overlap == Overlap::off) {
-          pictures.push_back(picture);
+          images.push_back(image);
           counts.push_back(rendered.counts);
           continue;
         }
-        EXPECT_EQ(picture.rgba, pictures[i].rgba);
+        EXPECT_EQ(image.rgba, images[i].rgba);
         EXPECT_EQ(rendered.counts.samples, counts[i].samples);
         EXPECT_EQ(rendered.counts.rays, counts[i].rays);
         EXPECT_EQ(rendered.counts.blocks, counts[i].blocks);
@@ -85,7 +85,7 @@ TEST_F(NodeGroupTest, PicturesAreTheSameWhenTheyAreCompositedWhileTheyAreDrawn) 
   }
 }
 
-TEST(Overlap, ARankThatCannotGoOnEndsThePictureOnAllRanksAfterTheSameBand) {
+TEST(Overlap, ARankThatCannotGoOnEndsTheImageOnAllRanksAfterTheSameBand) {
   constexpr Rect whole{0, 0, 512, 512};
   constexpr int ranks = 3;
   const std::size_t bands = bands_of(whole).size();
@@ -93,22 +93,22 @@ TEST(Overlap, ARankThatCannotGoOnEndsThePictureOnAllRanksAfterTheSameBand) {
   // Rank 1 fails in each of the bands, cannot begin, or draws all.
   for (std::size_t failing = 0; failing <= bands + 1; ++failing) {
     std::vector<float> memory(4 * whole.pixels(), -1);
-    run_ranks(ranks, [&](Link& link) {
-      Compositing compositing(link, {});
+    run_ranks(ranks, [&](Communicator& communicator) {
+      Compositing compositing(communicator, {});
       compositing.prepare();
-      const PictureTask task{1, volume::Operator::over, whole, Layout::rgba32f, true, {0, 1, 2}};
-      PictureMemories::Memory mine{memory.size(), {}, {true, false, false}};
-      if (link.rank() == 0) mine.here = memory;
-      const auto picture = [&](bool may_fail) {
+      const ImageTask task{1, volume::Operator::over, whole, Layout::rgba32f, true, {0, 1, 2}};
+      ImageBuffers::Memory mine{memory.size(), {}, {true, false, false}};
+      if (communicator.rank() == 0) mine.here = memory;
+      const auto image = [&](bool may_fail) {
         std::size_t drawn = 0;
         volume::FrameCounts travelled;
         const bool there = draw_and_composite(
-            link, compositing, task, mine, whole,
+            communicator, compositing, task, mine, whole,
             [&](const Rect& band) -> std::optional<Image> {
-              if (may_fail && link.rank() == 1 && drawn == failing) return std::nullopt;
+              if (may_fail && communicator.rank() == 1 && drawn == failing) return std::nullopt;
               ++drawn;
               Image image(band);
-              std::ranges::fill(image.rgba, 0.25F * float(link.rank() + 1));
+              std::ranges::fill(image.rgba, 0.25F * float(communicator.rank() + 1));
               return image;
             },
             travelled);
@@ -117,12 +117,12 @@ TEST(Overlap, ARankThatCannotGoOnEndsThePictureOnAllRanksAfterTheSameBand) {
         }
         return there;
       };
-      if (failing == bands + 1 && link.rank() == 1) {
-        refuse_to_draw(link);
+      if (failing == bands + 1 && communicator.rank() == 1) {
+        refuse_to_draw(communicator);
       } else {
-        EXPECT_EQ(picture(true), failing == bands);
+        EXPECT_EQ(image(true), failing == bands);
       }
-      EXPECT_TRUE(picture(false)) << "the next picture";
+      EXPECT_TRUE(image(false)) << "the next image";
     });
     // 1/4 over 1/2 over 3/4.
     constexpr float expected = 0.25F + 0.75F * (0.5F + 0.5F * 0.75F);

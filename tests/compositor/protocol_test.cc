@@ -11,7 +11,7 @@
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/load_protocol.h"
-#include "volume/raycast/pair_lookup.h"
+#include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {
@@ -28,7 +28,7 @@ VolumeDescription some_volume() {
   v.wrap = {Wrap::edge, Wrap::border, Wrap::repeat};
   v.border = {0.1F, 0.2F, 0.3F, 0.4F};
   v.stored = {{1, 2, 3}, {60, 33, 17}};
-  v.margin = 8;
+  v.ghost_layer = 8;
   return v;
 }
 
@@ -71,24 +71,27 @@ RenderRequest some_request(bool colours, bool depth) {
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.termination = 1e-5F;
   r.may_travel_as_halves = depth;
-  r.leave_out = {true, !colours, depth};
+  r.optimizations = {true, !colours, depth};
   if (depth) r.depth = DepthImage{{2, 7, 3, 1}, {0.5F, 0.25F, 1.0F}, true};
   return r;
 }
 
-RenderRequest some_request_for_slabs() {
+RenderRequest some_request_for_slice_segments() {
   RenderRequest r = some_request(true, false);
-  PairTable pairs{-0.5F, 2.5F, 3, {}, false};
+  PreIntegrationTable pairs{-0.5F, 2.5F, 3, {}, false};
   for (int i = 0; i < 9; ++i) pairs.entries.push_back({float(i), 0.5F, 0.25F, 0.125F});
   r.classification = pairs;
-  r.slab = Slab{1, {0.1, -0.2, 0.3}, {0.15, 0.25, 0.35}};
+  r.slice_segment = SliceSegment{1, {0.1, -0.2, 0.3}, {0.15, 0.25, 0.35}};
   return r;
 }
 
-/// Among the tables that the nodes keep, the one of some_request_for_slabs() is at this place, and no other is.
+/// Among the tables that the nodes keep, the one of some_request_for_slice_segments() is at this place, and no
+/// other is.
 constexpr int kept_place = 1;
-std::array<PairTable, 3> some_kept_tables() {
-  return {PairTable{}, std::get<PairTable>(some_request_for_slabs().classification), PairTable{}};
+std::array<PreIntegrationTable, 3> some_kept_tables() {
+  return {PreIntegrationTable{},
+          std::get<PreIntegrationTable>(some_request_for_slice_segments().classification),
+          PreIntegrationTable{}};
 }
 
 FrameCounts some_counts() {
@@ -120,11 +123,11 @@ std::vector<Kind> all_kinds() {
       {"texels", texels_message({4, {{{1, 2, 3}, {2, 4, 5}}, {{0, 0, 0}, {3, 3, 1}}}, texels}),
        [](auto b) { return texels_message(decode_texels(b)); }},
       {"request with a table", encode(some_request(false, false)), request},
-      {"request for slabs", encode(some_request_for_slabs()), request},
-      {"request for slabs by a kept table", encode(some_request_for_slabs(), kept_place),
+      {"request for segments", encode(some_request_for_slice_segments()), request},
+      {"request for segments by a kept table", encode(some_request_for_slice_segments(), kept_place),
        [](auto b) { return encode(decode_request(b, some_kept_tables()), kept_place); }},
-      {"table of pairs", encode(KeptPairTable{kept_place, some_kept_tables()[kept_place]}),
-       [](auto b) { return encode(decode_pair_table(b)); }},
+      {"pre-integration table", encode(KeptPreIntegrationTable{kept_place, some_kept_tables()[kept_place]}),
+       [](auto b) { return encode(decode_pre_integration_table(b)); }},
       {"request with a map and depth", encode(some_request(true, true)), request},
       {"rendered", encode(RenderedReply{{1, 2, 3, 4}, some_counts()}),
        [](auto b) { return encode(decode_rendered(b)); }},
@@ -204,21 +207,21 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
             some_request(true, false).classification);
 }
 
-TEST(Protocol, SlabsArrive) {
-  const RenderRequest sent = some_request_for_slabs(), got = decode_request(encode(sent));
+TEST(Protocol, SliceRangesArrive) {
+  const RenderRequest sent = some_request_for_slice_segments(), got = decode_request(encode(sent));
   EXPECT_EQ(got.classification, sent.classification);
-  ASSERT_TRUE(got.slab.has_value());
-  EXPECT_EQ(got.slab->planes, sent.slab->planes);
-  EXPECT_EQ(got.slab->offset, sent.slab->offset);
-  EXPECT_EQ(got.slab->reach, sent.slab->reach);
+  ASSERT_TRUE(got.slice_segment.has_value());
+  EXPECT_EQ(got.slice_segment->planes, sent.slice_segment->planes);
+  EXPECT_EQ(got.slice_segment->offset, sent.slice_segment->offset);
+  EXPECT_EQ(got.slice_segment->reach, sent.slice_segment->reach);
 }
 
 TEST(Protocol, AKeptTableIsNamedAndNotSent) {
-  RenderRequest sent = some_request_for_slabs();
-  PairTable& pairs = std::get<PairTable>(sent.classification);
+  RenderRequest sent = some_request_for_slice_segments();
+  PreIntegrationTable& pairs = std::get<PreIntegrationTable>(sent.classification);
   pairs.edge = 256;
   pairs.entries.resize(std::size_t(256) * 256, Rgba{0.5F, 0.25F, 0.125F, 1});
-  const KeptPairTable kept = decode_pair_table(encode(KeptPairTable{3, pairs}));
+  const KeptPreIntegrationTable kept = decode_pre_integration_table(encode(KeptPreIntegrationTable{3, pairs}));
   EXPECT_EQ(kept.place, 3);
   EXPECT_EQ(kept.table, pairs);
 
@@ -226,16 +229,19 @@ TEST(Protocol, AKeptTableIsNamedAndNotSent) {
   std::printf("%zu bytes with the table, %zu with its place\n", whole.size(), named.size());
   EXPECT_GT(whole.size(), sizeof(Rgba) * pairs.entries.size());
   EXPECT_LT(named.size(), 1000U);
-  std::array<PairTable, 4> tables{PairTable{}, PairTable{}, PairTable{}, pairs};
+  std::array<PreIntegrationTable, 4> tables{PreIntegrationTable{}, PreIntegrationTable{}, PreIntegrationTable{},
+                                            pairs};
   EXPECT_EQ(encode(decode_request(named, tables)), whole);
 
   EXPECT_THROW(decode_request(named), MalformedMessage) << "none is kept";
   EXPECT_THROW(decode_request(encode(sent, 2), tables), MalformedMessage) << "none is kept at this place";
   EXPECT_THROW(decode_request(encode(sent, 4), tables), MalformedMessage) << "there is no such place";
   EXPECT_THROW(decode_request(encode(sent, -1), tables), MalformedMessage);
-  EXPECT_THROW(decode_pair_table(encode(KeptPairTable{limits::max_kept_pair_tables, pairs})), MalformedMessage);
+  EXPECT_THROW(decode_pre_integration_table(
+                   encode(KeptPreIntegrationTable{limits::max_kept_pre_integration_tables, pairs})),
+               MalformedMessage);
   pairs.entries.pop_back();
-  EXPECT_THROW(decode_pair_table(encode(KeptPairTable{0, pairs})), MalformedMessage);
+  EXPECT_THROW(decode_pre_integration_table(encode(KeptPreIntegrationTable{0, pairs})), MalformedMessage);
 }
 
 TEST(Protocol, AMessageCutAnywhereIsRefusedWithFieldAndOffset) {
@@ -345,11 +351,11 @@ TEST(Protocol, LimitsAreKept) {
   r = some_request(false, false);
   r.method = Method(3);
   refused(r);
-  r = some_request_for_slabs();
-  std::get<PairTable>(r.classification).entries.pop_back();
+  r = some_request_for_slice_segments();
+  std::get<PreIntegrationTable>(r.classification).entries.pop_back();
   refused(r);
-  r = some_request_for_slabs();
-  std::get<PairTable>(r.classification).edge = max_pair_edge + 1;
+  r = some_request_for_slice_segments();
+  std::get<PreIntegrationTable>(r.classification).edge = max_pre_integration_edge + 1;
   refused(r);
 
   VolumeDescription v = some_volume();

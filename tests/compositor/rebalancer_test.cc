@@ -1,4 +1,4 @@
-// Node groups whose blocks travel while pictures are drawn: the pictures stay the same.
+// Node groups whose blocks travel while images are drawn: the images stay the same.
 #include "compositor/node/rebalancer.h"
 
 #include <gmock/gmock.h>
@@ -11,9 +11,9 @@
 #include "compositor/balance/tree.h"
 #include "compositor/exchange/exchange.h"
 #include "compositor/exchange/schedule.h"
-#include "compositor/exchange/thread_link.h"
+#include "compositor/exchange/thread_communicator.h"
 #include "compositor/node/node.h"
-#include "compositor/service/linked.h"
+#include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/texel_box.h"
 #include "volume/partition.h"
@@ -30,11 +30,11 @@ Texture scene(TexelType type = TexelType::u8, volume::Wrap wrap = volume::Wrap::
   return volume::testing::sampled(description, volume::testing::marschner_lobb_field());
 }
 
-/// A picture of its own for each number: the camera turns.
-volume::RenderRequest request_of(const Texture& texture, int picture) {
+/// An image of its own for each number: the camera turns.
+volume::RenderRequest request_of(const Texture& texture, int drawn) {
   using namespace volume::testing;
   using volume::multiply;
-  const double angle = 0.05 * picture;
+  const double angle = 0.05 * drawn;
   const volume::Matrix4 camera = multiply(
       perspective(45, 4.0 / 3, 0.1, 20),
       multiply(look_at({2 * std::sin(angle), 0.6, 2 * std::cos(angle)}, {0, 0, 0}, {0, 1, 0}), unit_cube()));
@@ -50,12 +50,14 @@ std::vector<std::byte> texels_of(const Texture& texture, const volume::TexelBox&
   return part;
 }
 
-/// One rank, without sockets. Its time is not measured: it is its samples times its slowness, so that all that
-/// happens is the same in every run.
+/// One rank, without sockets. Its time is not measured: it is its samples times its relative cost, so that all
+/// that happens is the same in every run.
 class Rank {
  public:
-  Rank(Link& link, const BalanceSettings& settings)
-      : link_(link), renderer_(link.rank(), link.size()), rebalancer_(link, renderer_, settings) {}
+  Rank(Communicator& communicator, const BalanceSettings& settings)
+      : communicator_(communicator),
+        renderer_(communicator.rank(), communicator.size()),
+        rebalancer_(communicator, renderer_, settings) {}
 
   void upload(const Texture& texture) {
     const volume::VolumeDescription& d = texture.description;
@@ -73,40 +75,40 @@ class Rank {
     renderer_.end({0, d.id});
   }
 
-  volume::Image picture(const volume::RenderRequest& asked, double slowness) {
-    const volume::RenderRequest request = rebalancer_.before_picture(0, [&] { return asked; });
+  volume::Image image(const volume::RenderRequest& asked, double relative_cost) {
+    const volume::RenderRequest request = rebalancer_.before_image(0, [&] { return asked; });
     volume::FrameCounts counts;
     volume::Image image = renderer_.render(0, request, counts);
     struct Told {
       volume::Rect footprint;
       RankWork work;
-    } mine{image.rect, {double(counts.samples_taken) * slowness, counts.samples_taken}};
-    std::vector<Told> all(std::size_t(link_.size()));
-    link_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(all)));
+    } mine{image.rect, {double(counts.samples_taken) * relative_cost, counts.samples_taken}};
+    std::vector<Told> all(std::size_t(communicator_.size()));
+    communicator_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(all)));
     std::vector<volume::Rect> footprints;
     std::vector<RankWork> work;
     for (const Told& told : all) {
       footprints.push_back(told.footprint);
       work.push_back(told.work);
     }
-    rebalancer_.after_picture({0, request.volume}, work);
+    rebalancer_.after_image({0, request.volume}, work);
     partition = renderer_.partition(0, request);
     const Schedule chosen =
         schedule(Algorithm::direct_send, renderer_.visibility_order(0, request), footprints);
-    Exchanged whole = exchange(std::move(image), chosen, request.op, Layout::rgba32f, link_);
-    volume::Image picture(request.window);
-    for (int y = whole.picture.rect.y; y < whole.picture.rect.y + whole.picture.rect.height; ++y)
-      for (int x = whole.picture.rect.x; x < whole.picture.rect.x + whole.picture.rect.width; ++x)
-        std::copy_n(whole.picture.at(x, y), 4, picture.at(x, y));
-    return picture;
+    Exchanged whole = exchange(std::move(image), chosen, request.op, Layout::rgba32f, communicator_);
+    volume::Image drawn(request.window);
+    for (int y = whole.image.rect.y; y < whole.image.rect.y + whole.image.rect.height; ++y)
+      for (int x = whole.image.rect.x; x < whole.image.rect.x + whole.image.rect.width; ++x)
+        std::copy_n(whole.image.at(x, y), 4, drawn.at(x, y));
+    return drawn;
   }
 
-  volume::Partition partition;  ///< that drew the last picture
+  volume::Partition partition;  ///< that drew the last image
 
  private:
   void give(const Texture& texture, const std::vector<volume::TexelBox>& boxes) {
     const VolumeKey key{0, texture.description.id};
-    const auto shares = renderer_.shares(key, boxes, link_.rank());
+    const auto shares = renderer_.shares(key, boxes, communicator_.rank());
     std::vector<std::byte> bytes;
     for (const volume::TexelBox& share : shares) {
       const auto part = texels_of(texture, share);
@@ -115,7 +117,7 @@ class Rank {
     renderer_.add_texels(key, shares, bytes);
   }
 
-  Link& link_;
+  Communicator& communicator_;
   RankRenderer renderer_;
   Rebalancer rebalancer_;
 };
@@ -136,14 +138,13 @@ struct Figures {
   }
 };
 
-double picture_by_one(const Texture& texture, const volume::RenderRequest& request,
-                      const volume::Image& picture) {
+double image_by_one(const Texture& texture, const volume::RenderRequest& request, const volume::Image& drawn) {
   const auto service = embedded_service();
   upload(*service, texture);
-  return largest_difference(picture_of(*service, request), picture);
+  return largest_difference(image_of(*service, request), drawn);
 }
 
-TEST(Rebalancer, PicturesStayTheSameWhileBlocksTravelAndTexelsChange) {
+TEST(Rebalancer, ImagesStayTheSameWhileBlocksTravelAndTexelsChange) {
   const unsigned seed = 2701;
   std::printf("seed %u\n", seed);
   for (const Balance balance : {Balance::muller, Balance::predicted})
@@ -152,15 +153,15 @@ TEST(Rebalancer, PicturesStayTheSameWhileBlocksTravelAndTexelsChange) {
       double worst = 0;
       const TexelType type = ranks % 3 == 0 ? TexelType::f32 : TexelType::u8;
       const volume::Wrap wrap = ranks % 4 == 0 ? volume::Wrap::repeat : volume::Wrap::edge;
-      run_ranks(ranks, [&](Link& link) {
+      run_ranks(ranks, [&](Communicator& communicator) {
         std::mt19937 random(seed);  // all ranks make the same scene
         Texture texture = scene(type, wrap);
-        Rank rank(link, figures.settings(balance));
+        Rank rank(communicator, figures.settings(balance));
         rank.upload(texture);
-        for (int picture = 0; picture < 40; ++picture) {
+        for (int drawn = 0; drawn < 40; ++drawn) {
           // The slow rank changes, so that blocks go there and back.
-          const double slowness = link.rank() == (picture < 20 ? 0 : ranks - 1) ? 4 : 1;
-          if (picture % 6 == 5) {
+          const double relative_cost = communicator.rank() == (drawn < 20 ? 0 : ranks - 1) ? 4 : 1;
+          if (drawn % 6 == 5) {
             ++texture.description.version;
             volume::TexelBox box = texture.description.stored;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -173,9 +174,9 @@ TEST(Rebalancer, PicturesStayTheSameWhileBlocksTravelAndTexelsChange) {
                                 texture.texels);
             rank.change(texture, {box});
           }
-          const volume::RenderRequest request = request_of(texture, picture);
-          const volume::Image image = rank.picture(request, slowness);
-          if (link.rank() == 0) worst = std::max(worst, picture_by_one(texture, request, image));
+          const volume::RenderRequest request = request_of(texture, drawn);
+          const volume::Image image = rank.image(request, relative_cost);
+          if (communicator.rank() == 0) worst = std::max(worst, image_by_one(texture, request, image));
         }
       });
       std::printf("%s, %d ranks: %d moves, %zu blocks travelled, %zu came from caches, at most %.2g apart\n",
@@ -189,15 +190,15 @@ TEST(Rebalancer, PicturesStayTheSameWhileBlocksTravelAndTexelsChange) {
 
 TEST(Rebalancer, AllRanksCutAlikeAndBlocksComeBackFromCaches) {
   Figures figures;
-  constexpr int ranks = 4, pictures = 60;
+  constexpr int ranks = 4, images = 60;
   std::vector<std::vector<volume::Partition>> cuts(ranks);
-  run_ranks(ranks, [&](Link& link) {
+  run_ranks(ranks, [&](Communicator& communicator) {
     const Texture texture = scene();
-    Rank rank(link, figures.settings(Balance::predicted));
+    Rank rank(communicator, figures.settings(Balance::predicted));
     rank.upload(texture);
-    for (int picture = 0; picture < pictures; ++picture) {
-      rank.picture(request_of(texture, 0), link.rank() == picture / 15 % 2 ? 4 : 1);
-      cuts[std::size_t(link.rank())].push_back(rank.partition);
+    for (int drawn = 0; drawn < images; ++drawn) {
+      rank.image(request_of(texture, 0), communicator.rank() == drawn / 15 % 2 ? 4 : 1);
+      cuts[std::size_t(communicator.rank())].push_back(rank.partition);
     }
   });
   for (const auto& of_rank : cuts) EXPECT_EQ(of_rank, cuts[0]);
@@ -208,21 +209,21 @@ TEST(Rebalancer, AllRanksCutAlikeAndBlocksComeBackFromCaches) {
 
 TEST(Rebalancer, ARefusedRequestMovesNothingAndLeavesTheGroupAlive) {
   Figures figures;
-  run_ranks(3, [&](Link& link) {
+  run_ranks(3, [&](Communicator& communicator) {
     const Texture texture = scene();
-    Rank rank(link, figures.settings(Balance::predicted));
+    Rank rank(communicator, figures.settings(Balance::predicted));
     rank.upload(texture);
     volume::RenderRequest wrong = request_of(texture, 0);
     wrong.version = 99;
-    EXPECT_THROW(rank.picture(wrong, 1), RequestRefused);
+    EXPECT_THROW(rank.image(wrong, 1), RequestRefused);
     wrong = request_of(texture, 0);
     wrong.texture_to_clip = {};
-    EXPECT_THROW(rank.picture(wrong, 1), RequestRefused);
+    EXPECT_THROW(rank.image(wrong, 1), RequestRefused);
     EXPECT_EQ(figures.moves, 0);
     const volume::RenderRequest request = request_of(texture, 0);
-    const volume::Image image = rank.picture(request, 1);
-    if (link.rank() == 0) {
-      EXPECT_LE(picture_by_one(texture, request, image), 1e-5);
+    const volume::Image image = rank.image(request, 1);
+    if (communicator.rank() == 0) {
+      EXPECT_LE(image_by_one(texture, request, image), 1e-5);
     }
   });
 }
@@ -231,15 +232,15 @@ TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
   const auto most_held = [](std::size_t memory_left) {
     Figures figures;
     std::size_t most = 0;
-    run_ranks(2, [&](Link& link) {
+    run_ranks(2, [&](Communicator& communicator) {
       const Texture texture = scene();
       BalanceSettings settings = figures.settings(Balance::predicted);
       settings.memory_left = [=] { return memory_left; };
-      Rank rank(link, settings);
+      Rank rank(communicator, settings);
       rank.upload(texture);
-      for (int picture = 0; picture < 20; ++picture) {
-        rank.picture(request_of(texture, 0), link.rank() == 0 ? 30 : 1);
-        if (link.rank() != 0) continue;
+      for (int drawn = 0; drawn < 20; ++drawn) {
+        rank.image(request_of(texture, 0), communicator.rank() == 0 ? 30 : 1);
+        if (communicator.rank() != 0) continue;
         for (const volume::TexelBox& box : volume::boxes(rank.partition, texture.description))
           most = std::max(most, blocks_in(box));
       }
@@ -249,7 +250,7 @@ TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
   const std::size_t bound = most_held(0), free = most_held(std::size_t(1) << 30);
   std::printf("the busiest rank holds %zu blocks, and %zu where memory is left\n", bound, free);
   EXPECT_LT(bound, free);
-  // Without memory left a rank holds what it held, its margin counted.
+  // Without memory left a rank holds what it held, its ghost layer counted.
   const Texture texture = scene();
   std::size_t even = 0;
   for (const volume::TexelBox& box :
@@ -258,7 +259,7 @@ TEST(Rebalancer, GivesNoRankMoreBlocksThanItHasMemoryFor) {
   EXPECT_LE(bound, even + even / 8);
 }
 
-/// Draws every picture so many times.
+/// Draws every image so many times.
 class Laborious : public volume::BrickRenderer {
  public:
   Laborious(const volume::BrickStore& store, int times)
@@ -279,7 +280,7 @@ class Laborious : public volume::BrickRenderer {
   int times_;
 };
 
-TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSamePictures) {
+TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
   for (const Balance balance : {Balance::muller, Balance::predicted}) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
@@ -287,24 +288,24 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSamePictures) {
     std::jthread group;  // ends once the launcher has
     Launcher launcher(path);
     group = std::jthread([&] {
-      run_ranks(4, [&](Link& link) {
-        const int times = link.rank() == 1 ? 16 : 1;
+      run_ranks(4, [&](Communicator& communicator) {
+        const int times = communicator.rank() == 1 ? 16 : 1;
         run_node(
-            link, path, limits::stall_patience, {},
+            communicator, path, limits::stall_patience, {},
             [times](const volume::BrickStore& store) { return std::make_unique<Laborious>(store, times); },
             figures.settings(balance));
       });
     });
     ASSERT_TRUE(launcher.wait_for_group());
-    const auto linked = linked_service(path, 20'000), embedded = embedded_service();
+    const auto linked = remote_render_service(path, 20'000), embedded = embedded_service();
     const Texture texture = scene();
     upload(*linked, texture);
     upload(*embedded, texture);
     double worst = 0;
     // Times are real here; sooner or later they tell.
-    for (int picture = 0; picture < 20 || (figures.moves == 0 && picture < 1000); ++picture) {
-      const volume::RenderRequest request = request_of(texture, picture % 40);
-      worst = std::max(worst, largest_difference(picture_of(*linked, request), picture_of(*embedded, request)));
+    for (int drawn = 0; drawn < 20 || (figures.moves == 0 && drawn < 1000); ++drawn) {
+      const volume::RenderRequest request = request_of(texture, drawn % 40);
+      worst = std::max(worst, largest_difference(image_of(*linked, request), image_of(*embedded, request)));
     }
     std::printf("%d moves, at most %.2g apart\n", figures.moves.load(), worst);
     EXPECT_LE(worst, 1e-5);
@@ -314,7 +315,7 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSamePictures) {
     upload(*linked, again);
     upload(*embedded, again);
     const volume::RenderRequest request = request_of(again, 3);
-    EXPECT_LE(largest_difference(picture_of(*linked, request), picture_of(*embedded, request)), 1e-5);
+    EXPECT_LE(largest_difference(image_of(*linked, request), image_of(*embedded, request)), 1e-5);
   }
 }
 

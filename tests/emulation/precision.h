@@ -1,4 +1,4 @@
-// How exactly Understudy and the driver beneath it calculate. The bounds of all tests that judge pictures come
+// How exactly Understudy and the driver beneath it calculate. The bounds of all tests that judge images come
 // from here, and each number from the arithmetic that it names.
 #pragma once
 
@@ -57,7 +57,7 @@ constexpr Rounding floating(int mantissa_bits) {
   return {.relative = 3 * float_step + stored, .clamps = false};
 }
 
-/// A volume's picture as a whole is blended by ONE and one other factor: there is one product, not two.
+/// A volume's image as a whole is blended by ONE and one other factor: there is one product, not two.
 constexpr Rounding presented(Rounding rounding) {
   rounding.result /= 2;
   rounding.alpha_result /= 2;

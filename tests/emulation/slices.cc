@@ -369,9 +369,9 @@ Fragment solid_colour(const Frame& frame, const Surface* surface) {
 /// Calls `pixel_before(rays, surface)` for every surface that may be seen at each pixel; what it answers is
 /// united.
 template <typename PixelBefore>
-Picture for_each_pixel(const Frame& frame, const std::vector<const Volume*>& volumes,
-                       const Precision& precision, PixelBefore pixel_before) {
-  Picture picture{frame.width, frame.height, {}};
+Image for_each_pixel(const Frame& frame, const std::vector<const Volume*>& volumes, const Precision& precision,
+                     PixelBefore pixel_before) {
+  Image image{frame.width, frame.height, {}};
   const auto surfaces = rasterised(frame, precision);
   std::vector<Matrix> texture_from_clip;
   texture_from_clip.reserve(volumes.size());
@@ -388,9 +388,9 @@ Picture for_each_pixel(const Frame& frame, const std::vector<const Volume*>& vol
         for (int c = 0; c < 4; ++c) united[c] = first ? pixel[c] : either(united[c], pixel[c]);
         first = false;
       }
-      picture.pixels.push_back(united);
+      image.pixels.push_back(united);
     }
-  return picture;
+  return image;
 }
 
 }  // namespace
@@ -456,8 +456,8 @@ Source alone(const PixelRay& ray, const Surface* surface, const Blending& own, c
 
 }  // namespace
 
-Picture draw(const Frame& frame, const Precision& precision, const Rounding& each_slice,
-             const Rounding& each_volume) {
+Image draw(const Frame& frame, const Precision& precision, const Rounding& each_slice,
+           const Rounding& each_volume) {
   std::vector<const Volume*> volumes;
   for (const Volume& volume : frame.volumes) volumes.push_back(&volume);
   const bool weighted = frame.blending.colour.source == Factor::source_alpha;
@@ -492,27 +492,27 @@ Picture draw(const Frame& frame, const Precision& precision, const Rounding& eac
   return for_each_pixel(frame, volumes, precision, pixel_before);
 }
 
-Picture draw_alone(const Frame& frame, const Volume& volume, const Precision& precision) {
+Image draw_alone(const Frame& frame, const Volume& volume, const Precision& precision) {
   return for_each_pixel(frame, {&volume}, precision,
                         [&](const std::vector<PixelRay>& rays, const Surface* surface) {
                           return alone(rays[0], surface, frame.blending, precision);
                         });
 }
 
-std::vector<double> meant(const Picture& picture, int channels) {
+std::vector<double> meant(const Image& image, int channels) {
   std::vector<double> values;
-  for (const auto& pixel : picture.pixels)
+  for (const auto& pixel : image.pixels)
     for (int c = 0; c < channels; ++c) values.push_back(pixel[c].meant);
   return values;
 }
 
-Verdict judge(const Picture& picture, const std::vector<double>& drawn, int channels, double slack) {
-  if (drawn.size() != picture.pixels.size() * channels)
-    throw std::invalid_argument("the picture to be judged has another size than the one that was meant");
+Verdict judge(const Image& image, const std::vector<double>& drawn, int channels, double slack) {
+  if (drawn.size() != image.pixels.size() * channels)
+    throw std::invalid_argument("the image to be judged has another size than the one that was meant");
   Verdict verdict;
   std::size_t counted = 0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const Bounded& bound = picture.pixels[i / channels][i % channels];
+    const Bounded& bound = image.pixels[i / channels][i % channels];
     const double beyond = std::max(bound.low - drawn[i], drawn[i] - bound.high);
     verdict.beyond = std::max(verdict.beyond, beyond);
     if (beyond > slack) ++verdict.outside;

@@ -2,7 +2,7 @@
 // without anything of ours: trilinear samples clamped to the edge, a table, a blend function, solid triangles
 // that hide by their depth.
 //
-// Beside the picture that is meant, its bounds: `Precision` says how exactly the one who is judged takes its
+// Beside the image that is meant, its bounds: `Precision` says how exactly the one who is judged takes its
 // samples, `Rounding` how it blends, and the interval of every channel follows from them. No bound of a test
 // needs a number that was read off a result.
 #pragma once
@@ -106,7 +106,7 @@ struct Rounding {
   bool clamps = true;   ///< normalised formats
 };
 
-struct Picture {
+struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::array<Bounded, 4>> pixels;  ///< rows top down
@@ -114,18 +114,18 @@ struct Picture {
 
 /// Every slice is blended with `each_slice`; what came of all slices of one volume is stored once more with
 /// `each_volume`: the two are the viewer's own way and ours.
-Picture draw(const Frame& frame, const Precision& precision, const Rounding& each_slice,
-             const Rounding& each_volume);
+Image draw(const Frame& frame, const Precision& precision, const Rounding& each_slice,
+           const Rounding& each_volume);
 
 /// What the slices of one volume make of nothing: colour and coverage of over and under, premultiplied; sums;
 /// the greatest or the least values. Pixels without a sample are 0, or `no_sample` under a minimum.
 constexpr double no_sample = 3.4028234663852886e38;
-Picture draw_alone(const Frame& frame, const Volume& volume, const Precision& precision);
+Image draw_alone(const Frame& frame, const Volume& volume, const Precision& precision);
 
 /// So many channels of each pixel, in exact arithmetic.
-std::vector<double> meant(const Picture& picture, int channels);
+std::vector<double> meant(const Image& image, int channels);
 
-/// How a picture lies to its bounds; channels in the order of Picture, so many of each pixel as `channels`.
+/// How an image lies to its bounds; channels in the order of Image, so many of each pixel as `channels`.
 struct Verdict {
   double rms = 0;     ///< to what is meant
   double max = 0;     ///< to what is meant
@@ -133,6 +133,6 @@ struct Verdict {
   double width = 0;   ///< RMS of the bounds' distance to what is meant: what could go unnoticed
   int outside = 0;    ///< channels beyond their bounds by more than `slack`
 };
-Verdict judge(const Picture& picture, const std::vector<double>& drawn, int channels, double slack = 0);
+Verdict judge(const Image& image, const std::vector<double>& drawn, int channels, double slack = 0);
 
 }  // namespace emulation

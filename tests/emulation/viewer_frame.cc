@@ -138,9 +138,9 @@ Frame viewer_frame(const Json& description) {
 
 std::vector<double> emulate(const Json& description) {
   const Rounding none{.clamps = false};
-  std::vector<double> picture = meant(draw(viewer_frame(description), {}, none, none), 3);
-  for (double& channel : picture) channel *= 255;
-  return picture;
+  std::vector<double> image = meant(draw(viewer_frame(description), {}, none, none), 3);
+  for (double& channel : image) channel *= 255;
+  return image;
 }
 
 }  // namespace emulation

@@ -12,7 +12,7 @@ namespace emulation {
 /// Without the box's frame and the axes: they are not described.
 Frame viewer_frame(const nlohmann::json& description);
 
-/// Its picture in exact arithmetic: RGB, channel values 0 to 255 before rounding, top row first.
+/// Its image in exact arithmetic: RGB, channel values 0 to 255 before rounding, top row first.
 std::vector<double> emulate(const nlohmann::json& description);
 
 }  // namespace emulation

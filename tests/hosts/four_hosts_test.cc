@@ -1,4 +1,4 @@
-// Render nodes on four hosts behind a viewer on the first: the picture of one machine, over a network, and what
+// Render nodes on four hosts behind a viewer on the first: the image of one machine, over a network, and what
 // becomes of it when a host is cut off or a rank stands still.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "apps/understudy/compare.h"
-#include "apps/understudy/picture.h"
-#include "tests/clients/stage.h"
+#include "apps/understudy/image.h"
+#include "tests/clients/command_test.h"
 #include "tests/hosts/own_namespaces.h"
 
 namespace hosts {
@@ -35,7 +35,7 @@ using clients::operator+;
 
 constexpr int all_hosts = 4;
 constexpr int microseconds_on_the_way = 200;
-/// Frames of a full turn, after which pictures come again.
+/// Frames of a full turn, after which images come again.
 constexpr int turn = 12;
 
 const Words turning = {"--orbit", "30"};
@@ -92,7 +92,7 @@ std::set<std::string> names_in(const fs::path& folder, const std::string& beginn
   return names;
 }
 
-class FourHosts : public clients::Stage {
+class FourHosts : public clients::GlServer {
  protected:
   void SetUp() override {
     if (const std::string& obstacle = Network::shared()->obstacle(); !obstacle.empty())
@@ -107,8 +107,8 @@ class FourHosts : public clients::Stage {
 
   /// A viewer on the first host, with nodes on all of them.
   clients::Command on_four_hosts(const Words& options, const Words& viewer) const {
-    return on_stage(on_host(1, clients::under(Words{"--hostfile", file("hosts")} + options) + viewer),
-                    {{"OMPI_MCA_plm_rsh_agent", HOSTS_FOLDER "/launch_agent.sh"}});
+    return on_gl_server(on_host(1, clients::under(Words{"--hostfile", file("hosts")} + options) + viewer),
+                        {{"OMPI_MCA_plm_rsh_agent", HOSTS_FOLDER "/launch_agent.sh"}});
   }
 
   std::uint64_t bytes_sent_by(int number) const {
@@ -178,7 +178,7 @@ std::string who_drew(const nlohmann::json& report) {
   return text;
 }
 
-TEST_F(FourHosts, GiveThePictureOfOneMachineOverTheNetwork) {
+TEST_F(FourHosts, GiveTheImageOfOneMachineOverTheNetwork) {
   const Words viewer = clients::engine_viewer("table", Words{"--frames", "4"} + turning);
   run_well(clients::under({"-n", "4", "--save-frames", file("one")}) + viewer);
 
@@ -196,8 +196,8 @@ TEST_F(FourHosts, GiveThePictureOfOneMachineOverTheNetwork) {
   for (int number = 0; number < 4; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
     largest = std::max(largest,
-                       understudy::launcher::difference(understudy::launcher::read_picture(file("one") / name),
-                                                        understudy::launcher::read_picture(file("four") / name))
+                       understudy::launcher::difference(understudy::launcher::read_image(file("one") / name),
+                                                        understudy::launcher::read_image(file("four") / name))
                            .max);
   }
   const nlohmann::json report = json("report.json");
@@ -205,7 +205,7 @@ TEST_F(FourHosts, GiveThePictureOfOneMachineOverTheNetwork) {
   // Three of four ranks are elsewhere, and so are about as many of the engine's texels.
   const std::uint64_t texels = fs::file_size(clients::engine_file()) / 2;
   fmt::print(
-      "4 ranks on 4 hosts: at most {:.2g} from 4 on one; {} bytes sent, of them {} between parts of pictures\n",
+      "4 ranks on 4 hosts: at most {:.2g} from 4 on one; {} bytes sent, of them {} between parts of images\n",
       largest, sent, exchanged);
   EXPECT_LE(largest, 1e-5);
   EXPECT_EQ(report.at("nodes"), 4);

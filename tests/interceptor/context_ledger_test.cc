@@ -45,7 +45,7 @@ TEST(ContextLedger, NamesAKnownContextOfTheGroupAsShare) {
   EXPECT_EQ(next_gone(), 0u) << "the second was never known, so nobody is told";
 }
 
-TEST(ContextLedger, KeepsAGroupAliveUntilTheBodyHasMetAnotherMember) {
+TEST(ContextLedger, KeepsAGroupAliveUntilTheCoreHasMetAnotherMember) {
   note_created(glx(1), 0, true);
   note_created(glx(2), 1, true);
   const KnownContext first = note_current(glx(1), true);

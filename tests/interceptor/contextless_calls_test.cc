@@ -1,4 +1,4 @@
-// A process that never has a context opens no body, and is in the launcher's report all the same.
+// A process that never has a context opens no core, and is in the launcher's report all the same.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -27,7 +27,7 @@ class ContextlessCalls : public testing::Test {
   ~ContextlessCalls() override { fs::remove_all(folder_); }
 
   void play(const std::string& scene) const {
-    run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/door", "UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER,
+    run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/entry", "UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER,
                  "UNDERSTUDY_RUN_DIR=" + folder_.string()},
                 {TEST_CLIENTS "/glx_client", scene});
   }
@@ -59,9 +59,9 @@ TEST_F(ContextlessCalls, AreLeftForTheLauncher) {
   EXPECT_EQ(counters->frames, 0U);
 }
 
-TEST_F(ContextlessCalls, AreTheBodysAffairWhenThereIsOne) {
+TEST_F(ContextlessCalls, AreTheCoreAffairWhenThereIsOne) {
   play("one_frame");
-  EXPECT_TRUE(left().empty()) << "the test's body keeps no counters";
+  EXPECT_TRUE(left().empty()) << "the test's core keeps no counters";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The door against the libraries that are installed here: what they export, it must export.
+// The entry library against the libraries that are installed here: what they export, it must export.
 #include <dlfcn.h>
 #include <elf.h>
 #include <gmock/gmock.h>
@@ -39,15 +39,15 @@ std::set<std::string> exported_functions(const std::string& path) {
   return names;
 }
 
-const std::set<std::string>& door_functions() {
-  static const std::set<std::string> names = exported_functions(UNDERSTUDY_DOOR_LIBRARY);
+const std::set<std::string>& entry_functions() {
+  static const std::set<std::string> names = exported_functions(UNDERSTUDY_ENTRY_LIBRARY);
   return names;
 }
 
 TEST(EntryPoints, CoverTheWholeRegistry) {
   for (std::size_t number = 0; number < understudy::spu::call_count; ++number) {
     const char* name = understudy::spu::call_name(static_cast<understudy::spu::CallId>(number));
-    EXPECT_TRUE(door_functions().contains(name)) << name;
+    EXPECT_TRUE(entry_functions().contains(name)) << name;
   }
 }
 
@@ -57,7 +57,7 @@ TEST(EntryPoints, CoverWhatTheLibrariesHereExport) {
     ASSERT_FALSE(real.empty()) << library;
     std::set<std::string> missing;
     for (const std::string& name : real) {
-      if (!door_functions().contains(name)) missing.insert(name);
+      if (!entry_functions().contains(name)) missing.insert(name);
     }
 #if !defined(__x86_64__)
     if (library == std::string(REAL_GL)) {  // interceptor/outside_registry.cc
@@ -70,8 +70,8 @@ TEST(EntryPoints, CoverWhatTheLibrariesHereExport) {
   }
 }
 
-TEST(EntryPoints, TheDoorNeedsNoOpenGlNoXAndNoCxxLibrary) {
-  const auto outcome = run_program({}, {"readelf", "-d", UNDERSTUDY_DOOR_LIBRARY});
+TEST(EntryPoints, TheEntryLibraryNeedsNoOpenGlNoXAndNoCxxLibrary) {
+  const auto outcome = run_program({}, {"readelf", "-d", UNDERSTUDY_ENTRY_LIBRARY});
   ASSERT_TRUE(outcome.says("NEEDED")) << outcome.text;
   for (const std::string& line : outcome.lines()) {
     if (line.find("NEEDED") == std::string::npos) continue;
@@ -83,10 +83,10 @@ TEST(EntryPoints, TheDoorNeedsNoOpenGlNoXAndNoCxxLibrary) {
 // Real libGL.so.1 reads this table by position.
 TEST(EntryPoints, GlvndsTableHasGlvndsOrder) {
   void* glvnd = dlopen(REAL_GLX, RTLD_NOW | RTLD_LOCAL);
-  void* door = dlopen(UNDERSTUDY_DOOR_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-  ASSERT_TRUE(glvnd && door) << dlerror();
+  void* entry = dlopen(UNDERSTUDY_ENTRY_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+  ASSERT_TRUE(glvnd && entry) << dlerror();
   auto* theirs = static_cast<void**>(dlsym(glvnd, "__GLXGL_CORE_FUNCTIONS"));
-  auto* ours = static_cast<void**>(dlsym(door, "__GLXGL_CORE_FUNCTIONS"));
+  auto* ours = static_cast<void**>(dlsym(entry, "__GLXGL_CORE_FUNCTIONS"));
   ASSERT_TRUE(theirs && ours);
   Dl_info info;
   Elf64_Sym* symbol = nullptr;

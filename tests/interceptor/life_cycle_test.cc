@@ -1,4 +1,4 @@
-// What the body hears and what the driver is asked, in order: the door's side of body.h.
+// What the core hears and what the driver is asked, in order: the entry library's side of core.h.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using understudy::testing::run_program;
 
 Outcome play(const std::string& client, const std::string& scene, std::vector<std::string> environment = {},
              const std::string& stage = TEST_STAGE) {
-  environment.push_back("LD_LIBRARY_PATH=" + stage + "/door");
+  environment.push_back("LD_LIBRARY_PATH=" + stage + "/entry");
   environment.push_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
   return run_program(environment, {TEST_CLIENTS "/" + client, scene});
 }
@@ -27,97 +27,97 @@ TEST(LifeCycle, AFrameFromTheFirstContextToItsEnd) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.lines(),
               ElementsAre("driver: glClear",  // no context yet: straight to the driver
-                          "driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",  //
-                          "body: glClear", "driver: glClear",                 //
-                          "body: glFlush", "driver: glFlush",                 //
-                          "body: before swap", "driver: swap 10",
-                          "driver: glFlush",   // the driver's own call: not the body's business
-                          "body: after swap",  //
-                          "body: before make_current", "body: leaving after 2 calls",
+                          "driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",  //
+                          "core: glClear", "driver: glClear",                 //
+                          "core: glFlush", "driver: glFlush",                 //
+                          "core: before swap", "driver: swap 10",
+                          "driver: glFlush",   // the driver's own call: not the core's business
+                          "core: after swap",  //
+                          "core: before make_current", "core: leaving after 2 calls",
                           "driver: current 0 drawable 0",  //
                           "driver: glClear",               //
-                          "driver: destroy 1", "body: destroyed 1"));
+                          "driver: destroy 1", "core: destroyed 1"));
 }
 
-TEST(LifeCycle, AFailedMakeCurrentLeavesTheOldContextToTheBody) {
+TEST(LifeCycle, AFailedMakeCurrentLeavesTheOldContextToTheCore) {
   EXPECT_THAT(play("glx_client", "failed_make_current").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",           //
-                          "body: before make_current", "body: leaving after 0 calls",  //
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",           //
+                          "core: before make_current", "core: leaving after 0 calls",  //
                           "driver: current 1 drawable 13 refused",                     //
-                          "body: current 1 share 0 glx desktop drawable 10",           //
-                          "body: glClear", "driver: glClear"));
+                          "core: current 1 share 0 glx desktop drawable 10",           //
+                          "core: glClear", "driver: glClear"));
 }
 
 TEST(LifeCycle, TheSameContextAndDrawableAgainIsNoChange) {
   EXPECT_THAT(play("glx_client", "same_again").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",             //
-                          "body: before make_current", "driver: current 1 drawable 10",  //
-                          "body: glClear", "driver: glClear",                            //
-                          "body: before make_current", "body: leaving after 1 calls",
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",             //
+                          "core: before make_current", "driver: current 1 drawable 10",  //
+                          "core: glClear", "driver: glClear",                            //
+                          "core: before make_current", "core: leaving after 1 calls",
                           "driver: current 1 drawable 11",  // another window is another frame
-                          "body: current 1 share 0 glx desktop drawable 11"));
+                          "core: current 1 share 0 glx desktop drawable 11"));
 }
 
 TEST(LifeCycle, AShareGroupOutlivesItsFirstContext) {
   EXPECT_THAT(play("glx_client", "share_group").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",  //
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",  //
                           "driver: create 2 share 1",                         //
-                          "body: before make_current", "body: leaving after 0 calls",
+                          "core: before make_current", "core: leaving after 0 calls",
                           "driver: current 0 drawable 0",  //
                           "driver: destroy 1",             // its objects live on in the second
                           "app: the first is destroyed",   //
-                          "driver: current 2 drawable 10", "body: current 2 share 1 glx desktop drawable 10",
-                          "body: destroyed 1",  //
-                          "body: before make_current", "body: leaving after 0 calls",
+                          "driver: current 2 drawable 10", "core: current 2 share 1 glx desktop drawable 10",
+                          "core: destroyed 1",  //
+                          "core: before make_current", "core: leaving after 0 calls",
                           "driver: current 0 drawable 0",  //
-                          "driver: destroy 2", "body: destroyed 2"));
+                          "driver: destroy 2", "core: destroyed 2"));
 }
 
 TEST(LifeCycle, AHandleThatComesAgainIsAnotherContext) {
   EXPECT_THAT(play("glx_client", "handle_comes_again").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",           //
-                          "body: before make_current", "body: leaving after 0 calls",  //
-                          "driver: current 0 drawable 0", "driver: destroy 1", "body: destroyed 1",
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",           //
+                          "core: before make_current", "core: leaving after 0 calls",  //
+                          "driver: current 0 drawable 0", "driver: destroy 1", "core: destroyed 1",
                           "driver: create 1 share 0", "driver: current 1 drawable 10",  //
-                          "body: current 2 share 0 glx desktop drawable 10",            //
-                          "body: before make_current", "body: leaving after 0 calls",   //
-                          "driver: current 0 drawable 0", "driver: destroy 1", "body: destroyed 2"));
+                          "core: current 2 share 0 glx desktop drawable 10",            //
+                          "core: before make_current", "core: leaving after 0 calls",   //
+                          "driver: current 0 drawable 0", "driver: destroy 1", "core: destroyed 2"));
 }
 
 TEST(LifeCycle, AContextDestroyedWhileCurrentLivesUntilItIsReleased) {
   EXPECT_THAT(play("glx_client", "destroyed_while_current").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 10",  //
-                          "body: before destroy", "driver: destroy 1",        //
-                          "body: glClear", "driver: glClear", "app: releasing", "body: before make_current",
-                          "body: leaving after 1 calls", "driver: current 0 drawable 0", "body: destroyed 1"));
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 10",  //
+                          "core: before destroy", "driver: destroy 1",        //
+                          "core: glClear", "driver: glClear", "app: releasing", "core: before make_current",
+                          "core: leaving after 1 calls", "driver: current 0 drawable 0", "core: destroyed 1"));
 }
 
 TEST(LifeCycle, EveryThreadHasItsOwnContextAndCount) {
   EXPECT_THAT(
       play("glx_client", "two_threads").lines(),
       ElementsAre("driver: create 1 share 0", "driver: create 2 share 1",  //
-                  "driver: current 1 drawable 10", "body: open",
-                  "body: current 1 share 0 glx desktop drawable 10", "body: glClear", "driver: glClear",
-                  "driver: current 2 drawable 11", "body: current 2 share 1 glx desktop drawable 11",
-                  "body: glClear", "driver: glClear",  //
-                  "body: before make_current", "body: leaving after 1 calls",
+                  "driver: current 1 drawable 10", "core: open",
+                  "core: current 1 share 0 glx desktop drawable 10", "core: glClear", "driver: glClear",
+                  "driver: current 2 drawable 11", "core: current 2 share 1 glx desktop drawable 11",
+                  "core: glClear", "driver: glClear",  //
+                  "core: before make_current", "core: leaving after 1 calls",
                   "driver: current 0 drawable 0",      //
-                  "body: glClear", "driver: glClear",  //
-                  "body: before make_current", "body: leaving after 2 calls", "driver: current 0 drawable 0"));
+                  "core: glClear", "driver: glClear",  //
+                  "core: before make_current", "core: leaving after 2 calls", "driver: current 0 drawable 0"));
 }
 
 TEST(LifeCycle, AContextWhoseThreadHasEndedGoesWhenItIsDestroyed) {
   EXPECT_THAT(play("glx_client", "thread_ends").lines(),
-              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 11", "body: open",
-                          "body: current 1 share 0 glx desktop drawable 11", "body: glClear",
+              ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 11", "core: open",
+                          "core: current 1 share 0 glx desktop drawable 11", "core: glClear",
                           "driver: glClear",  //
-                          "app: the thread has ended", "driver: destroy 1", "body: destroyed 1"));
+                          "app: the thread has ended", "driver: destroy 1", "core: destroyed 1"));
 }
 
 TEST(LifeCycle, GetProcAddressGivesOursWhereTheDriverHasOneAndNothingWhereItHasNone) {
@@ -140,16 +140,16 @@ TEST(LifeCycle, AForkedChildGoesStraightToTheDriver) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(
       outcome.lines(),
-      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                  "body: current 1 share 0 glx desktop drawable 10", "body: glClear", "driver: glClear",
+      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                  "core: current 1 share 0 glx desktop drawable 10", "core: glClear", "driver: glClear",
                   "app: child", "driver: glClear", "driver: swap 10", "driver: glFlush",
                   "driver: current 1 drawable 11", "driver: create 2 share 0", "driver: current 2 drawable 10",
                   "driver: glClear",  //
-                  "app: parent, child's status 0", "body: glClear", "driver: glClear",
-                  "body: before make_current", "body: leaving after 2 calls", "driver: current 0 drawable 0"));
+                  "app: parent, child's status 0", "core: glClear", "driver: glClear",
+                  "core: before make_current", "core: leaving after 2 calls", "driver: current 0 drawable 0"));
 }
 
-const std::vector<std::string> frame_without_body{"driver: glClear",
+const std::vector<std::string> frame_without_core{"driver: glClear",
                                                   "driver: create 1 share 0",
                                                   "driver: current 1 drawable 10",
                                                   "driver: glClear",
@@ -160,35 +160,35 @@ const std::vector<std::string> frame_without_body{"driver: glClear",
                                                   "driver: glClear",
                                                   "driver: destroy 1"};
 
-TEST(LifeCycle, SwitchedOffTheBodyIsNeverOpenedAndNothingIsSaid) {
+TEST(LifeCycle, SwitchedOffTheCoreIsNeverOpenedAndNothingIsSaid) {
   EXPECT_THAT(play("glx_client", "one_frame", {"UNDERSTUDY_DISABLE=1"}).lines(),
-              ElementsAreArray(frame_without_body));
+              ElementsAreArray(frame_without_core));
 }
 
-TEST(LifeCycle, AMissingBodyIsSaidOnceAndTheApplicationDraws) {
+TEST(LifeCycle, AMissingCoreIsSaidOnceAndTheApplicationDraws) {
   const Outcome outcome = play("glx_client", "one_frame", {}, TEST_STAGE "/bodiless");
   EXPECT_EQ(outcome.status, 0);
   std::vector<std::string> lines = outcome.lines();
   const auto said = std::stable_partition(lines.begin(), lines.end(),
                                           [](const std::string& line) { return line.starts_with("driver:"); });
   ASSERT_EQ(lines.end() - said, 1) << outcome.text;
-  EXPECT_THAT(*said, ::testing::HasSubstr("libunderstudy-body.so"));
+  EXPECT_THAT(*said, ::testing::HasSubstr("libunderstudy-core.so"));
   EXPECT_THAT(*said, ::testing::HasSubstr("the application draws by itself"));
-  EXPECT_TRUE(std::equal(lines.begin(), said, frame_without_body.begin(), frame_without_body.end()))
+  EXPECT_TRUE(std::equal(lines.begin(), said, frame_without_core.begin(), frame_without_core.end()))
       << outcome.text;
 }
 
-TEST(LifeCycle, ABodyThatRefusesIsSaidOnceAndTheApplicationDraws) {
-  const Outcome outcome = play("glx_client", "one_frame", {"TEST_BODY_REFUSES=1"});
+TEST(LifeCycle, ACoreThatRefusesIsSaidOnceAndTheApplicationDraws) {
+  const Outcome outcome = play("glx_client", "one_frame", {"TEST_CORE_REFUSES=1"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(outcome.says("declined")) << outcome.text;
-  EXPECT_FALSE(outcome.says("body: glClear")) << outcome.text;
+  EXPECT_FALSE(outcome.says("core: glClear")) << outcome.text;
   EXPECT_TRUE(outcome.says("driver: swap 10")) << outcome.text;
 }
 
 TEST(LifeCycle, AFolderWithoutADriverIsSaidAndTheSystemsIsTaken) {
   const Outcome outcome =
-      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/door", "UNDERSTUDY_DRIVER_DIR=/nonexistent"},
+      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/entry", "UNDERSTUDY_DRIVER_DIR=/nonexistent"},
                   {TEST_CLIENTS "/glx_client", "addresses"});
   EXPECT_TRUE(outcome.says("UNDERSTUDY_DRIVER_DIR=/nonexistent holds no libGLX.so.0 or libGL.so.1"))
       << outcome.text;
@@ -198,7 +198,7 @@ TEST(LifeCycle, AFolderWithoutADriverIsSaidAndTheSystemsIsTaken) {
 // VirtualGL ends the application when the real library turns out to be itself; we look further.
 TEST(LifeCycle, OurselvesAreNoDriver) {
   const Outcome outcome =
-      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/door", "UNDERSTUDY_DRIVER_DIR=" TEST_STAGE "/door"},
+      run_program({"LD_LIBRARY_PATH=" TEST_STAGE "/entry", "UNDERSTUDY_DRIVER_DIR=" TEST_STAGE "/entry"},
                   {TEST_CLIENTS "/glx_client", "addresses"});
   EXPECT_TRUE(outcome.says("not Understudy's own")) << outcome.text;
   EXPECT_TRUE(outcome.says("app: glClear ours")) << outcome.text;
@@ -210,70 +210,70 @@ TEST(LifeCycle, EglsFrame) {
   EXPECT_THAT(
       outcome.lines(),
       ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: current 1 drawable 20",
-                  "body: open", "body: current 1 share 0 egl desktop drawable 20", "body: glClear",
-                  "driver: glClear", "body: before swap", "driver: swap 20", "body: after swap",  //
-                  "body: before swap", "driver: swap 20 with damage", "body: after swap",         //
-                  "body: before make_current", "body: leaving after 1 calls",
-                  "driver: current 1 drawable 13 refused", "body: current 1 share 0 egl desktop drawable 20",
-                  "body: glClear", "driver: glClear",  //
-                  "body: before make_current", "body: leaving after 1 calls", "driver: release thread",
-                  "driver: destroy 1", "body: destroyed 1"));
+                  "core: open", "core: current 1 share 0 egl desktop drawable 20", "core: glClear",
+                  "driver: glClear", "core: before swap", "driver: swap 20", "core: after swap",  //
+                  "core: before swap", "driver: swap 20 with damage", "core: after swap",         //
+                  "core: before make_current", "core: leaving after 1 calls",
+                  "driver: current 1 drawable 13 refused", "core: current 1 share 0 egl desktop drawable 20",
+                  "core: glClear", "driver: glClear",  //
+                  "core: before make_current", "core: leaving after 1 calls", "driver: release thread",
+                  "driver: destroy 1", "core: destroyed 1"));
 }
 
 TEST(LifeCycle, AnOpenGlEsContextIsAnnouncedAsSuch) {
   EXPECT_THAT(play("egl_client", "opengl_es").lines(),
               ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: current 1 drawable 20",
-                          "body: open", "body: current 1 share 0 egl es drawable 20", "driver: glClear",
-                          "body: before swap", "driver: swap 20", "body: after swap"));
+                          "core: open", "core: current 1 share 0 egl es drawable 20", "driver: glClear",
+                          "core: before swap", "driver: swap 20", "core: after swap"));
 }
 
 TEST(LifeCycle, EglTerminateEndsTheContextsOfItsDisplay) {
   EXPECT_THAT(play("egl_client", "terminated").lines(),
               ElementsAre("driver: eglGetDisplay", "driver: create 1 share 0", "driver: create 2 share 1",
-                          "driver: current 1 drawable 20", "body: open",
-                          "body: current 1 share 0 egl desktop drawable 20", "body: before make_current",
-                          "body: leaving after 0 calls", "driver: current 0 drawable 0", "driver: terminate",
-                          "body: destroyed 1"));
+                          "driver: current 1 drawable 20", "core: open",
+                          "core: current 1 share 0 egl desktop drawable 20", "core: before make_current",
+                          "core: leaving after 0 calls", "driver: current 0 drawable 0", "driver: terminate",
+                          "core: destroyed 1"));
 }
 
-TEST(LifeCycle, OsMesasFramesEndWhereThePictureIsAskedFor) {
+TEST(LifeCycle, OsMesasFramesEndWhereTheImageIsAskedFor) {
   EXPECT_THAT(
       play("osmesa_client", "frames").lines(),
-      ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2", "body: open",
-                  "body: current 1 share 0 osmesa desktop drawable", "body: glClear",
+      ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa current 1 of 2 x 2", "core: open",
+                  "core: current 1 share 0 osmesa desktop drawable", "core: glClear",
                   "driver: OSMesa's glClear",                                         //
-                  "body: glFlush", "driver: OSMesa's glFlush", "body: after finish",  //
+                  "core: glFlush", "driver: OSMesa's glFlush", "core: after finish",  //
                   "driver: OSMesa's glFinish",                                        // the same frame
-                  "body: glClear", "driver: OSMesa's glClear",                        //
-                  "body: before finish", "body: after finish", "body: before make_current",
+                  "core: glClear", "driver: OSMesa's glClear",                        //
+                  "core: before finish", "core: after finish", "core: before make_current",
                   "driver: OSMesa current 1 of 2 x 2",  // the same again: no change
-                  "body: before finish", "body: before make_current", "body: leaving after 4 calls",
-                  "driver: OSMesa current 1 of 3 x 2", "body: current 1 share 0 osmesa desktop drawable",
-                  "body: before finish", "body: before make_current", "body: leaving after 0 calls",
+                  "core: before finish", "core: before make_current", "core: leaving after 4 calls",
+                  "driver: OSMesa current 1 of 3 x 2", "core: current 1 share 0 osmesa desktop drawable",
+                  "core: before finish", "core: before make_current", "core: leaving after 0 calls",
                   "driver: OSMesa current 0 of 0 x 0",  //
                   "driver: OSMesa's glClear",           // the OpenGL of this program, GLX is not opened
-                  "driver: OSMesa destroy 1", "body: destroyed 1"));
+                  "driver: OSMesa destroy 1", "core: destroyed 1"));
 }
 
 TEST(LifeCycle, OsMesasContextsShare) {
   EXPECT_THAT(play("osmesa_client", "share_group").lines(),
               ElementsAre("driver: OSMesa create 1 share 0", "driver: OSMesa create 2 share 1",
-                          "driver: OSMesa current 1 of 2 x 2", "body: open",
-                          "body: current 1 share 0 osmesa desktop drawable",  //
-                          "body: before finish", "body: before make_current", "body: leaving after 0 calls",
+                          "driver: OSMesa current 1 of 2 x 2", "core: open",
+                          "core: current 1 share 0 osmesa desktop drawable",  //
+                          "core: before finish", "core: before make_current", "core: leaving after 0 calls",
                           "driver: OSMesa current 2 of 2 x 2",
-                          "body: current 2 share 1 osmesa desktop drawable",  //
-                          "driver: OSMesa destroy 1", "body: destroyed 1",    //
-                          "body: glClear", "driver: OSMesa's glClear", "app: glClear ours, glAccum null"));
+                          "core: current 2 share 1 osmesa desktop drawable",  //
+                          "driver: OSMesa destroy 1", "core: destroyed 1",    //
+                          "core: glClear", "driver: OSMesa's glClear", "app: glClear ours, glAccum null"));
 }
 
 // With all registers, and what did not fit into them.
 TEST(LifeCycle, AFunctionOutsideTheRegistryGetsItsArguments) {
   EXPECT_THAT(
       play("glx_client", "outside_registry").lines(),
-      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "body: open",
-                  "body: current 1 share 0 glx desktop drawable 10",  //
-                  "body: before wait",
+      ElementsAre("driver: create 1 share 0", "driver: current 1 drawable 10", "core: open",
+                  "core: current 1 share 0 glx desktop drawable 10",  //
+                  "core: before wait",
                   "driver: glDrawMeshNV 1 2 3 4 5 6 7 8, 0.5 1.5 2.5 3.5 4.5 5.5 6.5 7.5 8.5",
                   "app: 4711",  //
                   "understudy: the application calls glGpuSyncAcquireNVX, which this OpenGL driver lacks; "

@@ -1,6 +1,6 @@
-// The door matrix: which way in is caught by which door. It needs neither X nor a GPU: the driver behind the
-// door (UNDERSTUDY_DRIVER_DIR) says what it is asked; the system's own OpenGL, reached past the door, says
-// nothing.
+// The injection method matrix: which way in is caught by which injection method. It needs neither X nor a GPU:
+// the driver behind the injection method (UNDERSTUDY_DRIVER_DIR) says what it is asked; the system's own
+// OpenGL, reached past the injection method, says nothing.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "doors.h"
+#include "injection_methods.h"
 #include "run_program.h"
 
 namespace {
@@ -17,9 +17,10 @@ namespace {
 using namespace understudy::testing;
 
 enum class Expected {
-  hit,    ///< the call came through the door
+  hit,    ///< the call came through the injection method
   miss,   ///< it went to the system's OpenGL as if we were not there, and the application is well
-  crash,  ///< the one pattern that a door cannot serve: README.md of interceptor/ says which and why
+  crash,  ///< the one pattern that an injection method cannot serve: README.md of interceptor/ says which and
+          ///< why
 };
 
 struct WayIn {
@@ -30,15 +31,15 @@ struct WayIn {
   Expected folder;
   Expected audit;
 
-  Expected expected(Door door) const {
-    switch (door) {
-      case Door::none:
+  Expected expected(InjectionMethod injection) const {
+    switch (injection) {
+      case InjectionMethod::none:
         return Expected::miss;
-      case Door::preload:
+      case InjectionMethod::preload:
         return preload;
-      case Door::folder:
+      case InjectionMethod::folder:
         return folder;
-      case Door::audit:
+      case InjectionMethod::audit:
         return audit;
     }
     return Expected::miss;
@@ -91,16 +92,16 @@ const std::vector<WayIn> ways_in = {
 };
 // clang-format on
 
-class DoorMatrix : public ::testing::TestWithParam<std::tuple<WayIn, Door>> {};
+class InjectionMatrix : public ::testing::TestWithParam<std::tuple<WayIn, InjectionMethod>> {};
 
-TEST_P(DoorMatrix, AnswersAsTheTableSays) {
-  const auto& [way, door] = GetParam();
+TEST_P(InjectionMatrix, AnswersAsTheTableSays) {
+  const auto& [way, injection] = GetParam();
   if (way.command[0].empty()) GTEST_SKIP() << "no Python here";
-  std::vector<std::string> environment = environment_of(door);
+  std::vector<std::string> environment = environment_of(injection);
   environment.push_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
   const Outcome outcome = run_program(environment, way.command);
-  const std::string cell = std::string(way.name) + " through " + name_of(door) + ": " + outcome.text;
-  switch (way.expected(door)) {
+  const std::string cell = std::string(way.name) + " through " + name_of(injection) + ": " + outcome.text;
+  switch (way.expected(injection)) {
     case Expected::hit:
       EXPECT_TRUE(outcome.says(way.driver_says)) << cell;
       EXPECT_TRUE(outcome.says("done")) << cell;
@@ -117,7 +118,7 @@ TEST_P(DoorMatrix, AnswersAsTheTableSays) {
   }
 }
 
-std::string cell_name(const ::testing::TestParamInfo<DoorMatrix::ParamType>& info) {
+std::string cell_name(const ::testing::TestParamInfo<InjectionMatrix::ParamType>& info) {
   return std::string(std::get<0>(info.param).name) + "_" + name_of(std::get<1>(info.param));
 }
 
@@ -125,25 +126,27 @@ void PrintTo(const WayIn& way, std::ostream* out) {
   *out << way.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Doors, DoorMatrix,
+INSTANTIATE_TEST_SUITE_P(InjectionMethods, InjectionMatrix,
                          ::testing::Combine(::testing::ValuesIn(ways_in),
-                                            ::testing::Values(Door::none, Door::preload, Door::folder,
-                                                              Door::audit)),
+                                            ::testing::Values(InjectionMethod::none, InjectionMethod::preload,
+                                                              InjectionMethod::folder, InjectionMethod::audit)),
                          cell_name);
 
-class WithoutOpenGl : public ::testing::TestWithParam<Door> {};
+class WithoutOpenGl : public ::testing::TestWithParam<InjectionMethod> {};
 
-TEST_P(WithoutOpenGl, NeitherBodyNorDriverIsLoaded) {
+TEST_P(WithoutOpenGl, NeitherCoreNorDriverIsLoaded) {
   const Outcome outcome = run_program(environment_of(GetParam()), {clients + "no_gl"});
   EXPECT_EQ(outcome.status, 0);
   ASSERT_TRUE(outcome.says("libz.so") && outcome.says("done")) << outcome.text;
   for (const char* unwanted : {LIBRARY_FOLDER "/libGL", LIBRARY_FOLDER "/libOpenGL", LIBRARY_FOLDER "/libEGL",
-                               "libGLdispatch", "libOSMesa", "libunderstudy-body"}) {
+                               "libGLdispatch", "libOSMesa", "libunderstudy-core"}) {
     EXPECT_FALSE(outcome.says(unwanted)) << unwanted << " in\n" << outcome.text;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Doors, WithoutOpenGl, ::testing::Values(Door::preload, Door::folder, Door::audit),
+INSTANTIATE_TEST_SUITE_P(InjectionMethods, WithoutOpenGl,
+                         ::testing::Values(InjectionMethod::preload, InjectionMethod::folder,
+                                           InjectionMethod::audit),
                          [](const auto& info) { return name_of(info.param); });
 
 }  // namespace

@@ -1,4 +1,5 @@
-// glxinfo and eglinfo ask a driver nearly everything that can be asked. Behind a door they must hear the same.
+// glxinfo and eglinfo ask a driver nearly everything that can be asked. Behind an injection method they must
+// hear the same.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/types.h>
@@ -8,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "doors.h"
+#include "injection_methods.h"
 #include "run_program.h"
 
 namespace {
@@ -56,11 +57,11 @@ bool installed(const std::string& program) {
   return run_program({}, {"sh", "-c", "command -v " + program}).status == 0;
 }
 
-class RealDriver : public ::testing::TestWithParam<Door> {
+class RealDriver : public ::testing::TestWithParam<InjectionMethod> {
  protected:
-  static std::string output(Door door, const std::string& disable, const std::string& display,
+  static std::string output(InjectionMethod injection, const std::string& disable, const std::string& display,
                             const std::vector<std::string>& command) {
-    std::vector<std::string> environment = environment_of(door);
+    std::vector<std::string> environment = environment_of(injection);
     environment.push_back("DISPLAY=" + display);
     environment.push_back("UNDERSTUDY_DISABLE=" + disable);
     const Outcome outcome = run_program(environment, command);
@@ -73,7 +74,7 @@ class RealDriver : public ::testing::TestWithParam<Door> {
     if (!installed(command[0])) GTEST_SKIP() << command[0] << " is not installed (Debian: mesa-utils)";
     const VirtualScreen screen;
     ASSERT_FALSE(screen.display().empty()) << "Xvfb does not start";
-    const std::string bare = output(Door::none, "0", screen.display(), command);
+    const std::string bare = output(InjectionMethod::none, "0", screen.display(), command);
     ASSERT_GT(bare.size(), 500u) << bare;
     for (const char* disable : {"0", "1"}) {
       EXPECT_EQ(output(GetParam(), disable, screen.display(), command), bare)
@@ -92,7 +93,9 @@ TEST_P(RealDriver, EglinfoSaysTheSame) {
   expect_same({"eglinfo"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Doors, RealDriver, ::testing::Values(Door::preload, Door::folder, Door::audit),
+INSTANTIATE_TEST_SUITE_P(InjectionMethods, RealDriver,
+                         ::testing::Values(InjectionMethod::preload, InjectionMethod::folder,
+                                           InjectionMethod::audit),
                          [](const auto& info) { return name_of(info.param); });
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "doors.h"
+#include "injection_methods.h"
 #include "run_program.h"
 
 namespace {
@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-class SeveralNames : public ::testing::TestWithParam<Door> {
+class SeveralNames : public ::testing::TestWithParam<InjectionMethod> {
  protected:
   /// Every name that the program opened must lead to us.
   static void expect_ours(const std::string& program, const std::vector<std::string>& names) {
@@ -63,10 +63,12 @@ TEST_P(SeveralNames, DevelopmentNamesLeadToTheSame) {
   expect_ours("names", {"libGL.so", "libGL.so.1", "libEGL.so", "libEGL.so.1", "libGLX.so", "libOpenGL.so"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Doors, SeveralNames, ::testing::Values(Door::preload, Door::folder, Door::audit),
+INSTANTIATE_TEST_SUITE_P(InjectionMethods, SeveralNames,
+                         ::testing::Values(InjectionMethod::preload, InjectionMethod::folder,
+                                           InjectionMethod::audit),
                          [](const auto& info) { return name_of(info.param); });
 
-/// The doors that see paths; a folder of names cannot.
+/// The injection methods that see paths; a folder of names cannot.
 class AbsolutePaths : public SeveralNames {};
 
 TEST_P(AbsolutePaths, LeadToUsEvenWhenTheDriverIsLoadedFromThere) {
@@ -78,13 +80,14 @@ TEST_P(AbsolutePaths, LeadToUsEvenWhenTheDriverIsLoadedFromThere) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Doors, AbsolutePaths, ::testing::Values(Door::preload, Door::audit),
+INSTANTIATE_TEST_SUITE_P(InjectionMethods, AbsolutePaths,
+                         ::testing::Values(InjectionMethod::preload, InjectionMethod::audit),
                          [](const auto& info) { return name_of(info.param); });
 
 // The real libGL.so.1 then finds our libGLX.so.0 as its dependency (interceptor/glvnd.cc).
-TEST(PastTheFolderDoor, ARealLibGlWorks) {
+TEST(PastTheFolderMethod, ARealLibGlWorks) {
   const Outcome outcome =
-      run_program(environment_of(Door::folder), {CLIENTS "/names", REAL_GL_FILE, "libGLX.so.0"});
+      run_program(environment_of(InjectionMethod::folder), {CLIENTS "/names", REAL_GL_FILE, "libGLX.so.0"});
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_TRUE(outcome.says(REAL_GL_FILE " from " REAL_GL_FILE)) << outcome.text;
   EXPECT_TRUE(outcome.says("done")) << outcome.text;

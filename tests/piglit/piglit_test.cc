@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/clients/stage.h"
+#include "tests/clients/command_test.h"
 
 namespace clients {
 namespace {
@@ -42,7 +42,7 @@ std::vector<std::string> known_remote_differences() {
   return lines_of({std::istreambuf_iterator<char>(in), {}});
 }
 
-class Piglit : public Stage {
+class Piglit : public GlServer {
  protected:
   /// Why piglit cannot be run here; empty where it can.
   std::string lacking() const {
@@ -55,8 +55,8 @@ class Piglit : public Stage {
   /// Runs all tests, with `before` in front of piglit, and leaves the results in a folder of that name.
   void run_all(const std::string& results, const std::string& before, const std::string& chain) const {
     const auto jobs = std::to_string(std::max(2U, std::thread::hardware_concurrency()));
-    Child piglit(on_stage({script.string(), file(results).string()},
-                          {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
+    Child piglit(on_gl_server({script.string(), file(results).string()},
+                              {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
                  file(""));
     const Outcome outcome = piglit.finish(patience_with_piglit);
     ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
@@ -94,10 +94,10 @@ TEST_F(Piglit, SeesTheOpenGlOfAStageButForWhatIsListed) {
   run_all("bare", "", "");
   const std::vector<std::string> known = known_remote_differences();
   ASSERT_FALSE(known.empty());
-  // One process draws; or two, each its strip of every window.
-  for (const std::string chain : {"", "track volume strips(of=2) driver"}) {
+  // One process draws; or two, each its tile of every window.
+  for (const std::string chain : {"", "track volume tiles(of=2) driver"}) {
     SCOPED_TRACE(chain.empty() ? "the default chain" : chain);
-    const std::string results = chain.empty() ? "remote" : "strips";
+    const std::string results = chain.empty() ? "remote" : "tiles";
     std::string launcher;
     for (const std::string& word : under({"--remote"})) launcher += word + " ";
     ASSERT_NO_FATAL_FAILURE(run_all(results, launcher, chain));

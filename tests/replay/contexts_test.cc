@@ -34,7 +34,7 @@ TEST_F(Contexts, ThatShareTextures) {
   application.show();
   application.make_current(1);
   draw_with(gl(), 12, 0.1F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Contexts, ThatShareNothingHaveTheSameNamesForOtherThings) {
@@ -48,14 +48,14 @@ TEST_F(Contexts, ThatShareNothingHaveTheSameNamesForOtherThings) {
   application.show();
   application.make_current(2);
   draw_with(gl(), 7, -0.9F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Contexts, OfWhichOneIsGoneWhenAnotherSharesWithIt) {
   make_texture(gl(), 3, {250, 120, 10, 255});
   application.add(compatibility_context(2, 1));
   draw_with(gl(), 3, -0.2F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Contexts, WithSyncObjects) {
@@ -70,11 +70,11 @@ TEST_F(Contexts, WithSyncObjects) {
   gl().GetSynciv(second, GL_SYNC_STATUS, 1, &length, &state);
   gl().DeleteSync(first);
   gl().DeleteSync(second);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Contexts, WhoseNamesTheDriverGivesDifferently) {
-  // Names are given back and given again: what a name means changes over the stream.
+  // Names are handed back and given again: what a name means changes over the stream.
   std::array<GLuint, 4> names{};
   gl().GenTextures(4, names.data());
   gl().DeleteTextures(2, names.data());
@@ -86,7 +86,7 @@ TEST_F(Contexts, WhoseNamesTheDriverGivesDifferently) {
   draw_with(gl(), again[0], -0.9F);
   draw_with(gl(), again[2], -0.3F);
   draw_with(gl(), names[3], 0.3F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 }  // namespace

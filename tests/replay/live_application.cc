@@ -8,7 +8,7 @@
 
 #include "spu/assemble.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_picture.h"
+#include "spu/player/shown_image.h"
 #include "spu/stream/trace_file.h"
 #include "spu/track/share_group.h"
 
@@ -80,7 +80,7 @@ const spu::DispatchTable& LiveApplication::gl() const {
 }
 
 void LiveApplication::show() {
-  shown_.push_back(spu::shown_picture(windows_.driver(), extent));
+  shown_.push_back(spu::shown_image(windows_.driver(), extent));
   spu::Chain::current()->frame_ended(spu::FrameEnd::swap);
 }
 
@@ -99,9 +99,9 @@ Played play_back(const std::filesystem::path& trace, const std::string& chain) {
   spu::Player player(windows, options);
   Played played;
   player.on_frame = [&](const spu::ShownFrame& frame) {
-    played.frames.push_back(spu::shown_picture(windows.driver(), frame.extent));
+    played.frames.push_back(spu::shown_image(windows.driver(), frame.extent));
   };
-  player.on_read = [&](const spu::Decoder::ReadPicture& read) {
+  player.on_read = [&](const spu::Decoder::ReadImage& read) {
     const auto* first = reinterpret_cast<const std::uint8_t*>(read.pixels.data());
     played.reads.emplace_back(first, first + read.pixels.size());
   };

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "apps/understudy/compare.h"
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/play.h"
-#include "apps/understudy/read_picture.h"
-#include "spu/player/shown_picture.h"
+#include "apps/understudy/read_image.h"
+#include "spu/player/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.
@@ -63,7 +63,7 @@ class Osmesa : public testing::Test {
   }
   /// The colour of all of the window; -1 where it has several.
   Colour shown(spu::Extent2D size = extent) const {
-    const auto pixels = spu::shown_picture(gl(), size);
+    const auto pixels = spu::shown_image(gl(), size);
     for (std::size_t i = 4; i < pixels.size(); ++i)
       if (pixels[i] != pixels[i % 4]) return {-1, -1, -1, -1};
     return {float(pixels[0]) / 255, float(pixels[1]) / 255, float(pixels[2]) / 255, float(pixels[3]) / 255};
@@ -517,20 +517,20 @@ TEST_F(Osmesa, AccumulatesInCompatibilityContexts) {
 
 class KeptTraces : public testing::TestWithParam<const char*> {};
 
-TEST_P(KeptTraces, ShowTheSamePicturesOnOsmesa) {
+TEST_P(KeptTraces, ShowTheSameImagesOnOsmesa) {
   const std::string name = GetParam();
   const fs::path folder = fs::path(testing::TempDir()) / fmt::format("osmesa.{}.{}", name, getpid());
   spu::Options options;
   options.chain = "driver";
-  options.stage_opengl = "osmesa";
+  options.server_opengl = "osmesa";
   const launcher::Played played =
       launcher::play({.trace = fs::path(TRACES) / (name + ".ust"), .save_frames = folder}, options);
   EXPECT_EQ(played.errors, 0U);
   ASSERT_GT(played.frames, 0U);
   for (std::uint64_t frame = 1; frame <= played.frames; ++frame) {
     EXPECT_GE(
-        launcher::difference(launcher::read_picture(folder / fmt::format("frame_000{}.png", frame)),
-                             launcher::read_picture(fs::path(EXPECTED) / fmt::format("{}_{}.png", name, frame)))
+        launcher::difference(launcher::read_image(folder / fmt::format("frame_000{}.png", frame)),
+                             launcher::read_image(fs::path(EXPECTED) / fmt::format("{}_{}.png", name, frame)))
             .psnr(),
         50)
         << frame;

@@ -1,5 +1,5 @@
 // Pixels on their way to OpenGL: however they lie in the application's memory, the trace holds the same
-// picture.
+// image.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -49,7 +49,7 @@ TEST_F(PixelTransfers, WithRowLengthSkipsAndAlignment) {
   draw_textured(gl(), GL_TEXTURE_2D, -0.1F);
   gl().RasterPos2f(0.5F, -0.5F);
   gl().DrawPixels(15, 12, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-  expect_same_pictures();
+  expect_same_images();
 }
 
 // Not both at once: Mesa 22.3 swaps the wrong bytes then.
@@ -67,7 +67,7 @@ TEST_F(PixelTransfers, WithImagesSkippedInAVolumeOrBytesSwapped) {
   gl().PixelStorei(GL_UNPACK_SWAP_BYTES, 1);
   gl().TexImage3D(GL_TEXTURE_3D, 0, GL_LUMINANCE16, 8, 7, 6, 0, GL_LUMINANCE, GL_UNSIGNED_SHORT, pixels.data());
   draw_textured(gl(), GL_TEXTURE_3D, 0.1F, 0.9F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(PixelTransfers, FromPixelBuffers) {
@@ -80,7 +80,7 @@ TEST_F(PixelTransfers, FromPixelBuffers) {
   gl().TexSubImage2D(GL_TEXTURE_2D, 0, 2, 2, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   gl().BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   draw_textured(gl(), GL_TEXTURE_2D, -0.9F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(PixelTransfers, ReadIntoPixelBuffersAndBack) {
@@ -99,7 +99,7 @@ TEST_F(PixelTransfers, ReadIntoPixelBuffersAndBack) {
   gl().TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 8, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   gl().BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   draw_textured(gl(), GL_TEXTURE_2D, -0.3F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(PixelTransfers, OfBitmapsAndStipples) {
@@ -115,7 +115,7 @@ TEST_F(PixelTransfers, OfBitmapsAndStipples) {
   gl().PolygonStipple(bits.data());
   gl().Enable(GL_POLYGON_STIPPLE);
   gl().Rectf(-0.1F, -0.1F, 0.9F, 0.9F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(PixelTransfers, ReadByTheApplicationAreReadAgain) {
@@ -125,7 +125,7 @@ TEST_F(PixelTransfers, ReadByTheApplicationAreReadAgain) {
   std::vector<std::uint8_t> read(std::size_t(20) * 20 * 4);
   gl().PixelStorei(GL_PACK_ROW_LENGTH, 20);
   gl().ReadPixels(extent.width / 2, extent.height / 2, 20, 20, GL_BGRA, GL_UNSIGNED_BYTE, read.data());
-  expect_same_pictures();
+  expect_same_images();
   const Played played = play_back(trace);
   ASSERT_EQ(played.reads.size(), 1U);
   EXPECT_EQ(played.reads[0], read);
@@ -158,7 +158,7 @@ TEST_F(PixelTransfers, ThroughFramebufferObjects) {
   draw_textured(gl(), GL_TEXTURE_2D, -0.7F);
   gl().BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   gl().BlitFramebuffer(0, 0, 32, 32, 60, 5, 90, 40, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 }  // namespace

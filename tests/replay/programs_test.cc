@@ -51,7 +51,7 @@ TEST_F(Programs, SourcesInSeveralStringsAndArraysOfUniforms) {
     number != 0 ? gl().Vertex2f(0, 0) : gl().VertexAttrib1f(0, float(i));
   }
   gl().End();
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Programs, InAssembly) {
@@ -68,7 +68,7 @@ TEST_F(Programs, InAssembly) {
   gl().ProgramLocalParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, 1, own.data());
   gl().Enable(GL_FRAGMENT_PROGRAM_ARB);
   gl().Rectf(-0.7F, -0.6F, 0.5F, 0.8F);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(CorePrograms, WithUniformBlocksArraysAndTransformFeedback) {
@@ -116,7 +116,7 @@ TEST_F(CorePrograms, WithUniformBlocksArraysAndTransformFeedback) {
   gl().BindBuffer(GL_ARRAY_BUFFER, buffers[2]);
   gl().VertexAttribPointer(corner, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl().DrawArrays(GL_LINE_LOOP, 0, 3);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Records the bundled viewer into traces/ and the pictures of a native replay into expected/.
+"""Records the bundled viewer into traces/ and the images of a native replay into expected/.
 
     record_traces.py BUILD/bin [NAME...]     without names all of them (WAYS below)
 
@@ -68,9 +68,9 @@ def main():
                             programs / "understudy-viewer", *ways[name], "--offscreen", "--orbit", "25"], check=True)
             frames = pathlib.Path(folder) / name
             subprocess.run([programs / "understudy", "replay", "--native", "--save-frames", frames, trace], check=True)
-            for picture in sorted(frames.glob("frame_*.png")):
-                number = int(picture.stem.removeprefix("frame_"))
-                shutil.copyfile(picture, HERE / "expected" / f"{name}_{number}.png")
+            for image in sorted(frames.glob("frame_*.png")):
+                number = int(image.stem.removeprefix("frame_"))
+                shutil.copyfile(image, HERE / "expected" / f"{name}_{number}.png")
 
 
 if __name__ == "__main__":

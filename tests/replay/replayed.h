@@ -20,7 +20,7 @@ class Replayed : public testing::Test {
   const spu::DispatchTable& gl() const { return application.gl(); }
 
   /// Shows the last frame, ends the application, and plays its trace.
-  void expect_same_pictures() {
+  void expect_same_images() {
     application.show();
     application.end();
     const Pixels& last = application.shown().back();
@@ -28,7 +28,7 @@ class Replayed : public testing::Test {
     for (const char* chain : {"driver", "pack unpack driver"}) {
       const Played played = play_back(trace, chain);
       EXPECT_THAT(played.errors, testing::IsEmpty());
-      EXPECT_TRUE(played.frames == application.shown()) << "other pictures on the chain " << chain;
+      EXPECT_TRUE(played.frames == application.shown()) << "other images on the chain " << chain;
     }
   }
 

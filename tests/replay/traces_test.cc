@@ -13,7 +13,7 @@
 #include <string>
 
 #include "apps/understudy/compare.h"
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/trim.h"
 #include "live_application.h"
@@ -27,16 +27,16 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 
-/// The traces were recorded, and the expected pictures made, with this driver.
+/// The traces were recorded, and the expected images made, with this driver.
 constexpr const char* expected_driver = "llvmpipe (LLVM 15.0.6, 256 bits)";
 
 struct Trace {
   std::string name;
   int frames;
   /// How the viewer was called, beside what JUDGED in record_traces.py says; empty: the emulation lacks the
-  /// volume, and the kept native pictures judge.
+  /// volume, and the kept native images judge.
   std::string way;
-  bool substituted = true;  ///< false: left to the application, as live
+  bool substituted = true;  ///< false: not substituted, as live
 };
 
 const std::vector<Trace>& traces() {
@@ -62,8 +62,8 @@ fs::path trace_file(const std::string& name) {
   return fs::path(TRACES) / (name + ".ust");
 }
 
-launcher::Picture expected(const std::string& name, int frame) {
-  return launcher::read_picture(fs::path(EXPECTED) / (name + "_" + std::to_string(frame) + ".png"));
+launcher::Image expected(const std::string& name, int frame) {
+  return launcher::read_image(fs::path(EXPECTED) / (name + "_" + std::to_string(frame) + ".png"));
 }
 
 bool is_expected_driver() {
@@ -98,13 +98,13 @@ int understudy(const std::string& arguments) {
                      arguments);
 }
 
-launcher::Picture saved(const fs::path& folder, int frame) {
-  return launcher::read_picture(folder / ("frame_000" + std::to_string(frame) + ".png"));
+launcher::Image saved(const fs::path& folder, int frame) {
+  return launcher::read_image(folder / ("frame_000" + std::to_string(frame) + ".png"));
 }
 
 class Kept : public testing::TestWithParam<Trace> {};
 
-TEST_P(Kept, TracesShowTheSamePicturesNatively) {
+TEST_P(Kept, TracesShowTheSameImagesNatively) {
   const Folder folder;
   spu::Options options;
   options.chain = "driver";
@@ -137,18 +137,17 @@ emulation::Frame meant(const Trace& trace, int frame, const fs::path& folder) {
   return emulation::viewer_frame(nlohmann::json::parse(std::ifstream(description)));
 }
 
-std::vector<double> colours(const launcher::Picture& picture) {
+std::vector<double> colours(const launcher::Image& image) {
   std::vector<double> channels;
-  for (std::size_t i = 0; i < picture.rgba.size(); ++i)
-    if (i % 4 != 3) channels.push_back(picture.rgba[i]);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i % 4 != 3) channels.push_back(image.rgba[i]);
   return channels;
 }
 
 constexpr emulation::Rounding bytes = emulation::normalised(8, 8);
 
-void expect_judged_well(const emulation::Picture& meant, const launcher::Picture& picture,
-                        const std::string& what) {
-  const emulation::Verdict verdict = emulation::judge(meant, colours(picture), 3, emulation::ray_termination);
+void expect_judged_well(const emulation::Image& meant, const launcher::Image& image, const std::string& what) {
+  const emulation::Verdict verdict = emulation::judge(meant, colours(image), 3, emulation::ray_termination);
   fmt::print("{}: RMS {:.2e}, max {:.2e}, beyond the bounds by {:.2e}, RMS of the bounds {:.2e}\n", what,
              verdict.rms, verdict.max, verdict.beyond, verdict.width);
   EXPECT_EQ(verdict.outside, 0) << what;
@@ -166,7 +165,7 @@ void expect_substituted(const Trace& trace, int nodes) {
   EXPECT_EQ(figures.at("frames_substituted"), trace.substituted ? trace.frames : 0) << figures.dump(1);
   EXPECT_EQ(figures.at("frames_left"), trace.substituted ? 0 : trace.frames);
   for (int frame = 1; frame <= trace.frames; ++frame) {
-    const launcher::Picture shown = saved(folder.path(), frame);
+    const launcher::Image shown = saved(folder.path(), frame);
     if (trace.way.empty()) {
       EXPECT_GE(launcher::difference(shown, expected(trace.name, frame)).psnr(), 35) << "frame " << frame;
     } else {
@@ -188,7 +187,7 @@ TEST_P(Kept, TracesAreSubstitutedOnRanks) {
   for (const int nodes : {1, 2, 4}) expect_substituted(GetParam(), nodes);
 }
 
-TEST_P(Kept, NativePicturesAreWhatTheViewerDescribes) {
+TEST_P(Kept, NativeImagesAreWhatTheViewerDescribes) {
   if (GetParam().way.empty()) GTEST_SKIP() << "its volume is not kept";
   const Folder folder;
   for (int frame = 1; frame <= GetParam().frames; ++frame)

@@ -1,4 +1,4 @@
-// Vertices in all the ways that OpenGL takes them: what a trace keeps of them draws the same picture.
+// Vertices in all the ways that OpenGL takes them: what a trace keeps of them draws the same image.
 #include <array>
 #include <cstring>
 
@@ -56,7 +56,7 @@ TEST_F(Vertices, DisplayListsNestedCalledByNamesAndExecutedWhileTheyAreMade) {
   gl().CallLists(2, GL_UNSIGNED_BYTE, names.data());
   gl().Translatef(0.3F, -0.7F, 0);
   gl().CallList(lists + 2);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, InterleavedArraysOfTheApplicationThatChangeAfterTheDraw) {
@@ -66,7 +66,7 @@ TEST_F(Vertices, InterleavedArraysOfTheApplicationThatChangeAfterTheDraw) {
   for (Vertex& vertex : vertices) vertex.x = -vertex.x;
   gl().DrawArrays(GL_TRIANGLES, 3, 3);
   std::memset(vertices.data(), 0, sizeof vertices);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, IndicesOfTheApplication) {
@@ -78,7 +78,7 @@ TEST_F(Vertices, IndicesOfTheApplication) {
   gl().DrawRangeElements(GL_LINE_STRIP, 0, 3, 6, GL_UNSIGNED_SHORT, shorts.data());
   bytes = {};
   shorts = {};
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, SeveralDrawsInOneCall) {
@@ -92,7 +92,7 @@ TEST_F(Vertices, SeveralDrawsInOneCall) {
   const std::array<GLint, 2> starts = {0, 3};
   const std::array<GLsizei, 2> lengths = {3, 3};
   gl().MultiDrawArrays(GL_TRIANGLES, starts.data(), lengths.data(), 2);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, ElementsBetweenBeginAndEnd) {
@@ -104,7 +104,7 @@ TEST_F(Vertices, ElementsBetweenBeginAndEnd) {
   gl().Vertex2f(0.9F, -0.9F);
   gl().End();
   std::memset(vertices.data(), 0, sizeof vertices);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, InBuffersThatAreMapped) {
@@ -144,7 +144,7 @@ TEST_F(Vertices, InBuffersThatAreMapped) {
     draw(buffers[2], 0);
     gl().Finish();
   }
-  expect_same_pictures();
+  expect_same_images();
 }
 
 TEST_F(Vertices, OfGenericAttributesInTheApplicationsMemory) {
@@ -171,7 +171,7 @@ TEST_F(Vertices, OfGenericAttributesInTheApplicationsMemory) {
   gl().VertexAttribPointer(5, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(Vertex), vertices[0].colour);
   gl().DrawArrays(GL_TRIANGLES, 0, 6);
   std::memset(vertices.data(), 0, sizeof vertices);
-  expect_same_pictures();
+  expect_same_images();
 }
 
 }  // namespace

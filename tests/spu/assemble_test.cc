@@ -87,11 +87,11 @@ TEST_F(Assemble, KnowsItsUnitsByName) {
 
 TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
   for (const UnitDescription* unit : unit_table()) {
-    if (unit->standing == Standing::last) continue;
+    if (unit->position == UnitPosition::last) continue;
     // Such pairs are assembled from their first unit; traces are files, and have tests of their own.
     if (std::string_view(unit->name) == "unpack" || std::string_view(unit->name) == "trace") continue;
-    // Others draw with it, and have to be somewhere (tests/spu/strips).
-    if (std::string_view(unit->name) == "strips") continue;
+    // Others draw with it, and have to be somewhere (tests/spu/tiles).
+    if (std::string_view(unit->name) == "tiles") continue;
     std::string chain;
     for (const char* name : {unit->needs, unit->name, unit->leads_to, "driver"}) {
       if (name != nullptr) chain.append(name).append(" ");
@@ -100,8 +100,8 @@ TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
   }
 }
 
-TEST_F(Assemble, StripsWithoutStagesAreToldWhereTheyAre) {
-  EXPECT_THAT(error_of("strips(of=2) driver"), HasSubstr("--polygons strips"));
+TEST_F(Assemble, TilesWithoutStagesAreToldWhereTheyAre) {
+  EXPECT_THAT(error_of("tiles(of=2) driver"), HasSubstr("--tiles on"));
 }
 
 TEST_F(Assemble, MakesUnitsInTheirOrder) {

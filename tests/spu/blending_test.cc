@@ -121,13 +121,13 @@ const std::vector<Format>& formats() {
   return all;
 }
 
-/// What one picture of all slices may be off in a framebuffer of the format: it is blended once; alpha that
+/// What one image of all slices may be off in a framebuffer of the format: it is blended once; alpha that
 /// stands apart is made by itself, and goes there in two steps.
 emulation::Rounding once(const Format& format) {
   emulation::Rounding rounding = emulation::presented(format.rounding);
   rounding.alpha_result *= 2;
   if (format.alpha_bits <= 8) rounding.alpha_result += emulation::alpha_termination;
-  // The picture itself: two roundings for each of the slices.
+  // The image itself: two roundings for each of the slices.
   rounding.relative += 2 * 40 * emulation::float_step;
   return rounding;
 }
@@ -174,7 +174,7 @@ TEST_P(EveryBlending, LiesWithinItsArithmeticsBoundsInEveryColourFormat) {
           bare);
       const auto under = frame(*app, target, scene, true);
       EXPECT_EQ(app->substituted(), 1U) << format.name << ": " << app->last_reason();
-      const emulation::Picture shown =
+      const emulation::Image shown =
           emulation::draw(exact, emulation::ours, {.clamps = format.rounding.clamps}, once(format));
       expect_within(what.c_str(), shown, under);
       EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
@@ -257,7 +257,7 @@ float intensity(float stored) {
   return stored <= 0.04045F ? stored / 12.92F : std::pow((stored + 0.055F) / 1.055F, 2.4F);
 }
 
-TEST_P(Destinations, ShowThePictureWithinTheirBounds) {
+TEST_P(Destinations, ShowTheImageWithinTheirBounds) {
   const Destination& destination = GetParam();
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -280,7 +280,7 @@ TEST_P(Destinations, ShowThePictureWithinTheirBounds) {
   };
   const auto under = frame(true, true);
   EXPECT_EQ(app->substituted(), 1U) << app->last_reason();
-  const emulation::Picture shown =
+  const emulation::Image shown =
       emulation::draw(frame_of({table_cube(blob_values(), 25)}, {0.1F, 0.2F, 0.3F, 0.4F}), emulation::ours,
                       {.clamps = destination.format.rounding.clamps}, once(destination.format));
   expect_within(destination.format.name, shown, under, destination.channels);

@@ -24,7 +24,7 @@ struct BrickKind {
   };
   bool front_to_back = false;
   std::array<float, 4> background{0.1F, 0.2F, 0.3F, 0};
-  double least_psnr = 55;  ///< of a picture that is right, against the driver's own
+  double least_psnr = 55;  ///< of an image that is right, against the driver's own
 };
 
 class BrickedCube {

@@ -1,4 +1,4 @@
-// Error and time budgets over a real render service, without OpenGL: the picture keeps the error that is named,
+// Error and time budgets over a real render service, without OpenGL: the image keeps the error that is named,
 // at a cost that falls with it; what cannot be kept is said.
 #include "spu/volume/budget/budget.h"
 
@@ -23,7 +23,7 @@ using volume::Image;
 using volume::Method;
 using volume::RenderRequest;
 
-/// The nodes of a busy machine: each picture comes late.
+/// The nodes of a busy machine: each image comes late.
 class LateService final : public compositor::RenderService {
  public:
   explicit LateService(compositor::RenderService& service) : service_(service) {}
@@ -56,7 +56,7 @@ class BudgetTest : public testing::Test {
   void SetUp() override {
     texture = sampled(describe({40, 40, 40}, volume::TexelType::u8), sphere_field(0.35, 0.25));
     texture.description.version = 3;
-    texture.description.margin = budget_margin;
+    texture.description.ghost_layer = budget_ghost_layer;
     service->begin_volume(texture.description);
     const std::vector<volume::TexelBox> all{texture.description.stored};
     service->add_texels(texture.description.id, all, texture.texels);
@@ -74,7 +74,7 @@ class BudgetTest : public testing::Test {
     return budget.request(*service, own, "", texture.description, 1, counters);
   }
 
-  /// Greatest error of every pixel of a picture, by the texture itself.
+  /// Greatest error of every pixel of an image, by the texture itself.
   double error_of(const RenderRequest& request) {
     const auto meaning = std::get<Meaning>(meaning_of(own, texture.description.size));
     const auto medium =
@@ -182,9 +182,9 @@ TEST_F(BudgetTest, APictureThatIsWrongByMoreMakesTheNextFiner) {
   for (float& value : wrong.rgba) value += 0.1F;
   // Rays are looked at in a fiftieth of the time that passes: sooner or later some are.
   const auto start = std::chrono::steady_clock::now();
-  while (counters.pictures_over == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
+  while (counters.images_over == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
     budget.look_at(*service, wrong.view(), 1, counters);
-  EXPECT_GT(counters.pictures_over, 0U);
+  EXPECT_GT(counters.images_over, 0U);
   EXPECT_GT(counters.rays, 0U);
   const auto next = ask(budget);
   ASSERT_TRUE(next);
@@ -193,16 +193,16 @@ TEST_F(BudgetTest, APictureThatIsWrongByMoreMakesTheNextFiner) {
 }
 
 TEST_F(BudgetTest, ATimeIsMetWithTheMostExactThatFits) {
-  // What pictures take is said by whoever casts them: no clock decides here.
+  // What images take is said by whoever casts them: no clock decides here.
   Budget budget({.ms = 20});
   ASSERT_TRUE(ask(budget));
-  const Image picture = copy_of(service->render(*ask(budget)).image);
-  for (int frame = 0; frame < 200; ++frame) budget.look_at(*service, picture.view(), 100, counters);
+  const Image image = copy_of(service->render(*ask(budget)).image);
+  for (int frame = 0; frame < 200; ++frame) budget.look_at(*service, image.view(), 100, counters);
   ASSERT_TRUE(ask(budget));
   EXPECT_NE(std::string(counters.note).find("the time that is asked for cannot be kept"), std::string::npos)
-      << "pictures take 100 ms whatever is done: " << counters.note;
+      << "images take 100 ms whatever is done: " << counters.note;
   const std::string cheapest = counters.setting;
-  for (int frame = 0; frame < 200; ++frame) budget.look_at(*service, picture.view(), 1e-3, counters);
+  for (int frame = 0; frame < 200; ++frame) budget.look_at(*service, image.view(), 1e-3, counters);
   ASSERT_TRUE(ask(budget));
   EXPECT_NE(cheapest, counters.setting) << "there is time for more";
   EXPECT_STREQ(counters.note, "");

@@ -212,7 +212,7 @@ TEST_F(ChainTest, UnitsMayFillTheirSlotsAnew) {
   EXPECT_EQ(head.Clear, mock_.table().Clear);
 }
 
-TEST_F(ChainTest, NullSwallowsEveryCall) {
+TEST_F(ChainTest, NullDiscardsEveryCall) {
   ASSERT_EQ(assemble(chain_, "null driver", nullptr).value_or(""), "");
   chain_.make_current();
   GLuint name = 77;

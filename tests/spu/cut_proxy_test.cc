@@ -15,7 +15,7 @@ namespace {
 using Composition = MarchStyle::Composition;
 
 constexpr double alike = 45;    // dB
-constexpr double another = 35;  // dB; below, a picture is another one
+constexpr double another = 35;  // dB; below, an image is another one
 constexpr std::uint32_t middle_region = 1U << 13U;
 
 class CutScene {
@@ -31,7 +31,7 @@ class CutScene {
     return app->read_pixels();
   }
 
-  /// Substituted, and like the application's own; that picture.
+  /// Substituted, and like the application's own; that image.
   std::vector<float> expect_alike(double angle, const std::string& what) {
     const auto before = app->substituted();
     const auto under = frame(true, angle);
@@ -180,7 +180,7 @@ TEST(CutProxies, TheEyeGoesInsideAndOutAgain) {
   }
 }
 
-TEST(CutProxies, AFirstLookFromInsideIsTheApplicationsPicture) {
+TEST(CutProxies, AFirstLookFromInsideIsTheApplicationsImage) {
   MarchStyle style{.extent = stretched};
   style.closed_before_eye = true;
   style.near = 0.02;

@@ -134,21 +134,21 @@ emulation::Frame frame_of(std::vector<emulation::Volume> volumes, const emulatio
   return frame;
 }
 
-int channels_outside(const emulation::Picture& picture, const std::vector<float>& pixels, int channels,
+int channels_outside(const emulation::Image& image, const std::vector<float>& pixels, int channels,
                      double slack) {
-  return emulation::judge(picture, top_down(pixels, channels), channels, slack).outside;
+  return emulation::judge(image, top_down(pixels, channels), channels, slack).outside;
 }
 
-void expect_within(const char* what, const emulation::Picture& picture, const std::vector<float>& pixels,
+void expect_within(const char* what, const emulation::Image& image, const std::vector<float>& pixels,
                    int channels, double slack) {
   const std::vector<double> drawn = top_down(pixels, channels);
-  const emulation::Verdict verdict = emulation::judge(picture, drawn, channels, slack);
+  const emulation::Verdict verdict = emulation::judge(image, drawn, channels, slack);
   std::printf("%s: RMS %.1e, max %.1e, beyond the bounds by %.1e (%d of %zu), RMS of the bounds %.1e\n", what,
               verdict.rms, verdict.max, verdict.beyond, verdict.outside, drawn.size(), verdict.width);
   EXPECT_EQ(verdict.outside, 0) << what;
 }
 
-emulation::Picture shown_in_bytes(const emulation::Frame& frame, emulation::Precision precision) {
+emulation::Image shown_in_bytes(const emulation::Frame& frame, emulation::Precision precision) {
   return emulation::draw(frame, precision, {}, emulation::presented(emulation::normalised(8, 8)));
 }
 

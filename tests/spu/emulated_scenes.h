@@ -38,17 +38,17 @@ emulation::Volume table_cube(std::vector<double> values, double angle, bool fron
 emulation::Frame frame_of(std::vector<emulation::Volume> volumes, const emulation::Colour& background,
                           const emulation::Blending& blending = {usual_function, usual_function});
 
-/// Prints how the pixels (RGBA, bottom row first) lie to the picture, and expects all of the first `channels`
+/// Prints how the pixels (RGBA, bottom row first) lie to the image, and expects all of the first `channels`
 /// of each within their bounds. `slack` is added to these: what ends rays, and what float blends round.
-void expect_within(const char* what, const emulation::Picture& picture, const std::vector<float>& pixels,
+void expect_within(const char* what, const emulation::Image& image, const std::vector<float>& pixels,
                    int channels = 4, double slack = emulation::ray_termination);
 
 /// How many of these channels lie outside of their bounds.
-int channels_outside(const emulation::Picture& picture, const std::vector<float>& pixels, int channels = 4,
+int channels_outside(const emulation::Image& image, const std::vector<float>& pixels, int channels = 4,
                      double slack = emulation::ray_termination);
 
 /// What Understudy may show of the frame in a framebuffer of 8 bits.
-emulation::Picture shown_in_bytes(const emulation::Frame& frame,
-                                  emulation::Precision precision = emulation::ours);
+emulation::Image shown_in_bytes(const emulation::Frame& frame,
+                                emulation::Precision precision = emulation::ours);
 
 }  // namespace understudy::spu::testing

@@ -1,7 +1,8 @@
-// Through whatever door someone looks at the framebuffer, the volume's picture is there already.
+// Through whatever injection method someone looks at the framebuffer, the volume's image is there already.
 //
-// A run of slices is kept back until something could see its result. Each door here is the first call after the
-// slices; what it shows is then read past the chain, so that nothing but this call can have ended the run.
+// A run of slices is kept back until something could see its result. Each injection method here is the first
+// call after the slices; what it shows is then read past the chain, so that nothing but this call can have
+// ended the run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,15 +16,15 @@
 namespace understudy::spu::testing {
 namespace {
 
-using Picture = std::vector<float>;
+using Image = std::vector<float>;
 
 constexpr int size = GlApplication::size;
 constexpr int middle = size / 2;
-constexpr double alike = 40;      ///< dB, between the application's own picture and ours
-constexpr double different = 30;  ///< what a picture without the volume must not reach
+constexpr double alike = 40;      ///< dB, between the application's own image and ours
+constexpr double different = 30;  ///< what an image without the volume must not reach
 
 /// What an application has beside its window: two framebuffers with a texture each, textures of one and of
-/// three dimensions, and a buffer. All are made before the slices, so that a door is one call.
+/// three dimensions, and a buffer. All are made before the slices, so that an injection method is one call.
 struct Targets {
   std::array<GLuint, 2> framebuffer{};
   std::array<GLuint, 2> texture{};
@@ -32,7 +33,7 @@ struct Targets {
   GLuint buffer = 0;
 };
 
-constexpr GLsizeiptr bytes_of_a_picture = GLsizeiptr(4 * sizeof(float)) * size * size;
+constexpr GLsizeiptr bytes_of_a_image = GLsizeiptr(4 * sizeof(float)) * size * size;
 
 Targets make_targets(const DispatchTable& gl) {
   Targets targets;
@@ -57,7 +58,7 @@ Targets make_targets(const DispatchTable& gl) {
   gl.TextureStorage3D(targets.layer, 1, GL_RGBA8, size, size, 1);
   gl.GenBuffers(1, &targets.buffer);
   gl.BindBuffer(GL_PIXEL_PACK_BUFFER, targets.buffer);
-  gl.BufferData(GL_PIXEL_PACK_BUFFER, bytes_of_a_picture, nullptr, GL_STREAM_READ);
+  gl.BufferData(GL_PIXEL_PACK_BUFFER, bytes_of_a_image, nullptr, GL_STREAM_READ);
   gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   return targets;
 }
@@ -70,20 +71,20 @@ void delete_targets(const DispatchTable& gl, const Targets& targets) {
   gl.DeleteBuffers(1, &targets.buffer);
 }
 
-Picture pixels_of(GlApplication& app, GLuint framebuffer) {
+Image pixels_of(GlApplication& app, GLuint framebuffer) {
   const DispatchTable& gl = app.driver();
-  Picture pixels(std::size_t(4) * size * size);
+  Image pixels(std::size_t(4) * size * size);
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   gl.ReadPixels(0, 0, size, size, GL_RGBA, GL_FLOAT, pixels.data());
   return pixels;
 }
 
-Picture window(GlApplication& app) {
+Image window(GlApplication& app) {
   return pixels_of(app, 0);
 }
 
-Picture texels_of(GlApplication& app, GLuint texture, int height = size) {
-  Picture texels(std::size_t(4) * size * std::size_t(height));
+Image texels_of(GlApplication& app, GLuint texture, int height = size) {
+  Image texels(std::size_t(4) * size * std::size_t(height));
   app.driver().GetTextureImage(texture, 0, GL_RGBA, GL_FLOAT, GLsizei(texels.size() * sizeof(float)),
                                texels.data());
   return texels;
@@ -91,11 +92,11 @@ Picture texels_of(GlApplication& app, GLuint texture, int height = size) {
 
 enum class Into { window, texture };
 
-struct Door {
+struct EntryPoint {
   const char* name;
   Into into;  ///< where the slices are drawn
   /// Lets the framebuffer be seen, and answers with what is seen.
-  std::function<Picture(GlApplication&, const Targets&)> look;
+  std::function<Image(GlApplication&, const Targets&)> look;
 };
 
 /// Made past the chain: making it would end the run.
@@ -105,7 +106,7 @@ GLuint query(GlApplication& app) {
   return name;
 }
 
-std::vector<Door> ends_and_waits() {
+std::vector<EntryPoint> ends_and_waits() {
   return {
       {"swap", Into::window,
        [](GlApplication& app, const Targets&) {
@@ -116,9 +117,9 @@ std::vector<Door> ends_and_waits() {
        [](GlApplication& app, const Targets&) {
          const bool was_under = Chain::current() != nullptr;
          if (was_under) app.use_chain(false);
-         Picture picture = window(app);
+         Image image = window(app);
          app.use_chain(was_under);
-         return picture;
+         return image;
        }},
       {"glFlush", Into::window,
        [](GlApplication& app, const Targets&) {
@@ -149,21 +150,21 @@ std::vector<Door> ends_and_waits() {
        [](GlApplication& app, const Targets&) {
          const GLuint samples = query(app);
          app.gl().BeginQuery(GL_SAMPLES_PASSED, samples);
-         Picture picture = window(app);
+         Image image = window(app);
          app.gl().EndQuery(GL_SAMPLES_PASSED);
          GLuint passed = 1;
          app.gl().GetQueryObjectuiv(samples, GL_QUERY_RESULT, &passed);
          EXPECT_EQ(passed, 0U) << "the query began after the slices";
          app.driver().DeleteQueries(1, &samples);
-         return picture;
+         return image;
        }},
       {"glQueryCounter", Into::window,
        [](GlApplication& app, const Targets&) {
          const GLuint time = query(app);
          app.gl().QueryCounter(time, GL_TIMESTAMP);
-         Picture picture = window(app);
+         Image image = window(app);
          app.driver().DeleteQueries(1, &time);
-         return picture;
+         return image;
        }},
       {"glGetError", Into::window,
        [](GlApplication& app, const Targets&) {
@@ -173,19 +174,19 @@ std::vector<Door> ends_and_waits() {
   };
 }
 
-std::vector<Door> reads_and_copies() {
+std::vector<EntryPoint> reads_and_copies() {
   return {
       {"glReadPixels", Into::window, [](GlApplication& app, const Targets&) { return app.read_pixels(); }},
       {"glReadnPixels", Into::window,
        [](GlApplication& app, const Targets&) {
-         Picture pixels(std::size_t(4) * size * size);
+         Image pixels(std::size_t(4) * size * size);
          app.gl().ReadnPixels(0, 0, size, size, GL_RGBA, GL_FLOAT, GLsizei(pixels.size() * sizeof(float)),
                               pixels.data());
          return pixels;
        }},
       {"glMapBuffer after glReadPixels into it", Into::window,
        [](GlApplication& app, const Targets& targets) {
-         Picture pixels(std::size_t(4) * size * size);
+         Image pixels(std::size_t(4) * size * size);
          app.gl().BindBuffer(GL_PIXEL_PACK_BUFFER, targets.buffer);
          app.gl().ReadPixels(0, 0, size, size, GL_RGBA, GL_FLOAT, nullptr);
          const auto* mapped = static_cast<const float*>(app.gl().MapBuffer(GL_PIXEL_PACK_BUFFER, GL_READ_ONLY));
@@ -244,14 +245,14 @@ std::vector<Door> reads_and_copies() {
   };
 }
 
-std::vector<Door> changes_of_the_framebuffer() {
+std::vector<EntryPoint> changes_of_the_framebuffer() {
   return {
       {"glBindFramebuffer", Into::window,
        [](GlApplication& app, const Targets& targets) {
          app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[1]);
-         Picture picture = window(app);
+         Image image = window(app);
          app.driver().BindFramebuffer(GL_FRAMEBUFFER, 0);
-         return picture;
+         return image;
        }},
       {"glClear of a part", Into::window,
        [](GlApplication& app, const Targets&) {
@@ -279,48 +280,48 @@ std::vector<Door> changes_of_the_framebuffer() {
       {"glDrawBuffer", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          app.gl().DrawBuffer(GL_NONE);
-         Picture picture = pixels_of(app, targets.framebuffer[0]);
+         Image image = pixels_of(app, targets.framebuffer[0]);
          app.driver().DrawBuffer(GL_COLOR_ATTACHMENT0);
-         return picture;
+         return image;
        }},
       {"glDrawBuffers", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          const GLenum none = GL_NONE;
          const GLenum first = GL_COLOR_ATTACHMENT0;
          app.gl().DrawBuffers(1, &none);
-         Picture picture = pixels_of(app, targets.framebuffer[0]);
+         Image image = pixels_of(app, targets.framebuffer[0]);
          app.driver().DrawBuffers(1, &first);
-         return picture;
+         return image;
        }},
       {"glNamedFramebufferDrawBuffer", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          app.gl().NamedFramebufferDrawBuffer(targets.framebuffer[0], GL_NONE);
-         Picture picture = pixels_of(app, targets.framebuffer[0]);
+         Image image = pixels_of(app, targets.framebuffer[0]);
          app.driver().NamedFramebufferDrawBuffer(targets.framebuffer[0], GL_COLOR_ATTACHMENT0);
-         return picture;
+         return image;
        }},
       {"glFramebufferTexture2D", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          app.gl().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
-         Picture picture = texels_of(app, targets.texture[0]);
+         Image image = texels_of(app, targets.texture[0]);
          app.driver().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
                                            targets.texture[0], 0);
-         return picture;
+         return image;
        }},
       {"glFramebufferTexture", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          app.gl().FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, 0, 0);
-         Picture picture = texels_of(app, targets.texture[0]);
+         Image image = texels_of(app, targets.texture[0]);
          app.driver().FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, targets.texture[0], 0);
-         return picture;
+         return image;
        }},
       {"glNamedFramebufferTexture", Into::texture,
        [](GlApplication& app, const Targets& targets) {
          app.gl().NamedFramebufferTexture(targets.framebuffer[0], GL_COLOR_ATTACHMENT0, 0, 0);
-         Picture picture = texels_of(app, targets.texture[0]);
+         Image image = texels_of(app, targets.texture[0]);
          app.driver().NamedFramebufferTexture(targets.framebuffer[0], GL_COLOR_ATTACHMENT0, targets.texture[0],
                                               0);
-         return picture;
+         return image;
        }},
       {"glDeleteFramebuffers", Into::texture,
        [](GlApplication& app, const Targets& targets) {
@@ -330,24 +331,24 @@ std::vector<Door> changes_of_the_framebuffer() {
   };
 }
 
-std::vector<Door> looks_at_an_attachment() {
+std::vector<EntryPoint> looks_at_an_attachment() {
   return {
       {"glGetTexImage", Into::texture,
        [](GlApplication& app, const Targets&) {
-         Picture texels(std::size_t(4) * size * size);
+         Image texels(std::size_t(4) * size * size);
          app.gl().GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, texels.data());
          return texels;
        }},
       {"glGetTextureImage", Into::texture,
        [](GlApplication& app, const Targets& targets) {
-         Picture texels(std::size_t(4) * size * size);
+         Image texels(std::size_t(4) * size * size);
          app.gl().GetTextureImage(targets.texture[0], 0, GL_RGBA, GL_FLOAT,
                                   GLsizei(texels.size() * sizeof(float)), texels.data());
          return texels;
        }},
       {"glGetTextureSubImage", Into::texture,
        [](GlApplication& app, const Targets& targets) {
-         Picture texels(std::size_t(4) * size * size);
+         Image texels(std::size_t(4) * size * size);
          app.gl().GetTextureSubImage(targets.texture[0], 0, 0, 0, 0, size, size, 1, GL_RGBA, GL_FLOAT,
                                      GLsizei(texels.size() * sizeof(float)), texels.data());
          return texels;
@@ -377,9 +378,9 @@ std::vector<Door> looks_at_an_attachment() {
 }
 
 /// Clears, draws the volume or nothing up to the last slice, and looks.
-Picture frame(GlApplication& app, const SliceScene& scene, const Door& door, bool volume = true) {
+Image frame(GlApplication& app, const SliceScene& scene, const EntryPoint& injection, bool volume = true) {
   const Targets targets = make_targets(app.gl());
-  if (door.into == Into::texture) app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[0]);
+  if (injection.into == Into::texture) app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[0]);
   if (volume) {
     scene.draw_to_the_last_slice(app, 25);
   } else {
@@ -387,30 +388,30 @@ Picture frame(GlApplication& app, const SliceScene& scene, const Door& door, boo
     nothing.slices = [](GlApplication&, double) {};
     nothing.draw_to_the_last_slice(app, 25);
   }
-  Picture picture = door.look(app, targets);
+  Image image = injection.look(app, targets);
   app.driver().BindFramebuffer(GL_FRAMEBUFFER, 0);
   scene.tidy_up(app);
   app.end_frame();
   delete_targets(app.gl(), targets);
-  return picture;
+  return image;
 }
 
-class Doors : public ::testing::TestWithParam<Door> {};
+class InjectionMethods : public ::testing::TestWithParam<EntryPoint> {};
 
-TEST_P(Doors, ShowThePicture) {
-  const Door& door = GetParam();
+TEST_P(InjectionMethods, ShowTheImage) {
+  const EntryPoint& injection = GetParam();
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = immediate_rgba();
   scene.set_up(*app);
   app->use_chain(false);
-  const Picture bare = frame(*app, scene, door);
-  EXPECT_LT(psnr(frame(*app, scene, door, false), bare), different)
+  const Image bare = frame(*app, scene, injection);
+  EXPECT_LT(psnr(frame(*app, scene, injection, false), bare), different)
       << "the volume cannot be seen there: the test tests nothing";
   app->use_chain(true);
   for (std::uint64_t i = 1; i <= 2; ++i) {
-    const double likeness = psnr(frame(*app, scene, door), bare);
-    std::printf("%s, frame %d: %.1f dB\n", door.name, int(i), likeness);
+    const double likeness = psnr(frame(*app, scene, injection), bare);
+    std::printf("%s, frame %d: %.1f dB\n", injection.name, int(i), likeness);
     EXPECT_GE(likeness, alike) << "frame " << i;
     EXPECT_EQ(app->substituted(), i) << app->last_reason();
   }
@@ -418,18 +419,21 @@ TEST_P(Doors, ShowThePicture) {
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-std::string name_of_door(const ::testing::TestParamInfo<Door>& info) {
+std::string name_of_method(const ::testing::TestParamInfo<EntryPoint>& info) {
   std::string name = info.param.name;
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Ends, Doors, ::testing::ValuesIn(ends_and_waits()), name_of_door);
-INSTANTIATE_TEST_SUITE_P(Reads, Doors, ::testing::ValuesIn(reads_and_copies()), name_of_door);
-INSTANTIATE_TEST_SUITE_P(Changes, Doors, ::testing::ValuesIn(changes_of_the_framebuffer()), name_of_door);
-INSTANTIATE_TEST_SUITE_P(Attachments, Doors, ::testing::ValuesIn(looks_at_an_attachment()), name_of_door);
+INSTANTIATE_TEST_SUITE_P(Ends, InjectionMethods, ::testing::ValuesIn(ends_and_waits()), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Reads, InjectionMethods, ::testing::ValuesIn(reads_and_copies()), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Changes, InjectionMethods, ::testing::ValuesIn(changes_of_the_framebuffer()),
+                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Attachments, InjectionMethods, ::testing::ValuesIn(looks_at_an_attachment()),
+                         name_of_method);
 
-/// The doors above stand for all: while a run is open, no command but those that add to it goes past.
+/// The injection methods above stand for all: while a run is open, no command but those that add to it goes
+/// past.
 TEST(OpenRun, IsClosedByEveryCallThatAddsNothing) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -457,7 +461,7 @@ GLuint bound(const DispatchTable& driver, GLenum binding) {
 class Losses : public ::testing::TestWithParam<Loss> {
  protected:
   /// In an application of its own, since it is not the same afterwards.
-  static Picture lost_after_the_slices(bool under) {
+  static Image lost_after_the_slices(bool under) {
     auto app = GlApplication::start(GetParam().scene().profile);
     if (!app) return {};
     const SliceScene scene = GetParam().scene();
@@ -465,18 +469,18 @@ class Losses : public ::testing::TestWithParam<Loss> {
     app->use_chain(under);
     scene.draw_to_the_last_slice(*app, 25);
     GetParam().lose(app->gl(), app->driver());
-    Picture picture = window(*app);
+    Image image = window(*app);
     EXPECT_EQ(app->substituted(), under ? 1U : 0U) << app->last_reason();
     EXPECT_EQ(app->left(), 0U) << app->last_reason();
     scene.tidy_up(*app);
     app->end_frame();
     EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
-    return picture;
+    return image;
   }
 };
 
-TEST_P(Losses, LeaveThePicture) {
-  const Picture bare = lost_after_the_slices(false);
+TEST_P(Losses, LeaveTheImage) {
+  const Image bare = lost_after_the_slices(false);
   if (bare.empty()) GTEST_SKIP() << "no EGL context here";
   const double likeness = psnr(lost_after_the_slices(true), bare);
   std::printf("%s: %.1f dB\n", GetParam().name, likeness);
@@ -533,11 +537,11 @@ TEST(OtherThreads, SeeInASharedTextureWhatWasDrawnBeforeTheFence) {
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = immediate_rgba();
   scene.set_up(*app);
-  const Door in_another_thread{
+  const EntryPoint in_another_thread{
       "another thread", Into::texture, [](GlApplication& first, const Targets& targets) {
         const GLsync fence = first.gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
         first.gl().Flush();
-        Picture texels(std::size_t(4) * size * size);
+        Image texels(std::size_t(4) * size * size);
         const bool under = Chain::current() != nullptr;
         std::thread([&] {
           const auto second = first.start_companion();
@@ -551,7 +555,7 @@ TEST(OtherThreads, SeeInASharedTextureWhatWasDrawnBeforeTheFence) {
         return texels;
       }};
   app->use_chain(false);
-  const Picture bare = frame(*app, scene, in_another_thread);
+  const Image bare = frame(*app, scene, in_another_thread);
   EXPECT_LT(psnr(frame(*app, scene, in_another_thread, false), bare), different);
   app->use_chain(true);
   for (std::uint64_t i = 1; i <= 2; ++i) {
@@ -572,12 +576,12 @@ TEST(Depth, IsThereForAReadRightAfterTheSlices) {
     app->gl().Enable(GL_DEPTH_TEST);
     app->gl().DepthMask(GL_TRUE);
     scene.draw_to_the_last_slice(*app, 25);
-    Picture read = app->read_depth();
+    Image read = app->read_depth();
     scene.tidy_up(*app);
     app->end_frame();
     return read;
   };
-  const Picture bare = depth(false);
+  const Image bare = depth(false);
   EXPECT_LT(*std::min_element(bare.begin(), bare.end()), 1) << "the slices write no depth";
   for (std::uint64_t i = 1; i <= 3; ++i) {
     EXPECT_EQ(depth(true), bare) << "frame " << i;

@@ -12,7 +12,7 @@
 #include "slice_scenes.h"
 #include "spu/report/counters.h"
 #include "spu/volume/frame_ledger.h"
-#include "spu/volume/last_picture.h"
+#include "spu/volume/last_image.h"
 
 namespace understudy::spu::testing {
 namespace {
@@ -86,14 +86,14 @@ TEST(Frames, AreCountedAsSubstitutedWhereAnotherContextEndsThem) {
 
 class CountingService final : public compositor::RenderService {
  public:
-  explicit CountingService(int& pictures) : pictures_(pictures) {}
+  explicit CountingService(int& images) : images_(images) {}
   void begin_volume(const volume::VolumeDescription&) override {}
   void begin_change(volume::VolumeId, std::uint64_t) override {}
   void add_texels(volume::VolumeId, std::span<const volume::TexelBox>, std::span<const std::byte>) override {}
   void end_volume(volume::VolumeId) override {}
   void forget_volume(volume::VolumeId) override {}
   compositor::Rendered render(const volume::RenderRequest& request) override {
-    ++pictures_;
+    ++images_;
     image_ = volume::Image({0, 0, 1, 1});
     image_.rgba[0] = float(request.volume);
     return {image_.view(), {}};
@@ -105,35 +105,35 @@ class CountingService final : public compositor::RenderService {
   int nodes() const override { return 0; }
 
  private:
-  int& pictures_;
+  int& images_;
   volume::Image image_;
 };
 
-TEST(LastPicture, AnswersARequestThatCameBefore) {
-  int pictures = 0;
+TEST(LastImage, AnswersARequestThatCameBefore) {
+  int images = 0;
   std::vector<std::string> news;
-  const auto service = with_last_picture(std::make_unique<CountingService>(pictures), true,
-                                         [&](std::string_view why) { news.emplace_back(why); });
+  const auto service = with_last_image(std::make_unique<CountingService>(images), true,
+                                       [&](std::string_view why) { news.emplace_back(why); });
   volume::RenderRequest request;
   EXPECT_FALSE(service->render(request).repeated);
   EXPECT_TRUE(service->render(request).repeated);
-  EXPECT_EQ(pictures, 1);
+  EXPECT_EQ(images, 1);
   request.texture_to_clip[3] = 0.25;
   service->render(request);
-  EXPECT_EQ(pictures, 2) << "another request";
+  EXPECT_EQ(images, 2) << "another request";
   service->forget_volume(7);
   service->render(request);
-  EXPECT_EQ(pictures, 3) << "the picture may have gone with the service's next answer";
+  EXPECT_EQ(images, 3) << "the image may have gone with the service's next answer";
   ++request.version;
   service->render(request);
   EXPECT_EQ(news, (std::vector<std::string>{"the first of its volume", "", "the camera moved",
                                             "others were asked for since", "texels changed"}));
 }
 
-TEST(LastPicture, OfSeveralInTurnIsKept) {
-  int pictures = 0;
+TEST(LastImage, OfSeveralInTurnIsKept) {
+  int images = 0;
   const auto service =
-      with_last_picture(std::make_unique<CountingService>(pictures), true, [](std::string_view) {});
+      with_last_image(std::make_unique<CountingService>(images), true, [](std::string_view) {});
   std::array<volume::RenderRequest, 2> requests;
   requests[1].volume = 1;
   for (int frame = 0; frame < 5; ++frame)
@@ -141,12 +141,12 @@ TEST(LastPicture, OfSeveralInTurnIsKept) {
       const compositor::Rendered rendered = service->render(request);
       ASSERT_EQ(rendered.image.rgba.size(), 4U);
       EXPECT_EQ(rendered.image.rgba[0], float(request.volume));
-      EXPECT_EQ(rendered.repeated, frame >= 2) << "the second time they are asked for, pictures are kept";
+      EXPECT_EQ(rendered.repeated, frame >= 2) << "the second time they are asked for, images are kept";
     }
-  EXPECT_EQ(pictures, 4);
+  EXPECT_EQ(images, 4);
 }
 
-TEST(Frames, ThatDrawTheSameTwiceAskForOnePicture) {
+TEST(Frames, ThatDrawTheSameTwiceAskForOneImage) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   const SliceScene scene = fogged_polygons();

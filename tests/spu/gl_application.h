@@ -38,7 +38,7 @@ class GlApplication {
   /// With false the application talks to the driver: the bare run.
   void use_chain(bool on);
 
-  /// As the door does around glXSwapBuffers.
+  /// As the injection method does around glXSwapBuffers.
   void end_frame();
 
   std::vector<float> read_pixels();
@@ -77,7 +77,7 @@ struct Blob {
   std::vector<std::uint8_t> texels() const;
 };
 
-/// PSNR of two pictures in dB.
+/// PSNR of two images in dB.
 double psnr(const std::vector<float>& a, const std::vector<float>& b);
 
 }  // namespace understudy::spu::testing

@@ -188,7 +188,7 @@ class Slices {
   GLuint program_ = 0;
 };
 
-TEST(MultiDraw, OfSlicesGivesTheApplicationsPicture) {
+TEST(MultiDraw, OfSlicesGivesTheApplicationsImage) {
   for (const bool in_memory : {false, true}) {
     for (const Way& way : ways()) {
       if (in_memory && way.only_buffers) continue;

@@ -37,7 +37,7 @@ class Multisampled : public ::testing::Test {
   std::unique_ptr<GlApplication> app_;
 };
 
-TEST_F(Multisampled, SlicesShowTheDriversPicture) {
+TEST_F(Multisampled, SlicesShowTheDriversImage) {
   for (const GLenum format : {GL_RGBA8, GL_RGBA16F, GL_RGBA32F}) {
     const auto draw = [](GlApplication& app) { draw_cube(app); };
     const auto under = frame(format, true, draw);

@@ -1,4 +1,4 @@
-// Slices that no sound viewer draws, and some do: the application's picture bit for bit, or one that cannot be
+// Slices that no sound viewer draws, and some do: the application's image bit for bit, or one that cannot be
 // told from it, and no error that the application did not make.
 #include <gtest/gtest.h>
 
@@ -161,7 +161,7 @@ std::vector<float> shown(const OddSlices& odd, bool under, std::uint64_t& substi
   return pixels;
 }
 
-TEST(OddSlices, GiveTheApplicationsPictureAndNoErrorOfOurs) {
+TEST(OddSlices, GiveTheApplicationsImageAndNoErrorOfOurs) {
   if (!GlApplication::start(Profile::compatibility))
     GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   for (const OddSlices& odd : all_odd_slices()) {
@@ -188,7 +188,7 @@ TEST(OddSlices, InAContextThatGoesAwayHarmNobody) {
     app->end_frame();
     EXPECT_EQ(app->substituted(), 1U) << scene.name << ": " << app->last_reason();
     scene.draw_to_the_last_slice(*app, 20);
-    // The door's word that the context is gone: no call may be made any more.
+    // The entry library's word that the context is gone: no call may be made any more.
     Chain::current()->abandon();
     app.reset();
 

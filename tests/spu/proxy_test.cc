@@ -1,4 +1,4 @@
-// Ray casters in a fragment shader, recognised by what they draw: the same picture, or the application's own.
+// Ray casters in a fragment shader, recognised by what they draw: the same image, or the application's own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ std::vector<Kind> kinds() {
            {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
 }
 
-TEST(Proxies, GiveTheApplicationsPictureFromEveryAngle) {
+TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
   for (const Kind& kind : kinds()) {
     ProxyScene scene(kind.style);
     if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";

@@ -1,4 +1,4 @@
-// The volume unit above a real driver: recognised, substituted, and the same picture.
+// The volume unit above a real driver: recognised, substituted, and the same image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ class Recognition : public ::testing::TestWithParam<std::size_t> {
   std::unique_ptr<GlApplication> app_;
 };
 
-TEST_P(Recognition, GivesTheApplicationsPictureFromEveryAngle) {
+TEST_P(Recognition, GivesTheApplicationsImageFromEveryAngle) {
   for (const double angle : {0.0, 15.0, -40.0, 55.0}) {
     const auto before = app_->substituted();
     const auto under = frame(angle, true);
@@ -184,7 +184,7 @@ TEST(RecognitionOfFormats, EveryScalarFormatIsReadBackAndProbed) {
   }
 }
 
-TEST(RecognitionOfFormats, NotANumberInAFloatVolumeGivesAFinitePicture) {
+TEST(RecognitionOfFormats, NotANumberInAFloatVolumeGivesAFiniteImage) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = client_arrays_table();
@@ -258,9 +258,9 @@ TEST(RecognitionOfDepth, WhatTheSlicesWriteIsThereForWhoeverLooks) {
           app->gl().Vertex3d(x, y, 0.5);
         app->gl().End();
       }
-      auto picture = app->read_pixels();
+      auto image = app->read_pixels();
       app->end_frame();
-      return picture;
+      return image;
     };
     const auto bare = frame(false);
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Whatever is not understood is left to the application, bit for bit, with its reason.
+// Whatever is not understood is not substituted, bit for bit, with its reason.
 #include <gtest/gtest.h>
 
 #include "slice_scenes.h"
@@ -83,7 +83,7 @@ std::vector<Refusal> refusals() {
   };
 }
 
-TEST(Refusals, LeaveTheApplicationsPictureBitIdentical) {
+TEST(Refusals, LeaveTheApplicationsImageBitIdentical) {
   for (const Refusal& refusal : refusals()) {
     auto app = GlApplication::start(Profile::compatibility);
     if (!app) GTEST_SKIP() << "no EGL context here";

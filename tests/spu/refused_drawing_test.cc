@@ -1,4 +1,4 @@
-// Ways of drawing a volume that are not slices whose colour is the sample's: left to the application, bit for
+// Ways of drawing a volume that are not slices whose colour is the sample's: not substituted, bit for
 // bit, for the right reason.
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ std::vector<Drawing> drawings() {
                                      "}\n"));
        },
        cube_in_front},
-      {"PreIntegratedSlabsThatFadeWithTheirPlace", more_than_the_sample,
+      {"PreIntegratedSegmentsThatFadeWithTheirPlace", more_than_the_sample,
        [](GlApplication& app) {
          load_field(app);
          app.gl().UseProgram(program(app,

@@ -60,7 +60,7 @@ TEST(ShareGroup, KeepsFewBoxesHoweverManyChangesThereAre) {
   const auto before = group.texture_version(7);
   for (int z = 0; z < 200; ++z) group.texture_changed(7, {{0, 0, z}, {64, 64, z + 1}});
   EXPECT_THAT(*group.changes_since(7, before), ElementsAre(TexelBox{{0, 0, 0}, {64, 64, 200}}))
-      << "slices in a row are one slab";
+      << "slices in a row are one segment";
   // Far apart: the oldest are taken together, and whoever has seen them is told the latest exactly.
   std::uint64_t seen = 0;
   for (int i = 0; i < 100; ++i) {
@@ -163,7 +163,7 @@ TEST_F(Sources, AreThoseOfTheLink) {
   EXPECT_THAT(record->fragment_sources, ElementsAre("fragment text"));
   EXPECT_TRUE(record->vertex_shader);
   EXPECT_TRUE(record->fragment_source_known);
-  EXPECT_FALSE(record->other_stages);
+  EXPECT_FALSE(record->other_shader_stages);
   kept.program_linked(program);
   EXPECT_THAT(kept.program(program)->fragment_sources, ElementsAre("later text"));
   EXPECT_NE(kept.program(program)->link, record->link);
@@ -218,7 +218,7 @@ TEST_F(Sources, OfStagesBesideVertexAndFragmentAreOnlyNoted) {
   given(9, GL_GEOMETRY_SHADER, "geometry text");
   kept.shader_attached(program, 9);
   kept.program_linked(program);
-  EXPECT_TRUE(kept.program(program)->other_stages);
+  EXPECT_TRUE(kept.program(program)->other_shader_stages);
 }
 
 TEST_F(Sources, OfAProgramMadeInOneCallAreIts) {

@@ -567,8 +567,8 @@ SliceScene fogged_polygons() {
   return scene;
 }
 
-SliceScene pre_integrated_slabs(bool along_rays) {
-  SliceScene scene{along_rays ? "slabs along rays, GLSL 1.20" : "slabs of one vector, GLSL 1.20"};
+SliceScene pre_integrated_slices(bool along_rays) {
+  SliceScene scene{along_rays ? "segments along rays, GLSL 1.20" : "segments of one vector, GLSL 1.20"};
   auto name = std::make_shared<GLuint>(0);
   scene.set_up = [name](GlApplication& app) {
     const DispatchTable& gl = app.gl();
@@ -580,7 +580,8 @@ SliceScene pre_integrated_slabs(bool along_rays) {
     gl.BindTexture(GL_TEXTURE_3D, texture);
     filter(gl, GL_TEXTURE_3D, GL_LINEAR);
     gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, blob.x, blob.y, blob.z, 0, GL_RED, GL_FLOAT, values.data());
-    // Of a narrow band of values: slabs whose ends lie on either side of it show it, samples alone would not.
+    // Of a narrow band of values: segments whose ends lie on either side of it show it, samples alone would
+    // not.
     constexpr int edge = 256;
     const auto below = [](double s) { return 0.02 * s + 0.5 / (1 + std::exp(-60 * (s - 0.55))); };
     std::vector<float> table;
@@ -602,12 +603,12 @@ SliceScene pre_integrated_slabs(bool along_rays) {
     gl.ActiveTexture(GL_TEXTURE0);
     *name = program(gl,
                     "#version 120\n"
-                    "uniform mat4 camera; uniform vec3 slab; uniform vec4 eye; attribute vec3 corner;\n"
+                    "uniform mat4 camera; uniform vec3 segment; uniform vec4 eye; attribute vec3 corner;\n"
                     "varying vec3 front; varying vec3 back;\n"
                     "void main() {\n"
                     "  front = corner;\n"
                     "  vec3 ray = corner - eye.xyz;\n"
-                    "  back = front + mix(slab, slab.z / ray.z * ray, eye.w);\n"
+                    "  back = front + mix(segment, segment.z / ray.z * ray, eye.w);\n"
                     "  gl_Position = camera * vec4(corner, 1.0);\n"
                     "}\n",
                     "#version 120\n"

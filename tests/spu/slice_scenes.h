@@ -55,9 +55,9 @@ SliceScene core_batched();
 /// that nobody writes or reads, an alpha blend function of its own: what PyMOL does.
 SliceScene fogged_polygons();
 
-/// Pre-integrated slabs: front and back coordinate of each slab from the vertex shader, a 2-D table over both
-/// values, float throughout. The back lies behind the front by one vector, or on the ray through it.
-SliceScene pre_integrated_slabs(bool along_rays);
+/// Pre-integrated segments: front and back coordinate of each segment from the vertex shader, a 2-D table over
+/// both values, float throughout. The back lies behind the front by one vector, or on the ray through it.
+SliceScene pre_integrated_slices(bool along_rays);
 /// glBegin/glEnd quads through an INTENSITY texture, in fixed-function fog of `mode`.
 SliceScene fixed_function_fog(GLenum mode);
 /// A stack of 2-D textures of `internal_format` under GLSL with a 1-D table; in a core profile from a buffer, a

@@ -32,7 +32,7 @@ struct Variant {
 
 class SlicingVariants : public ::testing::TestWithParam<Variant> {};
 
-TEST_P(SlicingVariants, GiveTheApplicationsPictureInFloat) {
+TEST_P(SlicingVariants, GiveTheApplicationsImageInFloat) {
   const SliceScene scene = GetParam().scene();
   auto app = GlApplication::start(scene.profile);
   if (!app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
@@ -58,9 +58,16 @@ TEST_P(SlicingVariants, GiveTheApplicationsPictureInFloat) {
 INSTANTIATE_TEST_SUITE_P(
     Of, SlicingVariants,
     ::testing::Values(
-        Variant{"Slabs", [] { return pre_integrated_slabs(false); }, {0, 15, -40, 55}, 60, "table of pairs"},
-        Variant{
-            "SlabsAlongRays", [] { return pre_integrated_slabs(true); }, {0, 15, -40}, 60, "table of pairs"},
+        Variant{"Segments",
+                [] { return pre_integrated_slices(false); },
+                {0, 15, -40, 55},
+                60,
+                "pre-integration table"},
+        Variant{"SegmentsAlongRays",
+                [] { return pre_integrated_slices(true); },
+                {0, 15, -40},
+                60,
+                "pre-integration table"},
         Variant{"LinearFog", [] { return fixed_function_fog(GL_LINEAR); }, {0, 15, -40}, 45, "fog"},
         Variant{"ExponentialFog", [] { return fixed_function_fog(GL_EXP); }, {0, 15, -40}, 45, "fog"},
         Variant{"SquaredFog", [] { return fixed_function_fog(GL_EXP2); }, {0, 15, -40}, 45, "fog"},
@@ -89,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 /// The program's table changes, and so does what is probed.
-TEST(Slabs, OfAnotherTableAreProbedAgain) {
-  const SliceScene scene = pre_integrated_slabs(false);
+TEST(Segments, OfAnotherTableAreProbedAgain) {
+  const SliceScene scene = pre_integrated_slices(false);
   auto app = GlApplication::start(scene.profile);
   if (!app) GTEST_SKIP() << "no EGL context here";
   scene.set_up(*app);
@@ -119,17 +126,17 @@ void expect_left(GlApplication& app, const SliceScene& scene, const std::string&
   EXPECT_EQ(app.error(), GLenum(GL_NO_ERROR));
 }
 
-TEST(Slabs, ThatReachIntoARepetitionAreLeft) {
-  const SliceScene scene = pre_integrated_slabs(false);
+TEST(Segments, ThatReachIntoARepetitionAreLeft) {
+  const SliceScene scene = pre_integrated_slices(false);
   auto app = GlApplication::start(scene.profile);
   if (!app) GTEST_SKIP() << "no EGL context here";
   scene.set_up(*app);
   app->gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_REPEAT);
-  expect_left(*app, scene, "slabs reach beyond a repeating texture along axis 2");
+  expect_left(*app, scene, "segments reach beyond a repeating texture along axis 2");
 }
 
-TEST(Slabs, WhoseColourDependsOnTheirPlaceAreLeft) {
-  const SliceScene scene = pre_integrated_slabs(false);
+TEST(Segments, WhoseColourDependsOnTheirPlaceAreLeft) {
+  const SliceScene scene = pre_integrated_slices(false);
   auto app = GlApplication::start(scene.profile);
   if (!app) GTEST_SKIP() << "no EGL context here";
   scene.set_up(*app);
@@ -144,8 +151,8 @@ TEST(Slabs, WhoseColourDependsOnTheirPlaceAreLeft) {
   expect_left(*app, scene, "the colour depends on more than the sample (position, lighting)");
 }
 
-/// Many pictures of one size, blended side by side by a program.
-TEST(StacksUnderGlsl, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
+/// Many images of one size, blended side by side by a program.
+TEST(StacksUnderGlsl, ImagesSideBySideAreNoVolumeAndNoWordIsSaid) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   SliceScene scene = texture_stack_program(Profile::compatibility, GL_R8);

@@ -119,7 +119,7 @@ Dump dump_state(const DispatchTable& gl, bool core) {
 }
 
 /// Values away from their defaults, so that what is put back is told from what is reset; none changes a
-/// picture.
+/// image.
 void mark(const DispatchTable& gl, bool core) {
   gl.PolygonOffset(1.5F, 2.5F);
   gl.StencilFunc(GL_GEQUAL, 3, 0x7F);

@@ -1,4 +1,4 @@
-// A texture that changes between frames: only what differs travels, and the picture is that of a texture which
+// A texture that changes between frames: only what differs travels, and the image is that of a texture which
 // was loaded with the new texels from the start, bit for bit.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using volume::TexelBox;
 
 const TexelBox whole{{0, 0, 0}, {70, 50, 40}};
 constexpr std::size_t all_texels = std::size_t{70} * 50 * 40;
-constexpr std::uint64_t tile = 16 * 16 * 16;
+constexpr std::uint64_t block = 16 * 16 * 16;
 
 /// The texels as the application has them; the texture follows.
 template <class Texel>
@@ -126,15 +126,15 @@ TEST(TexelChanges, OfNothingSendNothing) {
   EXPECT_EQ(app->substituted(), 4U) << app->last_reason();
 }
 
-TEST(TexelChanges, OfACornerSendTheTilesThatItTouches) {
+TEST(TexelChanges, OfACornerSendTheBlocksThatItTouches) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   Film<std::uint8_t> film(*app, GL_R8);
   std::mt19937 random(3);
   auto before = film.draw(20);
   for (const bool all_again : {false, true}) {
-    for (const auto& [corner, bytes] : {std::pair{TexelBox{{0, 0, 0}, {9, 16, 12}}, tile},
-                                        {TexelBox{{12, 3, 3}, {20, 9, 20}}, 4 * tile},
+    for (const auto& [corner, bytes] : {std::pair{TexelBox{{0, 0, 0}, {9, 16, 12}}, block},
+                                        {TexelBox{{12, 3, 3}, {20, 9, 20}}, 4 * block},
                                         {TexelBox{{65, 49, 35}, {70, 50, 40}}, std::uint64_t(6 * 2 * 8)}}) {
       film.fill(corner, random);
       film.upload(all_again ? whole : corner);
@@ -186,11 +186,11 @@ void expect_random_changes_right(GLenum internal_format) {
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-TEST(TexelChanges, OfAnyKindGiveThePictureOfAFreshTexture) {
+TEST(TexelChanges, OfAnyKindGiveTheImageOfAFreshTexture) {
   expect_random_changes_right<std::uint8_t>(GL_R8);
 }
 
-TEST(TexelChanges, OfFloatsGiveThePictureOfAFreshTexture) {
+TEST(TexelChanges, OfFloatsGiveTheImageOfAFreshTexture) {
   expect_random_changes_right<float>(GL_R32F);
 }
 
@@ -204,7 +204,7 @@ TEST(TexelChanges, CopiedFromTheFramebufferAreSeen) {
   app->gl().CopyTexSubImage3D(GL_TEXTURE_3D, 0, 20, 20, 21, 2, 2, 10, 10);
   const Sent sent(*app);
   EXPECT_NE(film.draw(20), before);
-  EXPECT_EQ(sent.bytes(), tile);
+  EXPECT_EQ(sent.bytes(), block);
 }
 
 /// A texture like the one that is bound.
@@ -229,7 +229,7 @@ GLuint bound_texture(GlApplication& app, GLenum binding) {
   return GLuint(texture);
 }
 
-// Only the destination is looked at again, and there only the tiles that the copy touches.
+// Only the destination is looked at again, and there only the blocks that the copy touches.
 TEST(TexelChanges, CopiedFromAnotherTextureConcernTheDestinationAlone) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
@@ -253,7 +253,7 @@ TEST(TexelChanges, CopiedFromAnotherTextureConcernTheDestinationAlone) {
                                10);
     const auto after = film.draw(20);
     EXPECT_NE(after, before);
-    EXPECT_EQ(sent.bytes(), tile);
+    EXPECT_EQ(sent.bytes(), block);
 
     std::vector<std::uint8_t> copied(1000, 250);
     app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 20, 20, 20, 10, 10, 10, GL_RED, GL_UNSIGNED_BYTE, copied.data());

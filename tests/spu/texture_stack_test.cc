@@ -81,8 +81,8 @@ TEST(TextureStacks, OfTexturesThatDifferAreLeftWithTheReason) {
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-/// A desktop: many pictures of one size, blended side by side.
-TEST(TextureStacks, PicturesSideBySideAreNoVolumeAndNoWordIsSaid) {
+/// A desktop: many images of one size, blended side by side.
+TEST(TextureStacks, ImagesSideBySideAreNoVolumeAndNoWordIsSaid) {
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   texture_stack().set_up(*app);

@@ -11,7 +11,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-/// Not the field that the scenes load: a picture of that one would be wrong.
+/// Not the field that the scenes load: an image of that one would be wrong.
 std::vector<std::uint8_t> other_field() {
   std::vector<std::uint8_t> texels = Blob().texels();
   std::reverse(texels.begin(), texels.end());
@@ -212,7 +212,7 @@ TEST_P(Uploads, AreSeen) {
   ASSERT_EQ(app->error(), GLenum(GL_NO_ERROR));
   scene.draw(*app, 10);
   EXPECT_EQ(app->substituted(), drawn + 1) << app->last_reason();
-  const emulation::Picture meant = shown_in_bytes(frame_of({table_cube(way.held(), 10)}, backdrop));
+  const emulation::Image meant = shown_in_bytes(frame_of({table_cube(way.held(), 10)}, backdrop));
   expect_within(way.name, meant, app->read_pixels());
   if (way.changes) {
     EXPECT_GT(channels_outside(meant, before), 500) << "the upload changes nothing: the test tests nothing";
@@ -349,7 +349,7 @@ TEST_P(Formats, AreDrawnRightOrLeftBitIdentical) {
         other_field(), [&](int s) { return of_base(format.base, s / 255.0, std::round(s / 5.0) / 255); });
     emulation::Precision precision = emulation::ours;
     precision.value += format.step;
-    const emulation::Picture meant = shown_in_bytes(frame_of({colour_cube(colours, 30)}, backdrop), precision);
+    const emulation::Image meant = shown_in_bytes(frame_of({colour_cube(colours, 30)}, backdrop), precision);
     expect_within(format.name, meant, under);
     EXPECT_GT(channels_outside(meant, std::vector<float>(under.size(), 0.2F)), 500) << "the test tests nothing";
   }

@@ -47,7 +47,7 @@ RenderRequest request_of(Texture& texture, const std::function<double(double)>& 
   request.method = setting.method;
   request.tolerance = setting.tolerance;
   request.window = {10, 12, 22, 17};
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   return request;
 }
 
@@ -193,7 +193,7 @@ TEST(Adaptive, StaysFiniteOnUnusualFields) {
 TEST(Adaptive, StepsWithSurfacesOrLightAreRefused) {
   Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 1);
   const RenderRequest good = request_of(texture, spikes, {Method::adaptive, 0.5});
-  texture.description.margin += 1;
+  texture.description.ghost_layer += 1;
   EXPECT_NO_THROW(validate(texture.description, good));
   const auto refused = [&](auto change) {
     RenderRequest bad = good;

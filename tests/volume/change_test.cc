@@ -1,4 +1,4 @@
-// Texels that change after a volume is complete: the store and the pictures are those of a volume that was
+// Texels that change after a volume is complete: the store and the images are those of a volume that was
 // filled with the new texels from the start.
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ void expect_equal(const BrickStore& a, const BrickStore& b) {
   }
 }
 
-Image picture(RayCaster& caster, const RenderRequest& request) {
+Image image(RayCaster& caster, const RenderRequest& request) {
   Image image(request.window);
   FrameCounts counts;
   caster.render(request, image, counts);
@@ -69,7 +69,7 @@ TEST_P(Changes, EqualAFreshVolumeBitForBit) {
       RayCaster caster(store);
       RenderRequest request = request_for(texture, usual_camera(40, 30), 40, 30, 60);
       request.op = kind.op;
-      picture(caster, request);
+      image(caster, request);
       for (int round = 0; round < 12; ++round) {
         TexelBox box;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -91,7 +91,7 @@ TEST_P(Changes, EqualAFreshVolumeBitForBit) {
         const BrickStore fresh = filled(texture, tree.box(rank));
         expect_equal(store, fresh);
         RayCaster of_fresh(fresh);
-        ASSERT_EQ(picture(caster, request).rgba, picture(of_fresh, request).rgba)
+        ASSERT_EQ(image(caster, request).rgba, image(of_fresh, request).rgba)
             << "round " << round << ", rank " << rank << " of " << ranks;
       }
     }

@@ -1,4 +1,4 @@
-// Every way to cut a volume: boxes that tile it on block faces, a picture that stays the same, and costs that
+// Every way to cut a volume: boxes that tile it on block faces, an image that stays the same, and costs that
 // are divided as fairly as faces allow.
 #include <gmock/gmock.h>
 
@@ -148,7 +148,7 @@ TEST(Cuts, SumsAreThoseOfTheirCubes) {
   EXPECT_THROW(BlockCosts({}, 8), std::invalid_argument);
 }
 
-TEST(Cuts, GiveTheSamePictureWhereverTheyLie) {
+TEST(Cuts, GiveTheSameImageWhereverTheyLie) {
   const unsigned seed = 2309;
   std::printf("seed %u\n", seed);
   std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// Hard cases: whatever the texels and the view, the picture is finite, and right where right is defined.
+// Hard cases: whatever the texels and the view, the image is finite, and right where right is defined.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -136,7 +136,7 @@ TEST(Extremes, AWorldFarFromTheOriginIsAsGood) {
   EXPECT_LE(against_reference(texture, request_for(texture, m, 41, 37, 40)).max, 5e-5);
 }
 
-TEST(Extremes, MirroringTheSceneMirrorsThePicture) {
+TEST(Extremes, MirroringTheSceneMirrorsTheImage) {
   Texture texture = noise(describe({19, 17, 21}, TexelType::u8), 49);
   const RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 40);
   const Image image = render(texture, request);
@@ -150,7 +150,7 @@ TEST(Extremes, MirroringTheSceneMirrorsThePicture) {
       for (int k = 0; k < 4; ++k)
         worst = std::max(
             worst, std::abs(double(image.at(3 + x, 5 + y)[k]) - double(reflection.at(3 + 40 - x, 5 + y)[k])));
-  std::printf("mirrored picture differs by %.2e\n", worst);
+  std::printf("mirrored image differs by %.2e\n", worst);
   EXPECT_LE(worst, 1e-5);
 }
 

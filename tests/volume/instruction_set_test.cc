@@ -1,4 +1,4 @@
-// The same picture on every instruction set that this machine can run, and from the plain kernel that the
+// The same image on every instruction set that this machine can run, and from the plain kernel that the
 // vector kernel must agree with.
 #include <gmock/gmock.h>
 #include <hwy/targets.h>
@@ -31,7 +31,7 @@ struct Drawn {
   FrameCounts counts;
 };
 
-/// One picture per instruction set, the plain kernel's first.
+/// One image per instruction set, the plain kernel's first.
 std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& request) {
   const std::int64_t here = hwy::SupportedTargets();
   std::vector<Drawn> all;
@@ -45,7 +45,7 @@ std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& req
   return all;
 }
 
-TEST(InstructionSets, AllDrawTheSamePicture) {
+TEST(InstructionSets, AllDrawTheSameImage) {
   double worst = 0;
   std::string seen;
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})

@@ -15,7 +15,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-constexpr int edge = 8;  ///< of the picture, in rays
+constexpr int edge = 8;  ///< of the image, in rays
 constexpr std::array<int, 5> steps{16, 32, 64, 128, 256};
 
 double extinction(double s) {
@@ -190,7 +190,7 @@ TEST(Order, OfTheRayCasterOnAFieldWithoutKinks) {
     by_samples.push_back(error_of(drawn(texture, request, counts)));
     request.steps->first = 0;
     request.method = Method::pre_integrated;
-    give_margin(texture, request);
+    give_ghost_layer(texture, request);
     by_segments.push_back(error_of(drawn(texture, request, counts)));
   }
   print("ray caster, samples", by_samples);

@@ -1,4 +1,4 @@
-// One rank or many: the same picture.
+// One rank or many: the same image.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -37,7 +37,7 @@ Matrix4 random_camera(std::mt19937& random, double aspect) {
   return multiply(projection, multiply(look_at(eye, centre, {0.1, 1, 0.2}), multiply(model, unit_cube())));
 }
 
-TEST(Partition, GivesTheSamePictureForAnyNumberOfRanks) {
+TEST(Partition, GivesTheSameImageForAnyNumberOfRanks) {
   double worst = 0;
   for (int ranks = 2; ranks <= 16; ++ranks)
     for (const TexelType type : {TexelType::u8, TexelType::rgba8, TexelType::f32}) {
@@ -56,7 +56,7 @@ TEST(Partition, GivesTheSamePictureForAnyNumberOfRanks) {
   std::printf("2 to 16 ranks against 1: largest difference %.2e\n", worst);
 }
 
-TEST(Partition, GivesTheSamePictureFromAnyCamera) {
+TEST(Partition, GivesTheSameImageFromAnyCamera) {
   double worst = 0;
   const unsigned seed = 32;
   std::mt19937 random(seed);

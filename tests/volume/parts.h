@@ -27,7 +27,7 @@ inline Whole render_whole(const Texture& texture, const RenderRequest& request,
   return whole;
 }
 
-/// Every rank renders its footprint alone; the pictures are composed in visibility order.
+/// Every rank renders its footprint alone; the images are composed in visibility order.
 inline Whole render_parts(const Texture& texture, const RenderRequest& request, const KdTree& tree,
                           const DrawBricks& draw = raycast) {
   Whole whole{Image(request.window), {}};

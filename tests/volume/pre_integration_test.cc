@@ -1,4 +1,4 @@
-// Pre-integrated segments: their table against quadrature, their pictures against the volume rendering
+// Pre-integrated segments: their table against quadrature, their images against the volume rendering
 // integral.
 #include "volume/raycast/pre_integration.h"
 
@@ -29,7 +29,7 @@ TEST(PreIntegration, TableHoldsTheIntegralsOfAllSegments) {
   dense.entries[20] = {0.2F, 0.9F, 0.95F, 0.99F};
   for (const TransferFunction& function :
        {smooth_table(256, 0.9F), smooth_table(2, 0.3F), spikes(0.9F), dense}) {
-    const PairTable table = pre_integrated(function);
+    const PreIntegrationTable table = pre_integrated(function);
     const Medium medium = Medium::of_samples(function, 1);
     ASSERT_GE(table.edge, 256);
     ASSERT_EQ(table.entries.size(), std::size_t(table.edge) * std::size_t(table.edge));
@@ -57,7 +57,7 @@ TEST(PreIntegration, TableOfGlowAndNothingIsFinite) {
   TransferFunction glow{0, 1, {{0.5F, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 1}, {1, 1, 1, 1}, {2, 0, 0, 1e-9F}}};
   for (const Rgba& entry : pre_integrated(glow).entries)
     for (const float v : entry) EXPECT_TRUE(std::isfinite(v));
-  const PairTable table = pre_integrated(glow);
+  const PreIntegrationTable table = pre_integrated(glow);
   EXPECT_NEAR(table.entries[0][0], 0.5F, 1e-6F);
   EXPECT_EQ(table.entries[0][3], 0);
 }
@@ -81,7 +81,7 @@ TEST(PreIntegration, IsWhatDoublePrecisionSays) {
         Texture texture = sampled(describe({40, 37, 43}, type), sphere_field(0.3, 0.2));
         RenderRequest request = request_of(texture, cut, lit);
         request.window = {10, 12, 20, 15};  // quadrature is slow
-        give_margin(texture, request);
+        give_ghost_layer(texture, request);
         FrameCounts counts;
         const Image image = drawn(texture, request, counts);
         const Difference d = difference(image, expected(texture, request), 1e-3);
@@ -97,7 +97,7 @@ TEST(PreIntegration, IsNearerToTheIntegralThanSamplesAre) {
   request.window = {10, 12, 20, 15};
   request.classification = spikes(0.5F);
   request.method = Method::pre_integrated;
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image segments = drawn(texture, request, counts);
   request.method = Method::post_classified;
@@ -120,7 +120,7 @@ TEST(PreIntegration, IsTheSameForAnyPartition) {
     for (const bool lit : {false, true}) {
       Texture texture = noise(describe({40, 37, 43}, TexelType::u8), unsigned(ranks));
       const RenderRequest request = request_of(texture, ranks % 2 == 0, lit);
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts one, many;
       const double d =
           difference(drawn(texture, request, one), drawn_in_parts(texture, request, ranks, many)).max;
@@ -137,7 +137,7 @@ TEST(PreIntegration, CutAtBricksDependsOnTheBricks) {
   request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
   request.classification = smooth_table(256, 0.1F);
   request.method = Method::pre_integrated;
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image uncut = drawn(texture, request, counts);
   double last = 0;
@@ -162,7 +162,7 @@ TEST(PreIntegration, CutAtBricksOfOneRankIsCutAsByRanks) {
   request.steps->metric = {64, 0, 0, 0, 64, 0, 0, 0, 64};
   request.classification = smooth_table(256, 0.1F);
   request.method = Method::pre_integrated;
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image uncut = drawn(texture, request, counts);
   RenderRequest cut = request;
@@ -180,7 +180,7 @@ TEST(PreIntegration, CutAtBricksOfOneRankIsCutAsByRanks) {
   VolumeDescription large = texture.description;
   large.size = {1024, 1024, 1024};
   large.stored = {{0, 0, 0}, large.size};
-  large.margin = 16;
+  large.ghost_layer = 16;
   cut.cut_at_bricks = 4;
   EXPECT_NO_THROW(validate(large, cut));
   cut.cut_at_bricks = 1;
@@ -193,7 +193,7 @@ TEST(PreIntegration, LeavesOutWhatIsClear) {
   request.steps->metric = {90, 0, 0, 0, 90, 0, 0, 0, 90};
   request.window = {10, 12, 20, 15};
   request.method = Method::pre_integrated;
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image image = drawn(texture, request, counts);
   EXPECT_GT(counts.blocks_empty, counts.blocks / 2);

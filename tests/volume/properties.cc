@@ -27,7 +27,7 @@ Image mirrored(const Image& image) {
   return result;
 }
 
-/// By how much the brightest colour of the table is less than what the picture shows of it.
+/// By how much the brightest colour of the table is less than what the image shows of it.
 double colour_excess(const RandomScene& scene, const Image& image) {
   std::array<double, 3> brightest{1, 1, 1};
   if (const auto* table = std::get_if<TransferFunction>(&scene.request.classification)) {
@@ -107,8 +107,8 @@ void expect_properties(const PropertyTrials& asked, const DrawBricks& draw) {
       "%.1e for each unit of steepness, colour above the medium's %.1e\n",
       asked.renderer, asked.trials, seed, worst.shown, worst.refused, worst.partition, worst.mirror,
       worst.colour);
-  EXPECT_GT(worst.shown, asked.trials / 2) << "empty pictures test nothing";
-  EXPECT_GT(worst.lopsided, asked.trials / 4) << "nor do those that are their own mirror pictures";
+  EXPECT_GT(worst.shown, asked.trials / 2) << "empty images test nothing";
+  EXPECT_GT(worst.lopsided, asked.trials / 4) << "nor do those that are their own mirror images";
 }
 
 }  // namespace understudy::volume::testing

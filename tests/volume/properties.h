@@ -1,4 +1,4 @@
-// What holds of every picture, on random scenes: it is finite, the same for any partition, mirrored when the
+// What holds of every image, on random scenes: it is finite, the same for any partition, mirrored when the
 // scene is, and of a coloured medium it shows no opacity above 1 and no colour brighter than the medium's.
 #pragma once
 
@@ -10,7 +10,7 @@ struct PropertyTrials {
   const char* renderer = "";
   int trials = 0;
   bool may_refuse = false;  ///< segments, and texels that are no numbers
-  double apart = 1e-5;  ///< by which pictures of two partitions may differ, and each unit of mirrored steepness
+  double apart = 1e-5;  ///< by which images of two partitions may differ, and each unit of mirrored steepness
 };
 
 /// Expects it of `trials` scenes. Prints the seed and the worst values; a failure says which scene it was.

@@ -1,4 +1,4 @@
-// What holds of every picture, on the CPU.
+// What holds of every image, on the CPU.
 #include "tests/volume/properties.h"
 
 #include <gtest/gtest.h>

@@ -166,7 +166,7 @@ RandomScene random_scene(std::mt19937& random) {
   if (request.steps && request.op == Operator::over && request.filter == Filter::linear &&
       description.type != TexelType::rgba8 && happens(random, 0.5)) {
     request.method = Method::pre_integrated;
-    scene.texture.description.margin = margin_needed(description, request);
+    scene.texture.description.ghost_layer = ghost_layer_needed(description, request);
   }
   scene.text = fmt::format(
       "{}x{}x{} texels of type {}{}, wrap {}, {} filter, operator {}, {}, {}x{} pixels, steepness {:.3g}",

@@ -27,7 +27,7 @@ Difference expect_like_reference(const Texture& texture, const RenderRequest& re
   const Difference d = difference(render(texture, request), expected, bound);
   const double shown = *std::max_element(expected.rgba.begin(), expected.rgba.end());
   EXPECT_LE(d.max, bound) << what << ", " << d.pixels_over << " pixels";
-  EXPECT_GT(shown, 0.01) << what << ": the picture is empty, nothing was tested";
+  EXPECT_GT(shown, 0.01) << what << ": the image is empty, nothing was tested";
   return d;
 }
 
@@ -305,7 +305,7 @@ TEST(RayCaster, TerminationStaysWithinItsThreshold) {
   }
 }
 
-TEST(RayCaster, SkipsEmptyBlocksWithoutChangingThePicture) {
+TEST(RayCaster, SkipsEmptyBricksWithoutChangingTheImage) {
   for (const TexelType type : all_types) {
     const Texture texture = sampled(describe({70, 66, 50}, type), [](const Vec3& t) {
       const double r = std::hypot(t[0] - 0.3, t[1] - 0.35, t[2] - 0.6);

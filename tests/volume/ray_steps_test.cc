@@ -67,7 +67,7 @@ void compose(Operator op, float* front, const float* back) {
 /// A sample that lies on the very end of its ray may count here and not there.
 constexpr int pixels_at_the_end = 3;
 
-TEST(RaySteps, GiveThePictureOfTheReference) {
+TEST(RaySteps, GiveTheImageOfTheReference) {
   for (const TexelType type : {TexelType::u8, TexelType::f32}) {
     const Texture texture = noise(describe({37, 29, 41}, type, Wrap::edge), 5);
     const Field field = texture_field(texture.description, Filter::linear, texture.texels);
@@ -82,7 +82,7 @@ TEST(RaySteps, GiveThePictureOfTheReference) {
       std::printf("%s: largest %.1e, rms %.1e\n", c.name, d.max, d.rms);
       EXPECT_LE(d.pixels_over, pixels_at_the_end) << c.name;
       EXPECT_LE(d.rms, 3e-4) << c.name;
-      // Another rule gives another picture: the comparison can fail.
+      // Another rule gives another image: the comparison can fail.
       request.steps->first += c.divided ? 0.3 : 0.5;
       if (c.op == Operator::over) {
         EXPECT_GT(difference(image, slice_sum(field, request, request.window)).rms, 1e-3) << c.name;
@@ -122,7 +122,7 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
     }
 }
 
-TEST(RaySteps, GiveTheSamePictureForAnyPartition) {
+TEST(RaySteps, GiveTheSameImageForAnyPartition) {
   double worst = 0;
   for (int ranks = 2; ranks <= 9; ++ranks)
     for (const Case& c : cases()) {

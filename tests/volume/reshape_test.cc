@@ -53,7 +53,7 @@ TEST(Reshape, ALongWayOfBoxesEndsWithTheBlocksOfANewStore) {
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
     for (const Wrap wrap : {Wrap::edge, Wrap::border, Wrap::repeat}) {
       VolumeDescription description = describe({37, 29, 41}, type, wrap);
-      description.margin = trial++ % 3;
+      description.ghost_layer = trial++ % 3;
       Texture texture = noise(description, seed);
       // Half of it is even, so that blocks are shared.
       std::fill(texture.texels.begin() + std::ptrdiff_t(texture.texels.size() / 2), texture.texels.end(),
@@ -72,7 +72,7 @@ TEST(Reshape, ALongWayOfBoxesEndsWithTheBlocksOfANewStore) {
       // Places that were given up are used again: there are never more than a whole volume's, and a chunk.
       EXPECT_LE(most, 2 * whole.bytes());
 
-      // Changes reach the blocks that came, and pictures are those of a new store.
+      // Changes reach the blocks that came, and images are those of a new store.
       store.reshape(lattice, [&](const BrickStore::BlockPlace& place) { return whole.packed(place); });
       Texture changed = noise(description, seed + 1);
       std::vector<std::size_t> blocks;

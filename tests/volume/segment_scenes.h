@@ -29,9 +29,9 @@ inline Light some_light() {
   return light;
 }
 
-/// Gives the volume the margin that the request needs.
-inline void give_margin(Texture& texture, const RenderRequest& request) {
-  texture.description.margin = margin_needed(texture.description, request);
+/// Gives the volume the ghost layer that the request needs.
+inline void give_ghost_layer(Texture& texture, const RenderRequest& request) {
+  texture.description.ghost_layer = ghost_layer_needed(texture.description, request);
 }
 
 inline Image drawn(const Texture& texture, const RenderRequest& request, FrameCounts& counts) {
@@ -40,7 +40,7 @@ inline Image drawn(const Texture& texture, const RenderRequest& request, FrameCo
   return image;
 }
 
-/// The pictures of so many ranks, composed in visibility order.
+/// The images of so many ranks, composed in visibility order.
 inline Image drawn_in_parts(const Texture& texture, const RenderRequest& request, int ranks,
                             FrameCounts& counts) {
   const KdTree tree(texture.description, ranks);

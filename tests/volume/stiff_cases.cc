@@ -184,7 +184,7 @@ void expect_within_bounds(const StiffCase& one, const char* renderer, const Draw
   std::printf(
       "| %-4s | %-28s | from the reference %.1e | bound %.0e | four ranks from one %.1e | bound %.0e |\n",
       renderer, one.name.c_str(), from_reference, one.bound, apart, one.apart);
-  EXPECT_EQ(shown > 0, one.bound > 0) << one.name << ": an empty picture tests nothing";
+  EXPECT_EQ(shown > 0, one.bound > 0) << one.name << ": an empty image tests nothing";
   EXPECT_LE(from_reference, one.bound) << one.name;
   EXPECT_LE(apart, one.apart) << one.name;
 }

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/volume/scenes.h"
-#include "volume/raycast/skip_map.h"
+#include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/transfer_table.h"
 
 namespace understudy::volume::testing {
@@ -40,7 +40,7 @@ TEST(BrickStore, HoldsEveryTexelOfEveryCell) {
   }
 }
 
-TEST(BrickStore, TakesSlabsInAnyOrder) {
+TEST(BrickStore, TakesSliceRangesInAnyOrder) {
   const Texture texture = noise(describe({19, 23, 33}, TexelType::u16), 62);
   const RenderRequest request = request_for(texture, usual_camera(21, 17), 21, 17, 40);
   const BrickStore whole = filled(texture);
@@ -55,23 +55,24 @@ TEST(BrickStore, TakesSlabsInAnyOrder) {
     EXPECT_EQ(std::memcmp(whole.block_data()[b], pieces.block_data()[b], 729 * 2), 0);
 }
 
-TEST(BrickStore, RefusesWrongSlabs) {
+TEST(BrickStore, RefusesWrongSliceRanges) {
   const Texture texture = noise(describe({5, 6, 7}, TexelType::u8), 63);
   BrickStore store(texture.description, cell_lattice(texture.description).box());
   const std::span<const std::byte> all = texture.texels;
-  const auto slab = [](int first, int end) { return TexelBox{{0, 0, first}, {5, 6, end}}; };
-  EXPECT_THROW(store.add_slices(slab(0, 7), all.first(100)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(slab(-1, 0), all.first(30)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(slab(6, 8), all.first(60)), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(slab(0, 0), {}), std::invalid_argument);
-  EXPECT_THROW(store.add_slices(slab(3, std::numeric_limits<int>::max()), all), std::invalid_argument);
+  const auto slice_range = [](int first, int end) { return TexelBox{{0, 0, first}, {5, 6, end}}; };
+  EXPECT_THROW(store.add_slices(slice_range(0, 7), all.first(100)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slice_range(-1, 0), all.first(30)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slice_range(6, 8), all.first(60)), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slice_range(0, 0), {}), std::invalid_argument);
+  EXPECT_THROW(store.add_slices(slice_range(3, std::numeric_limits<int>::max()), all), std::invalid_argument);
   EXPECT_THROW(store.add_slices({{0, 0, 0}, {4, 6, 1}}, all.first(24)), std::invalid_argument) << "too narrow";
-  store.add_slices(slab(0, 3), all.first(90));
-  EXPECT_THROW(store.add_slices(slab(2, 3), all.first(30)), std::invalid_argument);
+  store.add_slices(slice_range(0, 3), all.first(90));
+  EXPECT_THROW(store.add_slices(slice_range(2, 3), all.first(30)), std::invalid_argument);
   EXPECT_THROW(store.finish(), std::invalid_argument);
   std::vector<std::size_t> changed;
-  EXPECT_THROW(store.change(slab(0, 1), all.first(30), changed), std::invalid_argument) << "not finished";
-  store.add_slices(slab(3, 7), all.first(120));
+  EXPECT_THROW(store.change(slice_range(0, 1), all.first(30), changed), std::invalid_argument)
+      << "not finished";
+  store.add_slices(slice_range(3, 7), all.first(120));
   EXPECT_NO_THROW(store.finish());
 
   VolumeDescription d = texture.description;
@@ -156,14 +157,14 @@ TEST(TransferTable, HasExactAnswersForTexelValues) {
   EXPECT_TRUE(table.shows({99, 101}));
 }
 
-TEST(SkipMap, EqualsTheChebyshevDistance) {
+TEST(OccupancyMap, EqualsTheChebyshevDistance) {
   std::mt19937 random(66);
   for (const std::array<int, 3> n : {std::array{7, 5, 9}, {1, 1, 30}, {12, 12, 1}, {1, 1, 1}, {300, 1, 1}})
     for (const unsigned rarity : {2U, 40U, 100000U}) {
       const std::size_t count = std::size_t(n[0]) * n[1] * n[2];
       std::vector<bool> shows(count);
       for (std::size_t b = 0; b < count; ++b) shows[b] = random() % rarity == 0;
-      const SkipMap map(n, shows);
+      const OccupancyMap map(n, shows);
       for (std::size_t b = 0; b < count; ++b) {
         const auto at = [&](std::size_t i) {
           return std::array{int(i) % n[0], int(i) / n[0] % n[1], int(i) / n[0] / n[1]};
@@ -177,7 +178,7 @@ TEST(SkipMap, EqualsTheChebyshevDistance) {
         }
         ASSERT_EQ(map.distances()[b], nearest);
       }
-      EXPECT_EQ(map.empty_blocks(), std::size_t(std::count(shows.begin(), shows.end(), false)));
+      EXPECT_EQ(map.empty_bricks(), std::size_t(std::count(shows.begin(), shows.end(), false)));
     }
 }
 

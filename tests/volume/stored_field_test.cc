@@ -88,7 +88,7 @@ TEST(StepsBetweenPlanes, TendToTheIntegralOverTheWayFromSliceToSlice) {
   for (const Method method : {Method::post_classified, Method::pre_integrated}) {
     RenderRequest request = between_planes(texture, 8);
     request.method = method;
-    give_margin(texture, request);
+    give_ghost_layer(texture, request);
     for (const int ranks : {1, 4}) {
       FrameCounts counts;
       const Image shown = drawn_in_parts(texture, request, ranks, counts);
@@ -112,13 +112,13 @@ TEST(StepsBetweenPlanes, AreRefusedWhereSegmentsWouldBeEndless) {
   RenderRequest request = request_on_steps(texture);
   request.method = Method::pre_integrated;
   request.steps->metric = {0, 0, 30, 0, 0, 0, 0, 0, 0};
-  const int facing = margin_needed(texture.description, request);
+  const int facing = ghost_layer_needed(texture.description, request);
   EXPECT_GE(facing, 1);
-  texture.description.margin = 1000;
+  texture.description.ghost_layer = 1000;
   for (const int axis : {0, 1, 2}) {
     request.steps->metric = {};
     request.steps->metric[std::size_t(axis)] = 30;
-    const int needed = margin_needed(texture.description, request);
+    const int needed = ghost_layer_needed(texture.description, request);
     if (needed <= 1000) continue;
     FrameCounts counts;
     EXPECT_THROW(drawn(texture, request, counts), std::invalid_argument) << axis;

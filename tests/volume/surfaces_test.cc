@@ -41,7 +41,7 @@ TEST(Surfaces, AreFoundToAThousandthOfAVoxel) {
           sampled(describe({40, 40, 40}, type), sphere ? sphere_field(0.3, 0.2) : linear_field(slope, 0.06));
       constexpr double iso = 0.5;
       RenderRequest request = through_haze(texture, iso);
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts counts;
       const Image image = drawn(texture, request, counts);
       const Field field = texture_field(texture.description, Filter::linear, texture.texels);
@@ -108,7 +108,7 @@ TEST(Surfaces, OfASphereFaceTheLightAsASphereDoes) {
   request.light->diffuse = {1, 1, 1};
   request.light->direction = {0.3, 0.5, 1};
   request.light->two_sided = false;
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image image = drawn(texture, request, counts);
   const Vec3 light = normalised(request.light->direction), centre{0.5, 0.5, 0.5};
@@ -169,7 +169,7 @@ TEST(Surfaces, AndLightAreWhatDoublePrecisionSays) {
       for (const Scene& scene : scenes) {
         Texture texture = sampled(describe({40, 37, 43}, type, wrap), sphere_field(0.3, 0.2));
         const RenderRequest request = request_of(texture, scene);
-        give_margin(texture, request);
+        give_ghost_layer(texture, request);
         FrameCounts counts;
         const Image image = drawn(texture, request, counts);
         const ReferenceImage reference = expected(texture, request);
@@ -194,7 +194,7 @@ TEST(Surfaces, AndLightAreTheSameForAnyPartition) {
     for (const Scene& scene : scenes) {
       Texture texture = noise(describe({40, 37, 43}, TexelType::u8, Wrap(ranks % 3)), unsigned(ranks));
       const RenderRequest request = request_of(texture, scene);
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts one, many;
       const Image whole = drawn(texture, request, one), parts = drawn_in_parts(texture, request, ranks, many);
       const double d = difference(whole, parts).max;
@@ -215,7 +215,7 @@ TEST(Surfaces, OfVolumesOfAnySize) {
       RenderRequest request = request_of(texture, scenes[2]);
       request.depth.reset();
       request.steps->metric = {29, 0, 0, 0, 29, 0, 0, 0, 29};
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts counts;
       const Difference d = difference(drawn(texture, request, counts), expected(texture, request), 1e-3);
       EXPECT_LE(d.pixels_over, pixels_that_graze) << size << " along axis " << axis;
@@ -246,7 +246,7 @@ TEST(Surfaces, OfUnusualFieldsAreFinite) {
     for (const bool slopes : {false, true}) {
       Texture texture = noise(describe({13, 12, 11}, TexelType::f32), 3);
       for (std::size_t i = 0; i < texture.texels.size() / 4; ++i) {
-        // Slabs of equal value, or all mixed.
+        // Segments of equal value, or all mixed.
         const float v = unusual.values[(slopes ? i / 39 : i) % unusual.values.size()];
         std::memcpy(texture.texels.data() + 4 * i, &v, sizeof v);
       }
@@ -254,7 +254,7 @@ TEST(Surfaces, OfUnusualFieldsAreFinite) {
       request.classification = TransferFunction{0, 1, {{}, {}}};
       request.surfaces = {{unusual.iso, {1, 1, 1, 1}}};
       request.light = some_light();
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts counts;
       const Image image = drawn(texture, request, counts);
       float most = 0;
@@ -276,7 +276,7 @@ TEST(Surfaces, AreSkippedToAndNeverPast) {
   request.steps->metric = {90, 0, 0, 0, 90, 0, 0, 0, 90};
   request.classification = TransferFunction{0, 1, {{}, {}}};
   request.surfaces = {{0.5, {1, 0.5F, 0.2F, 0.5F}}};
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   FrameCounts counts;
   const Image image = drawn(texture, request, counts);
   std::printf("%zu of %zu blocks empty, %zu of %zu segments looked at\n", std::size_t(counts.blocks_empty),
@@ -295,7 +295,7 @@ TEST(Light, OnSlicesIsWhatDoublePrecisionSays) {
       request.light->two_sided = two_sided;
       if (two_sided) request.light->full_slope = 2;  // of about 4 at most
       if (from_the_eye) request.light->direction = {};
-      give_margin(texture, request);
+      give_ghost_layer(texture, request);
       FrameCounts counts;
       const Image image = drawn(texture, request, counts);
       const Field field = texture_field(texture.description, Filter::linear, texture.texels);
@@ -319,14 +319,14 @@ TEST(Light, ThatIsEverywhereTheSameChangesNothing) {
   request.light.emplace();
   request.light->ambient = {1, 1, 1};
   request.light->diffuse = request.light->specular = {0, 0, 0};
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   EXPECT_LE(difference(plain, drawn(texture, request, counts)).max, 1e-5);
 }
 
 TEST(Surfaces, AndLightWithoutSenseAreRefused) {
   Texture texture = noise(describe({9, 9, 9}, TexelType::u8), 1);
   RenderRequest good = request_of(texture, scenes[2]);
-  give_margin(texture, good);
+  give_ghost_layer(texture, good);
   EXPECT_NO_THROW(validate(texture.description, good));
   const auto refused = [&](const char* why, auto change) {
     RenderRequest bad = good;
@@ -345,10 +345,10 @@ TEST(Surfaces, AndLightWithoutSenseAreRefused) {
   refused("shininess", [](RenderRequest& r) { r.light->shininess = -1; });
   refused("full slope", [](RenderRequest& r) { r.light->full_slope = -1; });
   refused("diffuse", [](RenderRequest& r) { r.light->diffuse[1] = NAN; });
-  --texture.description.margin;
+  --texture.description.ghost_layer;
   EXPECT_THROW(validate(texture.description, good), std::invalid_argument) << "margin";
   Texture colours = noise(describe({9, 9, 9}, TexelType::rgba8), 1);
-  colours.description.margin = 9;
+  colours.description.ghost_layer = 9;
   good.classification = LinearMap{};
   EXPECT_THROW(validate(colours.description, good), std::invalid_argument) << "colours";
 }
@@ -366,7 +366,7 @@ TEST(Surfaces, AndLightAreTheSameOnAllInstructionSets) {
           std::get<TransferFunction>(request.classification).low = 0.2F;
           std::get<TransferFunction>(request.classification).high = 0.8F;
         }
-        give_margin(texture, request);
+        give_ghost_layer(texture, request);
         std::optional<Image> plain;
         for (const std::int64_t target : {HWY_EMU128, HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
           if (target != HWY_EMU128 && (here & target) == 0) continue;

@@ -39,7 +39,7 @@ RenderRequest request_of(Texture& texture, const Ends& ends, bool cut, bool lit)
     request.surfaces = {{0.6, {0.9F, 0.2F, 0.1F, 0.5F}}};
   }
   if (lit) request.light = some_light();
-  give_margin(texture, request);
+  give_ghost_layer(texture, request);
   return request;
 }
 

@@ -1,4 +1,4 @@
-// Transfer functions from knots, and the camera that goes around a volume.
+// Transfer functions from control points, and the camera that goes around a volume.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,44 +9,45 @@
 #include "tests/volume/scenes.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace understudy::volume::testing {
 namespace {
 
 using ::testing::HasSubstr;
 
-std::string trouble_with(const TransferKnots& knots) {
+std::string trouble_with(const TransferControlPoints& control_points) {
   try {
-    check(knots);
+    check(control_points);
     return {};
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
 }
 
-TEST(TransferKnots, WhatMakesNoSenseIsRefusedWithTheKnot) {
-  const TransferKnots::Knot low{0, {0, 0, 0}, 0}, high{1, {1, 1, 1}, 0.5};
+TEST(TransferControlPoints, WhatMakesNoSenseIsRefusedWithTheControlPoint) {
+  const TransferControlPoints::ControlPoint low{0, {0, 0, 0}, 0}, high{1, {1, 1, 1}, 0.5};
   EXPECT_EQ(trouble_with({false, {low, high}}), "");
-  EXPECT_THAT(trouble_with({false, {}}), HasSubstr("0 knots are too few"));
-  EXPECT_THAT(trouble_with({false, {low}}), HasSubstr("1 knots are too few"));
-  EXPECT_THAT(trouble_with({false, {high, low}}), HasSubstr("knot 2: it stands at 0"));
-  EXPECT_THAT(trouble_with({false, {low, {1, {}, -0.1}}}), HasSubstr("knot 2: its opacity is -0.1"));
+  EXPECT_THAT(trouble_with({false, {}}), HasSubstr("0 control points are too few"));
+  EXPECT_THAT(trouble_with({false, {low}}), HasSubstr("1 control points are too few"));
+  EXPECT_THAT(trouble_with({false, {high, low}}), HasSubstr("control point 2: it stands at 0"));
+  EXPECT_THAT(trouble_with({false, {low, {1, {}, -0.1}}}), HasSubstr("control point 2: its opacity is -0.1"));
   EXPECT_THAT(trouble_with({false, {low, {1, {}, std::nan("")}}}), HasSubstr("its opacity is nan"));
-  EXPECT_THAT(trouble_with({false, {{std::nan(""), {}, 0}, high}}), HasSubstr("knot 1: its place"));
+  EXPECT_THAT(trouble_with({false, {{std::nan(""), {}, 0}, high}}), HasSubstr("control point 1: its place"));
   EXPECT_THAT(trouble_with({false, {low, {1, {0, 2, 0}, 0}}}), HasSubstr("a component of 2"));
   EXPECT_THAT(trouble_with({false, {low, low}}), HasSubstr("different places"));
-  EXPECT_THROW(knots_named("nothing"), std::invalid_argument);
-  EXPECT_THROW(sampled(knots_named("grey"), 0, 1, 0), std::invalid_argument);
+  EXPECT_THROW(control_points_named("nothing"), std::invalid_argument);
+  EXPECT_THROW(sampled(control_points_named("grey"), 0, 1, 0), std::invalid_argument);
   for (const char* name : {"grey", "engine", "ct", "vessels", "rainbow"}) {
-    EXPECT_EQ(trouble_with(knots_named(name)), "") << name;
-    EXPECT_THAT(built_in_knots(), HasSubstr(name));
+    EXPECT_EQ(trouble_with(control_points_named(name)), "") << name;
+    EXPECT_THAT(built_in_control_points(), HasSubstr(name));
   }
 }
 
-TEST(TransferKnots, OpacityFollowsTheStepAndRunsLinearlyBetweenKnots) {
-  const TransferKnots knots{false, {{0, {0, 0, 0}, 0}, {0.5, {0.4, 0.6, 0.8}, 0.2}, {1, {1, 1, 1}, 1}}};
-  const TransferFunction one = sampled(knots, 10, 30, 1), half = sampled(knots, 10, 30, 0.5);
+TEST(TransferControlPoints, OpacityFollowsTheStepAndRunsLinearlyBetweenControlPoints) {
+  const TransferControlPoints control_points{
+      false, {{0, {0, 0, 0}, 0}, {0.5, {0.4, 0.6, 0.8}, 0.2}, {1, {1, 1, 1}, 1}}};
+  const TransferFunction one = sampled(control_points, 10, 30, 1), half = sampled(control_points, 10, 30, 0.5);
   EXPECT_EQ(one.low, 10);
   EXPECT_EQ(one.high, 30);
   ASSERT_EQ(one.entries.size(), half.entries.size());
@@ -61,13 +62,14 @@ TEST(TransferKnots, OpacityFollowsTheStepAndRunsLinearlyBetweenKnots) {
   }
   // A fog so thin that 1 - opacity is 1 in float survives.
   const TransferFunction fog =
-      sampled(TransferKnots{true, {{0, {1, 1, 1}, 1e-12}, {1, {1, 1, 1}, 1e-12}}}, 0, 9, 0.5);
+      sampled(TransferControlPoints{true, {{0, {1, 1, 1}, 1e-12}, {1, {1, 1, 1}, 1e-12}}}, 0, 9, 0.5);
   EXPECT_FLOAT_EQ(fog.entries[7][3], 5e-13F);
-  EXPECT_EQ(fog.high, 1) << "knots of values know no range";
-  // Two knots at one place make a step.
+  EXPECT_EQ(fog.high, 1) << "control points of values know no range";
+  // Two control points at one place make a step.
   const TransferFunction step = sampled(
-      TransferKnots{true, {{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0.5}, {2, {1, 1, 1}, 0.5}}}, 0,
-      1, 1);
+      TransferControlPoints{true,
+                            {{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0.5}, {2, {1, 1, 1}, 0.5}}},
+      0, 1, 1);
   EXPECT_EQ(step.entries[last / 2][3], 0);
   EXPECT_EQ(step.entries[last / 2 + 1][3], 0.5F);
 }
@@ -112,7 +114,7 @@ TEST(OrbitCamera, StepsAreInVoxels) {
   for (const double step : {0.5, 1.0, 2.0}) {
     RenderRequest request = orbit_request(texture.description, {1, 1, 1}, {0, 0, 1000}, 1, 1, step);
     request.classification =
-        sampled(TransferKnots{true, {{0, {1, 1, 1}, 0.02}, {1, {1, 1, 1}, 0.02}}}, 0, 1, step);
+        sampled(TransferControlPoints{true, {{0, {1, 1, 1}, 0.02}, {1, {1, 1, 1}, 0.02}}}, 0, 1, step);
     Image image(request.window);
     FrameCounts counts;
     raycast(store, request, image, counts);

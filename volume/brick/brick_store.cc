@@ -50,13 +50,13 @@ std::uint32_t bits(Texel texel) {
 
 namespace {
 
-/// The cells that a store keeps: its own, and the volume's margin around them.
+/// The cells that a store keeps: its own, and the volume's ghost layer around them.
 TexelBox kept_cells(const VolumeDescription& volume, const CellLattice& lattice, const TexelBox& owned_cells) {
   const TexelBox all = lattice.box();
   TexelBox kept;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    kept.low[axis] = std::max(owned_cells.low[axis] - volume.margin, all.low[axis]);
-    kept.high[axis] = std::min(owned_cells.high[axis] + volume.margin, all.high[axis]);
+    kept.low[axis] = std::max(owned_cells.low[axis] - volume.ghost_layer, all.low[axis]);
+    kept.high[axis] = std::min(owned_cells.high[axis] + volume.ghost_layer, all.high[axis]);
   }
   return kept;
 }
@@ -138,31 +138,31 @@ void BrickStore::check_size(const TexelBox& box, std::size_t bytes) const {
         fmt::format("volume {}: {} bytes of texels instead of {}", volume_.id, bytes, expected));
 }
 
-void BrickStore::add_slices(const TexelBox& slab, std::span<const std::byte> texels) {
-  check_size(slab, texels.size());
+void BrickStore::add_slices(const TexelBox& slice_range, std::span<const std::byte> texels) {
+  check_size(slice_range, texels.size());
   if (blocks_.empty()) return;
   for (int axis = 0; axis < 2; ++axis)
-    if (slab.low[axis] > shown_.low[axis] || slab.high[axis] < shown_.high[axis])
-      throw std::invalid_argument(
-          fmt::format("volume {}: a slab covers texels {} to {} along axis {}, not {} to {}", volume_.id,
-                      slab.low[axis], slab.high[axis], axis, shown_.low[axis], shown_.high[axis]));
-  const std::size_t slice_bytes = texels.size() / std::size_t(slab.high[2] - slab.low[2]);
-  for (int texel_z = std::max(slab.low[2], shown_.low[2]); texel_z < std::min(slab.high[2], shown_.high[2]);
-       ++texel_z) {
+    if (slice_range.low[axis] > shown_.low[axis] || slice_range.high[axis] < shown_.high[axis])
+      throw std::invalid_argument(fmt::format(
+          "volume {}: a slice range covers texels {} to {} along axis {}, not {} to {}", volume_.id,
+          slice_range.low[axis], slice_range.high[axis], axis, shown_.low[axis], shown_.high[axis]));
+  const std::size_t slice_bytes = texels.size() / std::size_t(slice_range.high[2] - slice_range.low[2]);
+  for (int texel_z = std::max(slice_range.low[2], shown_.low[2]);
+       texel_z < std::min(slice_range.high[2], shown_.high[2]); ++texel_z) {
     const auto index = std::size_t(texel_z - shown_.low[2]);
     if (slice_seen_[index])
       throw std::invalid_argument(fmt::format("volume {}: slice {} came twice", volume_.id, texel_z));
     slice_seen_[index] = true;
-    const std::byte* slice = texels.data() + std::size_t(texel_z - slab.low[2]) * slice_bytes;
+    const std::byte* slice = texels.data() + std::size_t(texel_z - slice_range.low[2]) * slice_bytes;
     // Wrapped and clamped axes show one slice at several points of the lattice.
     const int first = first_block_[2] * block_cells, last = first + block_counts_[2] * block_cells;
     for (int z = first; z <= last; ++z)
       if (lattice_texel(volume_, lattice_, 2, std::min(z, lattice_.cells[2])) == texel_z)
-        place_slice(z, slab, slice);
+        place_slice(z, slice_range, slice);
   }
 }
 
-void BrickStore::place_slice(int lattice_z, const TexelBox& slab, const std::byte* slice) {
+void BrickStore::place_slice(int lattice_z, const TexelBox& slice_range, const std::byte* slice) {
   // A block face belongs to both neighbours.
   for (int layer = (lattice_z - 1) / block_cells; layer <= lattice_z / block_cells; ++layer) {
     const int index = layer - first_block_[2];
@@ -174,16 +174,16 @@ void BrickStore::place_slice(int lattice_z, const TexelBox& slab, const std::byt
     const int z_in_block = lattice_z - layer * block_cells;
     switch (volume_.type) {
       case TexelType::u8:
-        fill_layer_slice<std::uint8_t>(target, z_in_block, slab, slice);
+        fill_layer_slice<std::uint8_t>(target, z_in_block, slice_range, slice);
         break;
       case TexelType::u16:
-        fill_layer_slice<std::uint16_t>(target, z_in_block, slab, slice);
+        fill_layer_slice<std::uint16_t>(target, z_in_block, slice_range, slice);
         break;
       case TexelType::f32:
-        fill_layer_slice<float>(target, z_in_block, slab, slice);
+        fill_layer_slice<float>(target, z_in_block, slice_range, slice);
         break;
       case TexelType::rgba8:
-        fill_layer_slice<std::uint32_t>(target, z_in_block, slab, slice);
+        fill_layer_slice<std::uint32_t>(target, z_in_block, slice_range, slice);
         break;
     }
     if (--target.slices_missing == 0) complete_layer(index);
@@ -191,15 +191,16 @@ void BrickStore::place_slice(int lattice_z, const TexelBox& slab, const std::byt
 }
 
 template <typename Texel>
-void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slab, const std::byte* slice) {
-  const int row_texels = slab.high[0] - slab.low[0];
+void BrickStore::fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slice_range,
+                                  const std::byte* slice) {
+  const int row_texels = slice_range.high[0] - slice_range.low[0];
   // Where each lattice point of the layer finds its texel in the slice.
   const auto sources = [&](int axis) {
     std::vector<int> source;
     for (int block = 0; block < block_counts_[axis]; ++block)
       for (int k = 0; k < block_row; ++k) {
         const int point = std::min((first_block_[axis] + block) * block_cells + k, lattice_.cells[axis]);
-        source.push_back(lattice_texel(volume_, lattice_, axis, point) - slab.low[axis]);
+        source.push_back(lattice_texel(volume_, lattice_, axis, point) - slice_range.low[axis]);
       }
     return source;
   };

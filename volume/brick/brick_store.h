@@ -30,20 +30,20 @@ class BrickStore {
   static constexpr int block_texels = block_row * block_slice;
 
   /// Holds the blocks that meet `owned_cells` (cell coordinates, half-open, inside the lattice; may be
-  /// empty) or the volume's margin around them. Throws std::invalid_argument.
+  /// empty) or the volume's ghost layer around them. Throws std::invalid_argument.
   BrickStore(const VolumeDescription& volume, const TexelBox& owned_cells);
 
   /// The texels that a store with these cells shows: no others need come. Empty where there are no cells.
   static TexelBox texels_shown(const VolumeDescription& volume, const TexelBox& owned_cells);
   const TexelBox& texels_shown() const { return shown_; }
 
-  /// Texels of a slab inside `stored`, which in x and y covers at least texels_shown(). Each slice that is
-  /// shown comes once; in rising order they need the least memory. Throws std::invalid_argument when the slab
-  /// lies outside, is too narrow, came before, or has the wrong size.
-  void add_slices(const TexelBox& slab, std::span<const std::byte> texels);
+  /// Texels of a slice range inside `stored`, which in x and y covers at least texels_shown(). Each slice that
+  /// is shown comes once; in rising order they need the least memory. Throws std::invalid_argument when the
+  /// slice range lies outside, is too narrow, came before, or has the wrong size.
+  void add_slices(const TexelBox& slice_range, std::span<const std::byte> texels);
 
-  /// To be called after the last slab, before sampling. Throws std::invalid_argument naming a slice that is
-  /// missing.
+  /// To be called after the last slice range, before sampling. Throws std::invalid_argument naming a slice that
+  /// is missing.
   void finish();
 
   /// Other texels for a box inside `stored`, of a finished store. Throws std::invalid_argument. Adds the blocks
@@ -56,9 +56,9 @@ class BrickStore {
   /// Block `place`, which this finished store holds, as it travels between stores of one volume: its texels, or
   /// the one that all of them are.
   std::vector<std::byte> packed(const BlockPlace& place) const;
-  /// Other cells from now on, of a finished store. Blocks that meet them or the margin around them stay where
-  /// they are held already; the others come from `packed_block`. Throws std::invalid_argument, with the store
-  /// as it was, for cells outside the lattice.
+  /// Other cells from now on, of a finished store. Blocks that meet them or the ghost layer around them stay
+  /// where they are held already; the others come from `packed_block`. Throws std::invalid_argument, with the
+  /// store as it was, for cells outside the lattice.
   void reshape(const TexelBox& owned_cells,
                const std::function<std::vector<std::byte>(const BlockPlace&)>& packed_block);
 
@@ -110,9 +110,9 @@ class BrickStore {
   };
 
   void check_size(const TexelBox& box, std::size_t bytes) const;
-  void place_slice(int lattice_z, const TexelBox& slab, const std::byte* slice);
+  void place_slice(int lattice_z, const TexelBox& slice_range, const std::byte* slice);
   template <typename Texel>
-  void fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slab, const std::byte* slice);
+  void fill_layer_slice(Layer& layer, int z_in_block, const TexelBox& slice_range, const std::byte* slice);
   void complete_layer(int layer_index);
   template <typename Texel>
   void compact_layer(int layer_index);

@@ -105,17 +105,17 @@ std::uint64_t TexelStream::texels_done() const {
   return texels_in(done);
 }
 
-TexelStream::Slab TexelStream::next(std::size_t max_bytes) {
+TexelStream::SliceSegment TexelStream::next(std::size_t max_bytes) {
   const std::size_t scalar = bytes_per_scalar(file_->description().type);
-  Slab slab{box_, {}};
-  slab.box.low[2] = next_z_;
-  slab.box.high[2] = next_z_ + 1;
-  const std::size_t slice = texels_in(slab.box);
+  SliceSegment slice_range{box_, {}};
+  slice_range.box.low[2] = next_z_;
+  slice_range.box.high[2] = next_z_ + 1;
+  const std::size_t slice = texels_in(slice_range.box);
   const std::size_t slices = std::max<std::size_t>(1, max_bytes / (slice * scalar));
-  slab.box.high[2] = int(std::min<std::size_t>(std::size_t(box_.high[2] - next_z_), slices)) + next_z_;
-  const std::size_t count = texels_in(slab.box);
+  slice_range.box.high[2] = int(std::min<std::size_t>(std::size_t(box_.high[2] - next_z_), slices)) + next_z_;
+  const std::size_t count = texels_in(slice_range.box);
   scalars_.resize(count * scalar);
-  file_->read(slab.box, scalars_);
+  file_->read(slice_range.box, scalars_);
   texels_.resize(count * bytes_per_texel(mapping_.type));
   switch (file_->description().type) {
     case ScalarType::u8:
@@ -149,10 +149,10 @@ TexelStream::Slab TexelStream::next(std::size_t max_bytes) {
       convert<double>(scalars_);
       break;
   }
-  next_z_ = slab.box.high[2];
+  next_z_ = slice_range.box.high[2];
   if (done()) scalars_ = {};
-  slab.texels = texels_;
-  return slab;
+  slice_range.texels = texels_;
+  return slice_range;
 }
 
 template <typename Scalar>

@@ -1,5 +1,5 @@
-// A box of a volume file as texels, slab by slab: what a rank reads of a volume is its own box and nothing
-// else.
+// A box of a volume file as texels, slice range by slice range: what a rank reads of a volume is its own box
+// and nothing else.
 #pragma once
 
 #include <array>
@@ -59,12 +59,12 @@ class TexelStream {
   std::uint64_t bytes_read() const { return file_->bytes_read(); }
   const TexelFigures& figures() const { return figures_; }
 
-  struct Slab {
+  struct SliceSegment {
     TexelBox box;
     std::span<const std::byte> texels;  ///< valid until the next call
   };
   /// The next slices of the box: as many as fit in `max_bytes` of scalars, one at least. Throws FileError.
-  Slab next(std::size_t max_bytes);
+  SliceSegment next(std::size_t max_bytes);
 
  private:
   template <typename Scalar>

@@ -18,9 +18,9 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-/// Pictures of a kind that each side draws before the choice; the first one pays for what is made once.
-constexpr int pictures_measured = 2;
-/// Pictures of fewer samples say nothing about speed.
+/// Images of a kind that each side draws before the choice; the first one pays for what is made once.
+constexpr int images_measured = 2;
+/// Images of fewer samples say nothing about speed.
 constexpr std::uint64_t least_samples = 50000;
 
 constexpr std::array<std::pair<std::string_view, Backend>, 5> names{{{"cpu", Backend::cpu},
@@ -47,9 +47,9 @@ std::string text_of(const Kind& kind) {
                      kind.mostly_empty ? "most blocks empty" : "most blocks visible");
 }
 
-/// Nanoseconds for a sample inside the volume, the best picture of each side.
+/// Nanoseconds for a sample inside the volume, the best image of each side.
 struct Speeds {
-  int cpu_pictures = 0, gl_pictures = 0;
+  int cpu_images = 0, gl_images = 0;
   double cpu = std::numeric_limits<double>::infinity(), gl = cpu;
   std::optional<bool> gl_is_faster;
 };
@@ -128,7 +128,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
       return false;
     }
     try {
-      measured(request, counts, &Speeds::gl, &Speeds::gl_pictures,
+      measured(request, counts, &Speeds::gl, &Speeds::gl_images,
                [&] { gl_->render(request, out, counts, occlusion); });
     } catch (const NoTextureMemory& error) {
       // Other volumes have it: tried again once there is more.
@@ -156,22 +156,22 @@ class BackendChooser::Renderer final : public BrickRenderer {
     const auto found = shared_.speeds.find(kind_of(request));
     if (shared_.wish == Backend::automatic && (found == shared_.speeds.end() || !found->second.gl_is_faster))
       occlusion = nullptr;
-    measured(request, counts, &Speeds::cpu, &Speeds::cpu_pictures,
+    measured(request, counts, &Speeds::cpu, &Speeds::cpu_images,
              [&] { cpu_->render(request, out, counts, occlusion); });
   }
 
-  /// Whether the next picture of this kind is OpenGL's: those after the CPU's while measuring, and all if it
+  /// Whether the next image of this kind is OpenGL's: those after the CPU's while measuring, and all if it
   /// was faster.
   bool wanted(const Kind& kind) const {
     const auto found = shared_.speeds.find(kind);
     if (found == shared_.speeds.end()) return false;
     const Speeds& speeds = found->second;
-    return speeds.gl_is_faster.value_or(speeds.cpu_pictures >= pictures_measured);
+    return speeds.gl_is_faster.value_or(speeds.cpu_images >= images_measured);
   }
 
   template <class Draw>
   void measured(const RenderRequest& request, const FrameCounts& counts, double Speeds::*speed,
-                int Speeds::*pictures, Draw draw) {
+                int Speeds::*images, Draw draw) {
     const auto start = std::chrono::steady_clock::now();
     draw();
     const double ns =
@@ -181,8 +181,8 @@ class BackendChooser::Renderer final : public BrickRenderer {
     Speeds& speeds = shared_.speeds[kind];
     if (speeds.gl_is_faster) return;
     speeds.*speed = std::min(speeds.*speed, ns / double(counts.samples));
-    ++(speeds.*pictures);
-    if (speeds.cpu_pictures < pictures_measured || speeds.gl_pictures < pictures_measured) return;
+    ++(speeds.*images);
+    if (speeds.cpu_images < images_measured || speeds.gl_images < images_measured) return;
     speeds.gl_is_faster = speeds.gl < speeds.cpu;
     shared_.tell_once(fmt::format("{} for {}: GL takes {:.2f} ns a sample, the CPU {:.2f} ({})",
                                   *speeds.gl_is_faster ? "GL" : "CPU", text_of(kind), speeds.gl, speeds.cpu,
@@ -195,7 +195,7 @@ class BackendChooser::Renderer final : public BrickRenderer {
   std::unique_ptr<GlslRayCaster> gl_;
   bool failed_ = false;                      ///< OpenGL, on this volume
   std::optional<std::uint64_t> too_little_;  ///< memory for textures that was left for it
-  bool mostly_empty_ = false;                ///< the last picture's blocks
+  bool mostly_empty_ = false;                ///< the last image's blocks
 };
 
 BackendChooser::BackendChooser(Backend wish, Tell tell, const TextureMemoryWish& memory)

@@ -1,7 +1,7 @@
 // Who casts a node's rays: the CPU, OpenGL, or whichever turns out to be faster here.
 //
-// For an application's own process there is the CPU alone: OpenGL's names mean its door there, and its thread
-// has the application's context current.
+// For an application's own process there is the CPU alone: OpenGL's names mean its entry library there, and its
+// thread has the application's context current.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace understudy::volume::glsl {
 
-/// gl: EGL, or OSMesa where there is no EGL. automatic: measured on the first pictures of each kind.
+/// gl: EGL, or OSMesa where there is no EGL. automatic: measured on the first images of each kind.
 enum class Backend { cpu, gl, egl, osmesa, automatic };
 
 constexpr const char* backend_names = "cpu, gl, gl:egl, gl:osmesa, auto";

@@ -75,7 +75,7 @@ void BrickAtlas::allocate_slots() {
         fmt::format("{} of {} bytes of the GPU's memory are left, and one brick of the volume takes {}: give "
                     "more with --gpu-memory",
                     memory.left(), memory.bytes(), brick_bytes));
-  staged_.resize(brick_bytes);
+  remote_.resize(brick_bytes);
   for (;; most /= 2) {
     slots_along_ = arrange(most, longest);
     std::uint64_t bytes = brick_bytes;
@@ -171,7 +171,7 @@ void BrickAtlas::upload(std::size_t brick) {
   }
   const auto line = std::size_t(row()), slice = line * line;
   const auto place = [&](int x, int y, int z) {
-    return staged_.data() + (std::size_t(z) * slice + std::size_t(y) * line + std::size_t(x)) * format.bytes;
+    return remote_.data() + (std::size_t(z) * slice + std::size_t(y) * line + std::size_t(x)) * format.bytes;
   };
   const auto& counts = store_.block_counts();
   for (int bz = 0; bz < blocks_along && first[2] + bz < counts[2]; ++bz)
@@ -190,7 +190,7 @@ void BrickAtlas::upload(std::size_t brick) {
                     kept(0, bx), place(bx * cells, by * cells + y, bz * cells + z));
       }
   // What is held may end before the brick does. Texels beyond are never sampled, but the filter may touch them
-  // with a weight that rounding leaves: they must be no strangers.
+  // with a weight that rounding leaves: they must be no pending clients.
   for (std::size_t axis = 0; axis < 3; ++axis)
     size[axis] = std::min(size[axis], (counts[axis] - first[axis]) * cells + 1);
   for (int z = 0; z < row(); ++z)
@@ -205,7 +205,7 @@ void BrickAtlas::upload(std::size_t brick) {
   const Functions& gl = device_.gl();
   gl.BindTexture(GL_TEXTURE_3D, texels_.name());
   gl.TexSubImage3D(GL_TEXTURE_3D, 0, slot[0] * row(), slot[1] * row(), slot[2] * row(), row(), row(), row(),
-                   format.pixels, format.type, staged_.data());
+                   format.pixels, format.type, remote_.data());
   ++uploads_;
 }
 

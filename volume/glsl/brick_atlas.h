@@ -63,7 +63,7 @@ class BrickAtlas {
   std::vector<std::uint64_t> asked_;   ///< per slot: when its brick was asked for
   bool pages_changed_ = false;         ///< and the texture of pages does not tell yet
   std::uint64_t clock_ = 0;
-  std::vector<std::byte> staged_;  ///< the texels of one brick
+  std::vector<std::byte> remote_;  ///< the texels of one brick
   std::uint64_t uploads_ = 0, evictions_ = 0;
 };
 

@@ -40,7 +40,7 @@ void BrickPasses::resize(int width, int height) {
     gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, state.progress.name(), 0);
     const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     gl.DrawBuffers(2, both);
-    device_.check("making textures for a picture");
+    device_.check("making textures for an image");
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) continue;
     made_width_ = made_height_ = 0;
     throw NotSupported("this OpenGL does not draw into float textures");
@@ -96,7 +96,7 @@ void BrickPasses::draw(const MarchProgram& program, int width, int height, std::
   }
 }
 
-void BrickPasses::read_picture(int row_pixels, float* to) const {
+void BrickPasses::read_image(int row_pixels, float* to) const {
   const Functions& gl = device_.gl();
   gl.BindFramebuffer(GL_FRAMEBUFFER, states_[std::size_t(passes_ - 1) % 2].framebuffer);
   gl.ReadBuffer(GL_COLOR_ATTACHMENT0);

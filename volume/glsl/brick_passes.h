@@ -28,7 +28,7 @@ class BrickPasses {
   void draw(const MarchProgram& program, int width, int height, std::vector<std::size_t> order);
 
   /// Of the last draw(): per pixel premultiplied RGBA, rows bottom up, into rows of `row_pixels`.
-  void read_picture(int row_pixels, float* to) const;
+  void read_image(int row_pixels, float* to) const;
   /// Of the last draw(), per pixel: the next sample, samples taken (negative when the ray became opaque), 0, 0.
   const std::vector<std::array<float, 4>>& progress() const { return progress_; }
   /// Passes of the last draw().

@@ -17,9 +17,9 @@
 #include "volume/glsl/brick_passes.h"
 #include "volume/glsl/field_texture.h"
 #include "volume/raycast/map_visibility.h"
+#include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/ray_setup.h"
-#include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
 
 namespace understudy::volume::glsl {
@@ -70,14 +70,14 @@ void set_filter(const Functions& gl, GLenum target, GLint filter) {
 
 }  // namespace
 
-/// What depends on the classification alone, on whether the operator is `min`, and on whether empty blocks are
+/// What depends on the classification alone, on whether the operator is `min`, and on whether empty bricks are
 /// left out.
 struct GlslRayCaster::Prepared {
   Classification classification;
   bool keeps_clear_samples;
   bool skips;
   std::optional<TransferTable> function;
-  SkipMap skip;
+  OccupancyMap skip;
   bool steep;  ///< too much so for OpenGL's filter
   Texture distances;
   Texture table;
@@ -88,7 +88,7 @@ struct GlslRayCaster::Prepared {
         keeps_clear_samples(keeps_clear),
         skips(skips_empty),
         function(make_function(store, from)),
-        skip(skip_map(store)),
+        skip(occupancy_map(store)),
         steep(is_steep(store)),
         distances(gl),
         table(gl) {
@@ -111,8 +111,8 @@ struct GlslRayCaster::Prepared {
     return std::get<LinearMap>(classification).alpha_above >= 0;  // discarding is a step
   }
 
-  SkipMap skip_map(const BrickStore& store) const {
-    if (!skips) return SkipMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
+  OccupancyMap occupancy_map(const BrickStore& store) const {
+    if (!skips) return OccupancyMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) {
       const auto ranges = store.ranges(b);
@@ -120,7 +120,7 @@ struct GlslRayCaster::Prepared {
                : function          ? function->shows(ranges[0])
                                    : shows(std::get<LinearMap>(classification), ranges);
     }
-    return SkipMap(store.block_counts(), std::move(all));
+    return OccupancyMap(store.block_counts(), std::move(all));
   }
 
   void upload_distances(const Functions& gl, const BrickStore& store) const {
@@ -132,7 +132,7 @@ struct GlslRayCaster::Prepared {
   }
 };
 
-/// The rays of one picture, a pixel each, as the shader reads them.
+/// The rays of one image, a pixel each, as the shader reads them.
 struct GlslRayCaster::Rays {
   int width = 0;
   int height = 0;
@@ -145,22 +145,22 @@ struct GlslRayCaster::Rays {
     starts.resize(pixels.pixels());
     steps.resize(pixels.pixels());
     tbb::combinable<FrameCounts> partial;
-    const int strip_rows = (height + strip_height - 1) / strip_height;
+    const int strip_rows = (height + packet_height - 1) / packet_height;
     tbb::parallel_for(tbb::blocked_range<int>(0, strip_rows), [&](const tbb::blocked_range<int>& range) {
       FrameCounts& mine = partial.local();
-      RayStrip strip;
+      RayPacket packet;
       for (int row = range.begin(); row < range.end(); ++row)
         for (int x = 0; x < width; x += tile_width) {
-          const int y = row * strip_height;
-          const int columns = std::min(tile_width, width - x), rows = std::min(strip_height, height - y);
-          set_up_strip(setup, request, pixels.x + x, pixels.y + y, columns, rows, strip);
+          const int y = row * packet_height;
+          const int columns = std::min(tile_width, width - x), rows = std::min(packet_height, height - y);
+          set_up_packet(setup, request, pixels.x + x, pixels.y + y, columns, rows, packet);
           for (int j = 0; j < rows; ++j)
             for (int i = 0; i < columns; ++i) {
               const auto r = std::size_t(j) * std::size_t(tile_width) + std::size_t(i);
               const std::size_t pixel = std::size_t(y + j) * std::size_t(width) + std::size_t(x + i);
-              const int first = strip.first[r], last = strip.last[r];
-              starts[pixel] = {strip.start[0][r], strip.start[1][r], strip.start[2][r], float(first)};
-              steps[pixel] = {strip.step[0][r], strip.step[1][r], strip.step[2][r], float(last)};
+              const int first = packet.first[r], last = packet.last[r];
+              starts[pixel] = {packet.start[0][r], packet.start[1][r], packet.start[2][r], float(first)};
+              steps[pixel] = {packet.step[0][r], packet.step[1][r], packet.step[2][r], float(last)};
               if (first > last) continue;
               ++mine.rays;
               mine.samples += std::uint64_t(last - first + 1);
@@ -179,16 +179,16 @@ struct GlslRayCaster::Resources {
   // One of the two.
   std::optional<FieldTexture> field;
   std::optional<BrickPasses> bricks;
-  Texture starts, steps, picture, taken;
+  Texture starts, steps, image, taken;
   GLuint framebuffer = 0;
   int width = 0, height = 0;  ///< of the textures that have a texel per pixel
-  /// The latest first: a viewer whose framebuffer keeps alpha asks for two pictures of every frame.
+  /// The latest first: a viewer whose framebuffer keeps alpha asks for two images of every frame.
   std::array<std::unique_ptr<Prepared>, 2> prepared;
   Rays rays;
   std::vector<std::array<float, 2>> counted;  ///< what the shader says in `taken`
 
   Resources(Device& device, const BrickStore& store, int brick_cells)
-      : starts(device.gl()), steps(device.gl()), picture(device.gl()), taken(device.gl()) {
+      : starts(device.gl()), steps(device.gl()), image(device.gl()), taken(device.gl()) {
     if (FieldTexture::fits(device, store)) try {
         field.emplace(device, store);
       } catch (const OutOfMemory&) {
@@ -210,15 +210,15 @@ struct GlslRayCaster::Resources {
     };
     make(starts, GL_RGBA32F, GL_RGBA);
     make(steps, GL_RGBA32F, GL_RGBA);
-    if (bricks) return device.check("making textures for rays");  // they have pictures of their own
-    make(picture, GL_RGBA32F, GL_RGBA);
+    if (bricks) return device.check("making textures for rays");  // they have images of their own
+    make(image, GL_RGBA32F, GL_RGBA);
     make(taken, GL_RG32F, GL_RG);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, picture.name(), 0);
+    gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, image.name(), 0);
     gl.FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, taken.name(), 0);
     const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     gl.DrawBuffers(2, both);
-    device.check("making textures for a picture");
+    device.check("making textures for an image");
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
       width = height = 0;
       throw NotSupported("this OpenGL does not draw into float textures");
@@ -269,7 +269,8 @@ GlslRayCaster::~GlslRayCaster() {
 }
 
 std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request) const {
-  if (std::holds_alternative<PairTable>(request.classification)) return "slabs with a table of pairs";
+  if (std::holds_alternative<PreIntegrationTable>(request.classification))
+    return "segments with a pre-integration table";
   if (request.fog) return "fog";
   if (request.method == Method::pre_integrated) return "pre-integrated segments";
   if (request.method == Method::adaptive) return "adaptive steps";
@@ -280,7 +281,7 @@ std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request)
     return fmt::format("a transfer function of {} entries, where textures take {}", function->entries.size(),
                        device_.max_texture_edge());
   if (std::max(request.window.width, request.window.height) > device_.max_texture_edge())
-    return fmt::format("a picture of {} x {} pixels, where textures take {}", request.window.width,
+    return fmt::format("an image of {} x {} pixels, where textures take {}", request.window.width,
                        request.window.height, device_.max_texture_edge());
   return std::nullopt;
 }
@@ -385,7 +386,7 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
       here.bricks->atlas().blocks_changed(changed_);
     for (const auto& prepared : here.prepared)
       if (prepared) {
-        prepared->skip = prepared->skip_map(store_);
+        prepared->skip = prepared->occupancy_map(store_);
         prepared->steep = prepared->is_steep(store_);
         prepared->upload_distances(gl, store_);
       }
@@ -394,17 +395,17 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
   const bool keeps_clear_samples = request.op == Operator::min;
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
     return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
-           prepared->skips == request.leave_out.empty_blocks &&
+           prepared->skips == request.optimizations.empty_bricks &&
            prepared->classification == request.classification;
   };
   if (!fits(here.prepared[0])) here.prepared[0].swap(here.prepared[1]);
   if (!fits(here.prepared[0]))
     here.prepared[0] = std::make_unique<Prepared>(gl, store_, request.classification, keeps_clear_samples,
-                                                  request.leave_out.empty_blocks);
+                                                  request.optimizations.empty_bricks);
   const Prepared& prepared = *here.prepared[0];
   FrameCounts mine;  // what fails is not counted: the CPU will count it
   mine.blocks = store_.blocks();
-  mine.blocks_empty = prepared.skip.empty_blocks();
+  mine.blocks_empty = prepared.skip.empty_bricks();
 
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
   const bool any_sample = !pixels.empty() && (request.steps || request.planes.count > 0);
@@ -435,9 +436,9 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
     std::vector<std::size_t> visible = visible_bricks(request, prepared, pixels);
     if (!visible.empty()) {
       here.bricks->draw(program, pixels.width, pixels.height, std::move(visible));
-      here.bricks->read_picture(out.rect.width, out.at(pixels.x, pixels.y));
+      here.bricks->read_image(out.rect.width, out.at(pixels.x, pixels.y));
       here.count_walked(mine);
-      device_.check("reading the picture");
+      device_.check("reading the image");
     }
     counts += mine;
     return;

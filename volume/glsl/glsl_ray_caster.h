@@ -6,8 +6,8 @@
 // float.
 //
 // It draws scalar fields under transfer functions and colours under linear maps, on planes and on steps, under
-// every operator. Tables of pairs, fog, segments, surfaces, light, texels that are not numbers, and pictures
-// over OpenGL's limits are for the CPU.
+// every operator. Pre-integration tables, fog, segments, surfaces, light, texels that are not numbers, and
+// images over OpenGL's limits are for the CPU.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace understudy::volume::glsl {
 struct BrickFigures {
   std::size_t bricks = 0;  ///< that the volume has; 0 when one texture holds it all
   std::size_t slots = 0;   ///< that can be resident at a time
-  int passes = 0;          ///< of the last picture
+  int passes = 0;          ///< of the last image
   std::uint64_t uploads = 0, evictions = 0;
 };
 

@@ -20,7 +20,7 @@ constexpr const char* fragment_source = R"(
 uniform sampler2D ray_starts;   // lattice position of sample 0, and the ray's first sample
 uniform sampler2D ray_steps;    // from sample to sample, and the ray's last sample
 uniform sampler3D field;        // a texel per lattice point
-uniform usampler3D distances;   // per block, see SkipMap
+uniform usampler3D distances;   // per block, see OccupancyMap
 uniform vec3 texture_origin, texture_scale;
 uniform ivec3 first_block;
 uniform vec3 top, rounding;
@@ -174,7 +174,7 @@ void main() {
   }
 #endif
   while (k <= last) {
-    // First all rays of a group leap, then all take samples: what one does, the others wait for.
+    // First all rays of a group skip, then all take samples: what one does, the others wait for.
     for (;;) {
       vec3 p = clamp(k * step_ + start, vec3(0.0), top);
       vec3 block = floor(p * 0.125);

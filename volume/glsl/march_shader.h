@@ -44,7 +44,7 @@ struct MarchProgram {
   GLint alpha_above = -1;
   GLint termination = -1;
   GLint brick_cells = -1;
-  GLint passes_before = -1;  ///< of this picture
+  GLint passes_before = -1;  ///< of this image
 };
 
 /// Wants a current context. Throws std::runtime_error with the compiler's words.

@@ -1,4 +1,4 @@
-// How much memory the texels of a node's volumes may take in textures. Other textures (rays, pictures, tables,
+// How much memory the texels of a node's volumes may take in textures. Other textures (rays, images, tables,
 // distances) are small beside them and are not counted.
 #pragma once
 
@@ -33,7 +33,7 @@ class TextureMemory {
   std::uint64_t bytes() const { return bytes_; }
   std::uint64_t left() const { return bytes_ - taken_; }
 
-  /// A part of it, given back at its end.
+  /// A part of it, handed back at its end.
   class Part {
    public:
     /// Takes no more than what is left().

@@ -27,7 +27,7 @@ class Visibility {
   Visibility(const BrickStore& store, const RenderRequest& request)
       : store_(store),
         map_(std::get_if<LinearMap>(&request.classification)),
-        keeps_all_(request.op == Operator::min || !request.leave_out.empty_blocks) {
+        keeps_all_(request.op == Operator::min || !request.optimizations.empty_bricks) {
     if (const auto* function = std::get_if<TransferFunction>(&request.classification))
       table_.emplace(*function, store.description().type, neutral_value(request.op));
     for (const Level& level : SegmentScene(store.description(), request).levels) levels_.push_back(level.value);

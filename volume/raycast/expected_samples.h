@@ -13,8 +13,8 @@ namespace understudy::volume {
 double sample_density(const RenderRequest& request, const Vec3& t);
 
 /// Adds to `costs`, of the store's whole lattice, what each block costs whose lowest cell the store owns. A
-/// block that shows nothing costs a small part of what it would: rays must pass it. What has a block of slabs
-/// is taken to show something. `request` must be valid.
+/// block that shows nothing costs a small part of what it would: rays must pass it. What has a block of
+/// segments is taken to show something. `request` must be valid.
 void add_expected_samples(const BrickStore& store, const RenderRequest& request, BlockCosts& costs);
 
 }  // namespace understudy::volume

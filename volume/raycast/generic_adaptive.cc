@@ -13,11 +13,11 @@ namespace {
 template <typename FieldType>
 class PartWalk {
  public:
-  PartWalk(const Scene& scene, const RayStrip& strip, std::size_t ray)
-      : scene_(scene), reader_(scene), begin_(strip.begin[ray]), end_(strip.end[ray]) {
+  PartWalk(const Scene& scene, const RayPacket& packet, std::size_t ray)
+      : scene_(scene), reader_(scene), begin_(packet.begin[ray]), end_(packet.end[ray]) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      start_[axis] = strip.start[axis][ray];
-      step_[axis] = strip.step[axis][ray];
+      start_[axis] = packet.start[axis][ray];
+      step_[axis] = packet.step[axis][ray];
     }
   }
 
@@ -28,7 +28,7 @@ class PartWalk {
       const float u0 = on_ray(k), u1 = on_ray(k + 1);
       move_to(u0);
       if (const float steps = reader_.steps_in_empty(step_); steps >= 0) {
-        // Only steps that end in empty blocks are empty.
+        // Only steps that end in empty bricks are empty.
         const int next = int(std::floor(std::min(u0 + steps, float(last) + 1)));
         if (next > k) {
           k = next;
@@ -103,23 +103,24 @@ class PartWalk {
 };
 
 template <typename FieldType>
-void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  for (std::size_t ray = 0; ray < strip_rays; ++ray) {
-    const Rgba pixel = PartWalk<FieldType>(scene, strip, ray).walk(strip.first[ray], strip.last[ray], counts);
+void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  for (std::size_t ray = 0; ray < packet_rays; ++ray) {
+    const Rgba pixel =
+        PartWalk<FieldType>(scene, packet, ray).walk(packet.first[ray], packet.last[ray], counts);
     std::copy(pixel.begin(), pixel.end(), rgba + 4 * ray);
   }
 }
 
 }  // namespace
 
-void generic_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void generic_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_strip<Field<std::uint8_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_strip<Field<std::uint16_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_strip<Field<float>>(scene, strip, rgba, counts);
+      return walk_packet<Field<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:  // refused by validate()
       return;
   }

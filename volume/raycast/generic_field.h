@@ -52,8 +52,8 @@ inline bool classify(const Scene& scene, float value, Rgba& colour) {
   return true;
 }
 
-/// A table of pairs at places within it.
-inline Rgba interpolated(const PairLookup& pairs, float x, float y) {
+/// A pre-integration table at places within it.
+inline Rgba interpolated(const PreIntegrationLookup& pairs, float x, float y) {
   const auto entry = [&](float at) { return std::min(std::size_t(at), std::size_t(pairs.edge()) - 2); };
   const std::size_t i = entry(x), j = entry(y);
   const float* lower = pairs.entries() + 4 * (j * std::size_t(pairs.edge()) + i);
@@ -66,8 +66,8 @@ inline Rgba interpolated(const PairLookup& pairs, float x, float y) {
   return colour;
 }
 
-/// Colour and opacity of a slab; false when it contributes nothing (NaN).
-inline bool classify(const PairLookup& pairs, float front, float back, Rgba& colour) {
+/// Colour and opacity of a segment; false when it contributes nothing (NaN).
+inline bool classify(const PreIntegrationLookup& pairs, float front, float back, Rgba& colour) {
   if (std::isnan(front) || std::isnan(back)) return false;
   const auto place = [&](float value) {
     return std::clamp((value - pairs.low()) * pairs.scale(), 0.0F, pairs.last());
@@ -96,7 +96,7 @@ class FieldReader {
   const std::array<float, 3>& position() const { return position_; }
   std::size_t block() const { return block_; }
 
-  /// How many steps from here on lie in empty blocks for sure; negative in a block that shows something.
+  /// How many steps from here on lie in empty bricks for sure; negative in a block that shows something.
   float steps_in_empty(const std::array<float, 3>& step) const {
     const int distance = scene_.skip->distances()[block_];
     if (distance == 0) return -1;

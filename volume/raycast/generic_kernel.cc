@@ -26,8 +26,8 @@ bool classify(const Scene& scene, const Rgba& texel, Rgba& colour) {
   return true;
 }
 
-/// Colours have no table of pairs.
-bool classify(const PairLookup&, const Rgba&, const Rgba&, Rgba&) {
+/// Colours have no pre-integration table.
+bool classify(const PreIntegrationLookup&, const Rgba&, const Rgba&, Rgba&) {
   return false;
 }
 
@@ -69,10 +69,10 @@ void compose(Operator op, const Rgba& colour, Rgba& pixel) {
 template <typename FieldType>
 class RayWalk {
  public:
-  RayWalk(const Scene& scene, const RayStrip& strip, std::size_t ray) : scene_(scene), reader_(scene) {
+  RayWalk(const Scene& scene, const RayPacket& packet, std::size_t ray) : scene_(scene), reader_(scene) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      start_[axis] = strip.start[axis][ray];
-      step_[axis] = strip.step[axis][ray];
+      start_[axis] = packet.start[axis][ray];
+      step_[axis] = packet.step[axis][ray];
     }
   }
 
@@ -82,7 +82,7 @@ class RayWalk {
     reader_.move_to(position, {}, scene_.top);
   }
 
-  /// To the back of the slab whose front lies at sample k.
+  /// To the back of the segment whose front lies at sample k.
   void move_behind(int k) {
     std::array<float, 3> position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -94,7 +94,7 @@ class RayWalk {
 
   const std::array<float, 3>& position() const { return reader_.position(); }
 
-  /// How many samples from here on lie in empty blocks for sure; 0 in a block that shows something.
+  /// How many samples from here on lie in empty bricks for sure; 0 in a block that shows something.
   int empty_ahead() const { return int(std::floor(reader_.steps_in_empty(step_))) + 1; }
 
   typename FieldType::Sample sample() const { return reader_.sample(); }
@@ -106,14 +106,14 @@ class RayWalk {
 };
 
 template <typename FieldType>
-void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   const float neutral = neutral_value(scene.op);
-  for (std::size_t ray = 0; ray < strip_rays; ++ray) {
+  for (std::size_t ray = 0; ray < packet_rays; ++ray) {
     Rgba pixel{neutral, neutral, neutral, neutral};
-    RayWalk<FieldType> walk(scene, strip, ray);
-    const int last = strip.last[ray];
+    RayWalk<FieldType> walk(scene, packet, ray);
+    const int last = packet.last[ray];
     int until_test = samples_between_tests;
-    for (int k = strip.first[ray]; k <= last;) {
+    for (int k = packet.first[ray]; k <= last;) {
       walk.move_to(k);
       if (const int empty = walk.empty_ahead(); empty > 0) {
         k += empty;
@@ -151,16 +151,16 @@ void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCo
 
 }  // namespace
 
-void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void generic_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_strip<Field<std::uint8_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_strip<Field<std::uint16_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_strip<Field<float>>(scene, strip, rgba, counts);
+      return walk_packet<Field<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:
-      return walk_strip<Colours>(scene, strip, rgba, counts);
+      return walk_packet<Colours>(scene, packet, rgba, counts);
   }
 }
 

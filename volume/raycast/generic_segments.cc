@@ -32,21 +32,21 @@ void compose(const Rgba& colour, Rgba& pixel) {
 template <typename FieldType>
 class SegmentWalk {
  public:
-  SegmentWalk(const Scene& scene, const RayStrip& strip, std::size_t ray)
+  SegmentWalk(const Scene& scene, const RayPacket& packet, std::size_t ray)
       : scene_(scene),
         segments_(*scene.segments),
         reader_(scene),
-        begin_(strip.begin[ray]),
-        end_(strip.end[ray]),
-        first_(strip.first[ray]),
-        last_(strip.last[ray]) {
+        begin_(packet.begin[ray]),
+        end_(packet.end[ray]),
+        first_(packet.first[ray]),
+        last_(packet.last[ray]) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      start_[axis] = strip.start[axis][ray];
-      step_[axis] = strip.step[axis][ray];
+      start_[axis] = packet.start[axis][ray];
+      step_[axis] = packet.step[axis][ray];
     }
-    if (segments_.lamp) {
-      light_ = segments_.lamp->light(step_);
-      half_ = segments_.lamp->half(step_);
+    if (segments_.prepared_light) {
+      light_ = segments_.prepared_light->light(step_);
+      half_ = segments_.prepared_light->half(step_);
     }
   }
 
@@ -57,7 +57,7 @@ class SegmentWalk {
       const float u = on_ray(k);
       const float front = value_at(place(u));
       if (const float steps = reader_.steps_in_empty(step_); steps >= 0) {
-        // Only segments that end in empty blocks are empty.
+        // Only segments that end in empty bricks are empty.
         const int next = int(std::floor(std::min(u + steps, float(last_) + 1)));
         if (next > k) {
           k = next;
@@ -130,7 +130,7 @@ class SegmentWalk {
       layer -= in_front;
       piece(before.front, search.front, before.at_front, level.value);
       Rgba colour = level.colour;
-      if (segments_.lamp) lay_in_light(point(search.front), colour);
+      if (segments_.prepared_light) lay_in_light(point(search.front), colour);
       compose(colour, pixel);
     }
     shorten(layer, sampled);
@@ -141,7 +141,7 @@ class SegmentWalk {
   /// What `length` steps show on which the field changes evenly between two values. Beyond the ends of the
   /// table the medium is that of its ends, so there the way is parted.
   Rgba shown_between(float front, float back, float length) const {
-    const PairLookup& pairs = *scene_.pairs;
+    const PreIntegrationLookup& pairs = *scene_.pairs;
     const auto place = [&](float value) {
       constexpr float far = 1e18F;  // so that differences of places are numbers
       return std::clamp((value - pairs.low()) * pairs.scale(), -far, far);
@@ -174,7 +174,7 @@ class SegmentWalk {
   }
 
   void lay_in_light(const Place& p, Rgba& colour) {
-    const Lamp& lamp = *segments_.lamp;
+    const PreparedLight& prepared_light = *segments_.prepared_light;
     std::array<double, 3> gradient{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Place beside = p;
@@ -185,23 +185,26 @@ class SegmentWalk {
     }
     double square = 0, to_light = 0, to_half = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) square += gradient[i] * double(lamp.metric[3 * i + k]) * gradient[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        square += gradient[i] * double(prepared_light.metric[3 * i + k]) * gradient[k];
       to_light -= gradient[i] * double(light_[i]);
       to_half -= gradient[i] * double(half_[i]);
     }
     if (!(square > 0)) return;
     const auto cosine = [&](double projection) {
       const double c = projection / std::sqrt(square);
-      return std::min(lamp.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
+      return std::min(prepared_light.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
     };
     const double slope = std::sqrt(square);
-    const double share = slope < double(lamp.full_slope) ? slope / double(lamp.full_slope) : 1;
+    const double share =
+        slope < double(prepared_light.full_slope) ? slope / double(prepared_light.full_slope) : 1;
     const double diffuse = cosine(to_light);
-    const double gleam = std::pow(cosine(to_half), double(lamp.model.shininess));
+    const double gleam = std::pow(cosine(to_half), double(prepared_light.model.shininess));
     for (std::size_t k = 0; k < 3; ++k) {
       const double own = double(colour[k]);
-      const double lit = (double(lamp.model.ambient[k]) + double(lamp.model.diffuse[k]) * diffuse) * own +
-                         double(lamp.model.specular[k]) * gleam * double(colour[3]);
+      const double lit =
+          (double(prepared_light.model.ambient[k]) + double(prepared_light.model.diffuse[k]) * diffuse) * own +
+          double(prepared_light.model.specular[k]) * gleam * double(colour[3]);
       colour[k] = float(own + share * (lit - own));
     }
   }
@@ -215,23 +218,23 @@ class SegmentWalk {
 };
 
 template <typename FieldType>
-void walk_strip(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  for (std::size_t ray = 0; ray < strip_rays; ++ray) {
-    const Rgba pixel = SegmentWalk<FieldType>(scene, strip, ray).walk(counts);
+void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  for (std::size_t ray = 0; ray < packet_rays; ++ray) {
+    const Rgba pixel = SegmentWalk<FieldType>(scene, packet, ray).walk(counts);
     std::copy(pixel.begin(), pixel.end(), rgba + 4 * ray);
   }
 }
 
 }  // namespace
 
-void generic_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void generic_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_strip<Field<std::uint8_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_strip<Field<std::uint16_t>>(scene, strip, rgba, counts);
+      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_strip<Field<float>>(scene, strip, rgba, counts);
+      return walk_packet<Field<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:  // refused by validate()
       return;
   }

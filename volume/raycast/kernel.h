@@ -1,16 +1,16 @@
-// What the kernels share: a strip of rays goes in, premultiplied pixels come out. The generic kernel takes
+// What the kernels share: a packet of rays goes in, premultiplied pixels come out. The generic kernel takes
 // every texel type, filter and operator and says plainly what is meant; the others are faster on one
-// combination and must give the same picture.
+// combination and must give the same image.
 #pragma once
 
 #include <cstdint>
 
 #include "volume/brick/brick_store.h"
 #include "volume/raycast/fog_table.h"
-#include "volume/raycast/pair_lookup.h"
+#include "volume/raycast/occupancy_map.h"
+#include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/segment_scene.h"
-#include "volume/raycast/skip_map.h"
 #include "volume/raycast/step_division.h"
 #include "volume/raycast/transfer_table.h"
 #include "volume/request.h"
@@ -21,11 +21,11 @@ namespace understudy::volume {
 /// `segments` are pre-integrated.
 struct Scene {
   const BrickStore* store = nullptr;
-  const SkipMap* skip = nullptr;
+  const OccupancyMap* skip = nullptr;
   const TransferTable* table = nullptr;
   const float* bounds = nullptr;  ///< per block what it can add to a maximum (block_bounds()); null: not known
   const LinearMap* map = nullptr;
-  const PairLookup* pairs = nullptr;
+  const PreIntegrationLookup* pairs = nullptr;
   /// Surfaces, light and pre-integration: the scene is one for the kernels of segments; null: for the others.
   const SegmentScene* segments = nullptr;
   /// Adaptive steps: what their parts show, and per block into how many they are divided; null: for other
@@ -35,8 +35,8 @@ struct Scene {
   /// The store holds values beyond the ends of `pairs`: segments between such a value and one within are
   /// parted.
   bool values_beyond = false;
-  /// With pairs: the second sample of a slab lies so many samples on, and then away by a vector of cells; it is
-  /// clamped to what the store holds, as are all places that segments look at.
+  /// With pairs: the second sample of a segment lies so many samples on, and then away by a vector of cells; it
+  /// is clamped to what the store holds, as are all places that segments look at.
   float samples_on = 0;
   std::array<float, 3> cells_away{};
   std::array<float, 3> held_low{};
@@ -60,22 +60,22 @@ struct KernelCounts {
 };
 
 /// Writes the pixel of ray r to rgba + 4 r.
-using Kernel = void (*)(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+using Kernel = void (*)(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
-void generic_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void generic_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
 /// On the best instruction set of this machine that Highway knows; the generic kernel where it knows none.
-void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
 /// The same two for segments.
-void generic_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
-void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void generic_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
+void vector_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 /// Of the latter, the part for scenes that are pre-integrated.
-void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
+void vector_pre_integrated_segments(const Scene& scene, const RayPacket& packet, float* rgba,
                                     KernelCounts& counts);
 
 /// The same two for adaptive steps.
-void generic_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
-void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts);
+void generic_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
+void vector_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts);
 
 }  // namespace understudy::volume

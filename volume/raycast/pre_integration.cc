@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "volume/raycast/pair_lookup.h"
+#include "volume/raycast/pre_integration_lookup.h"
 
 namespace understudy::volume {
 
@@ -109,8 +109,8 @@ double sharpest_bend(const TransferFunction& function) {
 
 }  // namespace
 
-PairTable pre_integrated(const TransferFunction& function) {
-  constexpr std::size_t least_pieces = 255, most_pieces = std::size_t(max_pair_edge) - 1;
+PreIntegrationTable pre_integrated(const TransferFunction& function) {
+  constexpr std::size_t least_pieces = 255, most_pieces = std::size_t(max_pre_integration_edge) - 1;
   constexpr double tolerance = 1e-3;
   const std::size_t given = function.entries.size() - 1;
   std::size_t pieces = most_pieces;
@@ -130,7 +130,7 @@ PairTable pre_integrated(const TransferFunction& function) {
     entries.push_back(between(colour(below), colour(below + 1), place - double(below)));
   }
 
-  PairTable table;
+  PreIntegrationTable table;
   table.low = function.low;
   table.high = function.high;
   table.edge = int(entries.size());

@@ -12,6 +12,6 @@ namespace understudy::volume {
 /// is kept below 1e-3 while the edge allows. Functions of more than 1024 entries are thinned out to them. Takes
 /// time in the square of the edge: all segments over the same number of entries are made of equal pieces, and
 /// are composed of running composites from the ends of groups of as many pieces (van Herk 1992).
-PairTable pre_integrated(const TransferFunction& function);
+PreIntegrationTable pre_integrated(const TransferFunction& function);
 
 }  // namespace understudy::volume

@@ -20,10 +20,10 @@
 #include "volume/raycast/block_bounds.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/map_visibility.h"
+#include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/pre_integration.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/segment_scene.h"
-#include "volume/raycast/skip_map.h"
 #include "volume/raycast/transfer_table.h"
 
 namespace understudy::volume {
@@ -59,16 +59,17 @@ void validate_classification(const VolumeDescription& volume, const Classificati
       refuse("the transfer function spans values {} to {}", function->low, function->high);
     for (const Rgba& entry : function->entries)
       if (!all_finite(entry)) refuse("the transfer function holds a value that is not finite");
-  } else if (const auto* pairs = std::get_if<PairTable>(&classification)) {
-    if (volume.type == TexelType::rgba8) refuse("a volume of colours needs a linear map, not a table of pairs");
-    if (pairs->edge < 2 || pairs->edge > max_pair_edge ||
+  } else if (const auto* pairs = std::get_if<PreIntegrationTable>(&classification)) {
+    if (volume.type == TexelType::rgba8)
+      refuse("a volume of colours needs a linear map, not a pre-integration table");
+    if (pairs->edge < 2 || pairs->edge > max_pre_integration_edge ||
         pairs->entries.size() != std::size_t(pairs->edge) * std::size_t(pairs->edge))
-      refuse("the table of pairs has {} entries and an edge of {} (2 to {} are possible)",
-             pairs->entries.size(), pairs->edge, max_pair_edge);
+      refuse("the pre-integration table has {} entries and an edge of {} (2 to {} are possible)",
+             pairs->entries.size(), pairs->edge, max_pre_integration_edge);
     if (!std::isfinite(pairs->low) || !std::isfinite(pairs->high) || !(pairs->low < pairs->high))
-      refuse("the table of pairs spans values {} to {}", pairs->low, pairs->high);
+      refuse("the pre-integration table spans values {} to {}", pairs->low, pairs->high);
     for (const Rgba& entry : pairs->entries)
-      if (!all_finite(entry)) refuse("the table of pairs holds a value that is not finite");
+      if (!all_finite(entry)) refuse("the pre-integration table holds a value that is not finite");
   } else {
     const LinearMap& map = std::get<LinearMap>(classification);
     if (volume.type != TexelType::rgba8)
@@ -111,24 +112,28 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
 }
 
-void validate_slab(const VolumeDescription& volume, const RenderRequest& request) {
-  const bool pairs = std::holds_alternative<PairTable>(request.classification);
-  if (pairs && !request.slab) refuse("a table of pairs needs slabs");
-  if (!pairs && request.slab) refuse("slabs need a table of pairs");
+void validate_slice_segment(const VolumeDescription& volume, const RenderRequest& request) {
+  const bool pairs = std::holds_alternative<PreIntegrationTable>(request.classification);
+  if (pairs && !request.slice_segment) refuse("a pre-integration table needs segments");
+  if (!pairs && request.slice_segment) refuse("segments need a pre-integration table");
   if (!pairs) return;
-  if (request.steps) refuse("slabs lie on planes, not on steps along rays");
-  if (request.fog) refuse("there is no fog with slabs");
-  const Slab& slab = *request.slab;
-  if (!std::isfinite(slab.planes) || !all_finite(slab.offset) || !all_finite(slab.reach))
-    refuse("the slabs hold a value that is not finite");
+  if (request.steps) refuse("segments lie on planes, not on steps along rays");
+  if (request.fog) refuse("there is no fog with segments");
+  const SliceSegment& slice_segment = *request.slice_segment;
+  if (!std::isfinite(slice_segment.planes) || !all_finite(slice_segment.offset) ||
+      !all_finite(slice_segment.reach))
+    refuse("the segments hold a value that is not finite");
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double cells = slab.reach[axis] * volume.size[axis];
-    if (!(cells >= 0 && cells <= volume.margin))
-      refuse("slabs of {} texels along axis {} in a volume that was sent with a margin of {}: send it again",
-             cells, axis, volume.margin);
+    const double cells = slice_segment.reach[axis] * volume.size[axis];
+    if (!(cells >= 0 && cells <= volume.ghost_layer))
+      refuse(
+          "segments of {} texels along axis {} in a volume that was sent with a ghost layer of {}: send it "
+          "again",
+          cells, axis, volume.ghost_layer);
     if (volume.wrap[axis] == Wrap::repeat && cells > 0 &&
-        (request.region.low[axis] - slab.reach[axis] < 0 || request.region.high[axis] + slab.reach[axis] > 1))
-      refuse("slabs reach beyond a repeating texture along axis {}", axis);
+        (request.region.low[axis] - slice_segment.reach[axis] < 0 ||
+         request.region.high[axis] + slice_segment.reach[axis] > 1))
+      refuse("segments reach beyond a repeating texture along axis {}", axis);
   }
 }
 
@@ -193,27 +198,29 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
            request.depth->rect.width, request.depth->rect.height);
   validate_classification(volume, request.classification);
-  validate_slab(volume, request);
+  validate_slice_segment(volume, request);
   if (request.fog) validate_fog(*request.fog, request.op);
   validate_segments(volume, request);
 }
 
-/// So many blocks away from its front the back of a slab may lie.
-std::array<int, 3> blocks_in_reach(const VolumeDescription& volume, const std::optional<Slab>& slab) {
+/// So many blocks away from its front the back of a segment may lie.
+std::array<int, 3> blocks_in_reach(const VolumeDescription& volume,
+                                   const std::optional<SliceSegment>& slice_segment) {
   std::array<int, 3> blocks{};
-  for (std::size_t axis = 0; slab && axis < 3; ++axis) {
+  for (std::size_t axis = 0; slice_segment && axis < 3; ++axis) {
     constexpr double rounding = 1e-2;  // of positions, in cells
-    blocks[axis] = int(std::ceil((slab->reach[axis] * volume.size[axis] + rounding) / BrickStore::block_cells));
+    blocks[axis] =
+        int(std::ceil((slice_segment->reach[axis] * volume.size[axis] + rounding) / BrickStore::block_cells));
   }
   return blocks;
 }
 
 /// The way from the first to the second sample, in the store's cells.
-void set_slab(const Slab& slab, Scene& scene) {
+void set_slice_segment(const SliceSegment& slice_segment, Scene& scene) {
   const BrickStore& store = *scene.store;
-  scene.samples_on = float(slab.planes);
+  scene.samples_on = float(slice_segment.planes);
   for (std::size_t axis = 0; axis < 3; ++axis)
-    scene.cells_away[axis] = float(slab.offset[axis] * store.description().size[axis]);
+    scene.cells_away[axis] = float(slice_segment.offset[axis] * store.description().size[axis]);
 }
 
 /// The places at which the store holds texels.
@@ -228,23 +235,23 @@ void set_held(Scene& scene) {
 }
 
 /// What the preparation of a request depends on beside its classification.
-struct Circumstances {
+struct PreparedKey {
   bool keeps_clear_samples = false;  ///< under `min`
-  std::array<int, 3> reach{};        ///< of slabs, in blocks
+  std::array<int, 3> reach{};        ///< of segments, in blocks
   bool pre_integrated = false;
   float tolerance = 0;        ///< of adaptive steps, otherwise 0
   double step_cells = 0;      ///< their length
-  bool skips = true;          ///< LeaveOut::empty_blocks
+  bool skips = true;          ///< Optimizations::empty_bricks
   std::vector<float> levels;  ///< of surfaces, in units of the texel type
 
-  bool operator==(const Circumstances&) const = default;
+  bool operator==(const PreparedKey&) const = default;
 };
 
-Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequest& request) {
-  Circumstances c;
+PreparedKey prepared_key_of(const VolumeDescription& volume, const RenderRequest& request) {
+  PreparedKey c;
   c.keeps_clear_samples = request.op == Operator::min;
-  c.reach = blocks_in_reach(volume, request.slab);
-  c.skips = request.leave_out.empty_blocks;
+  c.reach = blocks_in_reach(volume, request.slice_segment);
+  c.skips = request.optimizations.empty_bricks;
   c.pre_integrated = request.method == Method::pre_integrated;
   if (request.method == Method::adaptive) {
     c.tolerance = request.tolerance;
@@ -255,7 +262,7 @@ Circumstances circumstances_of(const VolumeDescription& volume, const RenderRequ
   return c;
 }
 
-/// What a picture is drawn of, front to back.
+/// What an image is drawn of, front to back.
 struct Piece {
   RaySetup setup;
   Rect pixels;
@@ -287,40 +294,40 @@ void compose_behind(float* front, const float* back, int pixels) {
   }
 }
 
-/// What stays the same from picture to picture while classification and circumstances do.
+/// What stays the same from image to image while classification and circumstances do.
 struct RayCaster::Prepared {
   Classification classification;
-  Circumstances circumstances;
+  PreparedKey prepared_key;
   std::optional<TransferTable> table;
-  std::optional<PairLookup> pairs;
-  SkipMap skip;
+  std::optional<PreIntegrationLookup> pairs;
+  OccupancyMap skip;
   std::optional<std::vector<float>> bounds;  ///< made for the first maximum
-  bool values_beyond = false;                ///< of the table of pairs
+  bool values_beyond = false;                ///< of the pre-integration table
   std::optional<PartTable> parts;            ///< these two of adaptive steps
   std::optional<StepDivision> division;
 
   bool visible(const BrickStore& store, std::size_t block) const {
-    if (!circumstances.skips) return true;
+    if (!prepared_key.skips) return true;
     const auto ranges = store.ranges(block);
-    if (circumstances.keeps_clear_samples) return ranges[0].low <= ranges[0].high;
-    if (std::any_of(circumstances.levels.begin(), circumstances.levels.end(),
+    if (prepared_key.keeps_clear_samples) return ranges[0].low <= ranges[0].high;
+    if (std::any_of(prepared_key.levels.begin(), prepared_key.levels.end(),
                     [&](float level) { return ranges[0].low <= level && level <= ranges[0].high; }))
       return true;
     if (table) return table->shows(ranges[0]);
     return shows(std::get<LinearMap>(classification), ranges);
   }
 
-  SkipMap skip_map(const BrickStore& store) const {
-    if (!circumstances.skips) return SkipMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
-    if (has_slabs())
-      return SkipMap(store.block_counts(),
-                     blocks_with_slabs(store, *pairs, circumstances.reach, circumstances.keeps_clear_samples));
+  OccupancyMap occupancy_map(const BrickStore& store) const {
+    if (!prepared_key.skips) return OccupancyMap(store.block_counts(), std::vector<bool>(store.blocks(), true));
+    if (has_slice_segments())
+      return OccupancyMap(store.block_counts(), blocks_with_slice_segments(store, *pairs, prepared_key.reach,
+                                                                           prepared_key.keeps_clear_samples));
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) all[b] = visible(store, b);
-    return SkipMap(store.block_counts(), std::move(all));
+    return OccupancyMap(store.block_counts(), std::move(all));
   }
 
-  bool has_slabs() const { return pairs && !circumstances.pre_integrated; }
+  bool has_slice_segments() const { return pairs && !prepared_key.pre_integrated; }
 
   bool lies_beyond(const BrickStore& store, std::size_t block) const {
     const BrickStore::Range& range = store.ranges(block).front();
@@ -331,20 +338,20 @@ struct RayCaster::Prepared {
 
   void divide_steps(const BrickStore& store) {
     if (!parts) return;
-    division.emplace(store, std::get<TransferFunction>(classification), double(circumstances.tolerance),
-                     circumstances.step_cells);
+    division.emplace(store, std::get<TransferFunction>(classification), double(prepared_key.tolerance),
+                     prepared_key.step_cells);
   }
 
   void blocks_changed(const BrickStore& store, std::span<const std::size_t> blocks) {
     divide_steps(store);
-    if (has_slabs()) {
-      // A slab's far end may lie blocks away.
-      skip = skip_map(store);
+    if (has_slice_segments()) {
+      // A segment's far end may lie blocks away.
+      skip = occupancy_map(store);
       return;
     }
     if (bounds && !bounds->empty())
       for (const std::size_t b : blocks) (*bounds)[b] = block_bound(store, *table, b);
-    if (circumstances.pre_integrated)
+    if (prepared_key.pre_integrated)
       values_beyond = values_beyond || std::any_of(blocks.begin(), blocks.end(),
                                                    [&](std::size_t b) { return lies_beyond(store, b); });
     // Distances reach far, but depend on nothing but which blocks show something.
@@ -354,7 +361,7 @@ struct RayCaster::Prepared {
     std::vector<bool> all(store.blocks());
     for (std::size_t b = 0; b < all.size(); ++b) all[b] = skip.shows(b);
     for (const std::size_t b : blocks) all[b] = visible(store, b);
-    skip = SkipMap(store.block_counts(), std::move(all));
+    skip = OccupancyMap(store.block_counts(), std::move(all));
   }
 
   static std::optional<TransferTable> make_table(const BrickStore& store, const Classification& classification,
@@ -365,27 +372,28 @@ struct RayCaster::Prepared {
                          neutral_value(keeps_clear_samples ? Operator::min : Operator::over));
   }
 
-  static std::optional<PairLookup> make_pairs(const BrickStore& store, const Classification& classification,
-                                              const Circumstances& circumstances) {
-    const float neutral = neutral_value(circumstances.keeps_clear_samples ? Operator::min : Operator::over);
-    if (circumstances.pre_integrated)
-      return PairLookup(pre_integrated(std::get<TransferFunction>(classification)), store.description().type,
-                        neutral);
-    const auto* pairs = std::get_if<PairTable>(&classification);
+  static std::optional<PreIntegrationLookup> make_pairs(const BrickStore& store,
+                                                        const Classification& classification,
+                                                        const PreparedKey& prepared_key) {
+    const float neutral = neutral_value(prepared_key.keeps_clear_samples ? Operator::min : Operator::over);
+    if (prepared_key.pre_integrated)
+      return PreIntegrationLookup(pre_integrated(std::get<TransferFunction>(classification)),
+                                  store.description().type, neutral);
+    const auto* pairs = std::get_if<PreIntegrationTable>(&classification);
     if (!pairs) return std::nullopt;
-    return PairLookup(*pairs, store.description().type, neutral);
+    return PreIntegrationLookup(*pairs, store.description().type, neutral);
   }
 
-  Prepared(const BrickStore& store, const Classification& from, Circumstances under)
+  Prepared(const BrickStore& store, const Classification& from, PreparedKey under)
       : classification(from),
-        circumstances(std::move(under)),
-        table(make_table(store, classification, circumstances.keeps_clear_samples)),
-        pairs(make_pairs(store, classification, circumstances)),
-        skip(skip_map(store)) {
-    if (circumstances.tolerance > 0)
+        prepared_key(std::move(under)),
+        table(make_table(store, classification, prepared_key.keeps_clear_samples)),
+        pairs(make_pairs(store, classification, prepared_key)),
+        skip(occupancy_map(store)) {
+    if (prepared_key.tolerance > 0)
       parts.emplace(std::get<TransferFunction>(classification), store.description().type);
     divide_steps(store);
-    for (std::size_t b = 0; circumstances.pre_integrated && !values_beyond && b < store.blocks(); ++b)
+    for (std::size_t b = 0; prepared_key.pre_integrated && !values_beyond && b < store.blocks(); ++b)
       values_beyond = lies_beyond(store, b);
   }
 };
@@ -409,17 +417,17 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
   if (store.empty()) return;
 
-  const Circumstances circumstances = circumstances_of(store.description(), request);
+  const PreparedKey prepared_key = prepared_key_of(store.description(), request);
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
-    return prepared && prepared->circumstances == circumstances &&
+    return prepared && prepared->prepared_key == prepared_key &&
            prepared->classification == request.classification;
   };
   if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
   if (!fits(prepared_[0]))
-    prepared_[0] = std::make_unique<Prepared>(store, request.classification, circumstances);
+    prepared_[0] = std::make_unique<Prepared>(store, request.classification, prepared_key);
   const Prepared& prepared = *prepared_[0];
   counts.blocks += store.blocks();
-  counts.blocks_empty += prepared.skip.empty_blocks();
+  counts.blocks_empty += prepared.skip.empty_bricks();
 
   const Rect pixels = intersection(out.rect, intersection(request.window, request.viewport));
   if (pixels.empty() || (!request.steps && request.planes.count == 0)) return;
@@ -434,7 +442,8 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::optional<FogTable> fog;
   if (request.fog) fog.emplace(*request.fog, store);
   scene.fog = fog ? &*fog : nullptr;
-  if (request.op == Operator::max && prepared.table && !request.fog && request.leave_out.lesser_samples) {
+  if (request.op == Operator::max && prepared.table && !request.fog &&
+      request.optimizations.dominated_samples) {
     if (!prepared_[0]->bounds) prepared_[0]->bounds = block_bounds(store, *prepared.table);
     if (!prepared.bounds->empty()) scene.bounds = prepared.bounds->data();
   }
@@ -448,7 +457,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   scene.parts = prepared.parts ? &*prepared.parts : nullptr;
   scene.division = prepared.division ? &*prepared.division : nullptr;
   set_held(scene);
-  if (request.slab) set_slab(*request.slab, scene);
+  if (request.slice_segment) set_slice_segment(*request.slice_segment, scene);
   const SegmentScene segments(store.description(), request);
   if (walks_segments(request)) scene.segments = &segments;
   const Kernel kernel = scene.parts != nullptr      ? vector_adaptive
@@ -460,21 +469,21 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   tbb::combinable<FrameCounts> partial;
   const auto render_tile = [&](const Piece& piece, int x, int y, int width, int height, bool hidden) {
     FrameCounts& mine = partial.local();
-    RayStrip strip;
-    alignas(64) std::array<float, 4 * strip_rays> rgba;
-    for (int row = 0; row < height; row += strip_height) {
-      const int rows = std::min(strip_height, height - row);
-      if (!set_up_strip(piece.setup, request, x, y + row, width, rows, strip)) continue;
-      for (std::size_t r = 0; r < strip_rays; ++r)
-        if (strip.first[r] <= strip.last[r]) {
+    RayPacket packet;
+    alignas(64) std::array<float, 4 * packet_rays> rgba;
+    for (int row = 0; row < height; row += packet_height) {
+      const int rows = std::min(packet_height, height - row);
+      if (!set_up_packet(piece.setup, request, x, y + row, width, rows, packet)) continue;
+      for (std::size_t r = 0; r < packet_rays; ++r)
+        if (packet.first[r] <= packet.last[r]) {
           ++mine.rays;
-          const auto samples = std::uint64_t(strip.last[r] - strip.first[r] + 1);
+          const auto samples = std::uint64_t(packet.last[r] - packet.first[r] + 1);
           mine.samples += samples;
           if (hidden) mine.samples_hidden += samples;
         }
       if (hidden) continue;
       KernelCounts done;
-      kernel(scene, strip, rgba.data(), done);
+      kernel(scene, packet, rgba.data(), done);
       mine.samples_taken += done.samples_taken;
       mine.rays_terminated += done.rays_terminated;
       mine.samples_hidden += done.samples_hidden;
@@ -513,7 +522,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     counts.samples += c.samples;
     counts.samples_taken += c.samples_taken;
     counts.samples_hidden += c.samples_hidden;
-    if (scene.bounds != nullptr) counts.samples_lesser += c.samples - c.samples_taken;
+    if (scene.bounds != nullptr) counts.dominated_samples += c.samples - c.samples_taken;
   });
 }
 

@@ -2,8 +2,8 @@
 // as they fall in the cells that a BrickStore owns.
 //
 // Sample i of a pixel lies where the pixel's ray meets plane i of the request. Every rank computes
-// bit-identical sample positions and counts the samples of its own cells only, so the pictures of all ranks,
-// composed in visibility order, equal the picture of one rank that owns everything (up to the rounding of
+// bit-identical sample positions and counts the samples of its own cells only, so the images of all ranks,
+// composed in visibility order, equal the image of one rank that owns everything (up to the rounding of
 // float composition and the termination threshold).
 #pragma once
 
@@ -62,11 +62,11 @@ class RayCaster {
   struct Prepared;
 
   const BrickStore* store_;
-  /// The latest first: a viewer whose framebuffer keeps alpha asks for two pictures of every frame.
+  /// The latest first: a viewer whose framebuffer keeps alpha asks for two images of every frame.
   std::array<std::unique_ptr<Prepared>, 2> prepared_;
 };
 
-/// One picture without keeping anything.
+/// One image without keeping anything.
 void raycast(const BrickStore& store, const RenderRequest& request, Image& out, FrameCounts& counts);
 
 /// The instruction set that the kernels run with on this machine, e.g. "AVX2".

@@ -23,7 +23,7 @@ constexpr std::size_t region_bounds = 6;
 /// is null; so has `begins`, with steps: the place of the first sample.
 void set_up_row(const RaySetup& setup, const double* depth, const double* begins, bool depth_or_equal,
                 std::array<double, 2> depth_range, int x, int y, int width, std::size_t offset,
-                RayStrip& strip) {
+                RayPacket& packet) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<float, decltype(d)> d_float;
   const hn::Rebind<std::int32_t, decltype(d)> d_int;
@@ -125,8 +125,8 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       const V rest = hn::Set(d, setup.resting_place[axis]);
       const V step = hn::IfThenElseZero(meets, hn::Mul(hn::Mul(slope, inverse), part));
       hn::Store(hn::DemoteTo(d_float, hn::IfThenElse(meets, at_first, rest)), d_float,
-                strip.start[axis].data() + offset + column);
-      hn::Store(hn::DemoteTo(d_float, step), d_float, strip.step[axis].data() + offset + column);
+                packet.start[axis].data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, step), d_float, packet.step[axis].data() + offset + column);
     }
     const V more = hn::IfThenElse(meets, hn::Sub(last, first), hn::Set(d, -1.0));
     V lowest = zero;
@@ -134,11 +134,11 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       const V before = hn::IfThenElseZero(meets, hn::Sub(begin, first));
       const V behind = hn::IfThenElseZero(meets, hn::Sub(end, first));
       lowest = hn::IfThenElseZero(hn::Lt(before, zero), hn::Neg(one));
-      hn::Store(hn::DemoteTo(d_float, before), d_float, strip.begin.data() + offset + column);
-      hn::Store(hn::DemoteTo(d_float, behind), d_float, strip.end.data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, before), d_float, packet.begin.data() + offset + column);
+      hn::Store(hn::DemoteTo(d_float, behind), d_float, packet.end.data() + offset + column);
     }
-    hn::Store(hn::DemoteTo(d_int, lowest), d_int, strip.first.data() + offset + column);
-    hn::Store(hn::DemoteTo(d_int, more), d_int, strip.last.data() + offset + column);
+    hn::Store(hn::DemoteTo(d_int, lowest), d_int, packet.first.data() + offset + column);
+    hn::Store(hn::DemoteTo(d_int, more), d_int, packet.last.data() + offset + column);
   }
 }
 
@@ -198,7 +198,7 @@ SlicePlanes planes_across(const RenderRequest& request, const LinearVector& dire
   const Matrix4& m = request.texture_to_clip;
   const Vec3 middle = scale(add(request.region.low, request.region.high), 0.5);
   const Vec4 clip = transform_point(m, middle);
-  // The sign of d(z / w) along the normal, at the middle of the picture.
+  // The sign of d(z / w) along the normal, at the middle of the image.
   const Vec3 ray = direction_at(0, 0);
   const double z = m[8] * ray[0] + m[9] * ray[1] + m[10] * ray[2];
   const double w = m[12] * ray[0] + m[13] * ray[1] + m[14] * ray[2];
@@ -229,10 +229,10 @@ int first_reached(int least, int count, double guess, Reached reached) {
 }
 
 /// Lets ray `r` begin and end where it enters and leaves the owned cells.
-void cut_to_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
-  float begin = strip.begin[r], end = strip.end[r];
+void cut_to_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
+  float begin = packet.begin[r], end = packet.end[r];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float start = strip.start[axis][r], step = strip.step[axis][r];
+    const float start = packet.start[axis][r], step = packet.step[axis][r];
     const auto keep = [&](float bound, bool above) {
       if (step == 0) {
         if ((start >= bound) != above) end = begin - 1;
@@ -245,25 +245,25 @@ void cut_to_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
     if (setup.low_is_bound[axis]) keep(setup.owned_low[axis], true);
     if (setup.high_is_bound[axis]) keep(setup.owned_high[axis], false);
   }
-  if (strip.first[r] > strip.last[r] || !(begin < end)) {
-    strip.last[r] = strip.first[r] - 1;
+  if (packet.first[r] > packet.last[r] || !(begin < end)) {
+    packet.last[r] = packet.first[r] - 1;
     return;
   }
-  strip.begin[r] = begin;
-  strip.end[r] = end;
-  strip.first[r] = int(std::floor(begin));
-  strip.last[r] = int(std::ceil(end)) - 1;
+  packet.begin[r] = begin;
+  packet.end[r] = end;
+  packet.first[r] = int(std::floor(begin));
+  packet.last[r] = int(std::ceil(end)) - 1;
 }
 
 /// Narrows the samples of ray `r` to those in the owned cells. Positions are monotone in k on every axis, in
 /// float arithmetic too, so these are one interval; it is found with the very arithmetic that samples.
-void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
-  if (setup.cut) cut_to_owned(setup, strip, r);
-  int first = strip.first[r], last = strip.last[r];
+void keep_owned(const RaySetup& setup, RayPacket& packet, std::size_t r) {
+  if (setup.cut) cut_to_owned(setup, packet, r);
+  int first = packet.first[r], last = packet.last[r];
   const int least = first;
-  const float begin = setup.ends ? strip.begin[r] : 0.0F;
+  const float begin = setup.ends ? packet.begin[r] : 0.0F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float start = strip.start[axis][r], step = strip.step[axis][r];
+    const float start = packet.start[axis][r], step = packet.step[axis][r];
     const auto narrow = [&](float bound, bool keep_above) {
       if (first > last) return;
       if (step == 0) {
@@ -284,12 +284,12 @@ void keep_owned(const RaySetup& setup, RayStrip& strip, std::size_t r) {
     if (setup.low_is_bound[axis]) narrow(setup.owned_low[axis], true);
     if (setup.high_is_bound[axis]) narrow(setup.owned_high[axis], false);
   }
-  strip.first[r] = first;
-  strip.last[r] = last;
+  packet.first[r] = first;
+  packet.last[r] = last;
   if (first > last)  // samples of other ranks may lie in blocks that are not held
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      strip.start[axis][r] = setup.resting_place[axis];
-      strip.step[axis][r] = 0;
+      packet.start[axis][r] = setup.resting_place[axis];
+      packet.step[axis][r] = 0;
     }
 }
 
@@ -369,12 +369,12 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const 
   }
 }
 
-bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
-                  RayStrip& strip) {
+bool set_up_packet(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
+                   RayPacket& packet) {
   constexpr double beyond_every_depth = 2;
   std::array<double, tile_width> depth, begins;
   begins.fill(setup.steps ? setup.steps->first : 0.0);
-  for (int row = 0; row < strip_height; ++row) {
+  for (int row = 0; row < packet_height; ++row) {
     const bool inside = row < height;
     if (inside && request.depth) {
       const DepthImage& image = *request.depth;
@@ -390,15 +390,15 @@ bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, in
         begins[column] = setup.steps->first + setup.steps->offsets->at(x + column, y + row);
     HWY_DYNAMIC_DISPATCH(set_up_row)
     (setup, request.depth ? depth.data() : nullptr, begins.data(), request.depth && request.depth->or_equal,
-     request.depth_range, x, y + row, inside ? width : 0, std::size_t(row) * tile_width, strip);
+     request.depth_range, x, y + row, inside ? width : 0, std::size_t(row) * tile_width, packet);
   }
   bool any_bound = false;
   for (int axis = 0; axis < 3; ++axis)
     any_bound = any_bound || setup.low_is_bound[axis] || setup.high_is_bound[axis];
   bool any = false;
-  for (std::size_t r = 0; r < strip_rays; ++r) {
-    if (any_bound && strip.first[r] <= strip.last[r]) keep_owned(setup, strip, r);
-    any = any || strip.first[r] <= strip.last[r];
+  for (std::size_t r = 0; r < packet_rays; ++r) {
+    if (any_bound && packet.first[r] <= packet.last[r]) keep_owned(setup, packet, r);
+    any = any || packet.first[r] <= packet.last[r];
   }
   return any;
 }

@@ -52,7 +52,7 @@ struct RaySetup {
   double pixel_to_y = 0, first_y = 0;
   int last_plane = 0;
   bool segments = false;  ///< what lies between samples counts
-  bool ends = false;      ///< the strip's begin and end are made
+  bool ends = false;      ///< the packet's begin and end are made
   bool cut = false;       ///< segments end where the owned cells do
 
   /// Bounds of the owned cells in lattice coordinates: owned_low <= position < owned_high, on the axes that
@@ -67,28 +67,28 @@ struct RaySetup {
 };
 
 constexpr int tile_width = 32;
-constexpr int strip_height = 4;
-constexpr int strip_rays = tile_width * strip_height;
+constexpr int packet_height = 4;
+constexpr int packet_rays = tile_width * packet_height;
 
-/// A strip of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float
+/// A packet of neighbouring rays, row by row. Sample k of a ray lies at start + k * step (rounded to float
 /// after each of the two operations), lattice coordinates; first <= k <= last are its samples in the owned
 /// cells.
 ///
 /// Segment k goes from u(k) to u(k + 1), u(i) = clamp(i, begin, end), in steps; first <= k <= last are those
 /// whose front lies in the owned cells. Segment -1, which is shorter than a step, has no sample at its front.
-struct RayStrip {
-  alignas(64) std::array<std::array<float, strip_rays>, 3> start;
-  alignas(64) std::array<std::array<float, strip_rays>, 3> step;
-  alignas(64) std::array<int, strip_rays> first;
-  alignas(64) std::array<int, strip_rays> last;
-  alignas(64) std::array<float, strip_rays> begin;  ///< > -1
-  alignas(64) std::array<float, strip_rays> end;
+struct RayPacket {
+  alignas(64) std::array<std::array<float, packet_rays>, 3> start;
+  alignas(64) std::array<std::array<float, packet_rays>, 3> step;
+  alignas(64) std::array<int, packet_rays> first;
+  alignas(64) std::array<int, packet_rays> last;
+  alignas(64) std::array<float, packet_rays> begin;  ///< > -1
+  alignas(64) std::array<float, packet_rays> end;
 };
 
-/// Sets up the rays of the pixels (x .. x + width, y .. y + height); the rest of the strip gets rays without
+/// Sets up the rays of the pixels (x .. x + width, y .. y + height); the rest of the packet gets rays without
 /// samples. Rays without samples stand still at the lowest owned cell, where it is safe to sample. Returns
 /// whether any ray has a sample.
-bool set_up_strip(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
-                  RayStrip& strip);
+bool set_up_packet(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
+                   RayPacket& packet);
 
 }  // namespace understudy::volume

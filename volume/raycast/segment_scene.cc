@@ -58,7 +58,7 @@ bool has_segments(const RenderRequest& request) {
   return request.method != Method::post_classified || !request.surfaces.empty();
 }
 
-/// How far, in cells along an axis, a ray of the picture goes from plane to plane at most; infinite where rays
+/// How far, in cells along an axis, a ray of the image goes from plane to plane at most; infinite where rays
 /// run along the planes. Directions of rays are linear in the pixel's position, so that the ratio of their
 /// parts along an axis and across the planes is largest in a corner.
 std::array<double, 3> reach_between_planes(const VolumeDescription& volume, const RenderRequest& request) {
@@ -96,7 +96,7 @@ bool walks_segments(const RenderRequest& request) {
   return has_segments(request) || request.light.has_value();
 }
 
-int margin_needed(const VolumeDescription& volume, const RenderRequest& request) {
+int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& request) {
   if (!walks_segments(request)) return 0;
   double reach = 0;
   if (has_segments(request) && request.steps)
@@ -155,14 +155,14 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
                light->full_slope >= 0,
            "the light's colours, shininess and full slope must be finite and not negative");
   }
-  if (const int cells = margin_needed(volume, request); cells > volume.margin)
+  if (const int cells = ghost_layer_needed(volume, request); cells > volume.ghost_layer)
     throw std::invalid_argument(fmt::format(
-        "segments and gradients reach {} cells in a volume that was sent with a margin of {}: send it "
-        "again with a margin of {}",
-        cells, volume.margin, cells));
+        "segments and gradients reach {} cells in a volume that was sent with a ghost layer of {}: send it "
+        "again with a ghost layer of {}",
+        cells, volume.ghost_layer, cells));
 }
 
-Lamp::Lamp(const Light& light, const VolumeDescription& volume)
+PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume)
     : model(light),
       full_slope(float(light.full_slope * units(volume.type))),
       inverse_(inverse_of(light.space)) {
@@ -178,7 +178,7 @@ Lamp::Lamp(const Light& light, const VolumeDescription& volume)
       metric[3 * i + k] = float(size_[i] * size_[k] * dot(row_of(inverse_, i), row_of(inverse_, k)));
 }
 
-Vec3 Lamp::to_eye(const std::array<float, 3>& step) const {
+Vec3 PreparedLight::to_eye(const std::array<float, 3>& step) const {
   const Vec3 way{-double(step[0]) / size_[0], -double(step[1]) / size_[1], -double(step[2]) / size_[2]};
   const Vec3 eye = transformed(model.space, way);
   const double distance = volume::length(eye);
@@ -187,16 +187,16 @@ Vec3 Lamp::to_eye(const std::array<float, 3>& step) const {
 
 // Gradients are covectors: their image under the inverse transpose, times a direction, is they themselves times
 // the direction's image under the inverse.
-std::array<float, 3> Lamp::over_gradients(const Vec3& direction) const {
+std::array<float, 3> PreparedLight::over_gradients(const Vec3& direction) const {
   const Vec3 v = transformed(inverse_, direction);
   return {float(v[0] * size_[0]), float(v[1] * size_[1]), float(v[2] * size_[2])};
 }
 
-std::array<float, 3> Lamp::light(const std::array<float, 3>& step) const {
+std::array<float, 3> PreparedLight::light(const std::array<float, 3>& step) const {
   return over_gradients(volume::length(direction_) > 0 ? direction_ : to_eye(step));
 }
 
-std::array<float, 3> Lamp::half(const std::array<float, 3>& step) const {
+std::array<float, 3> PreparedLight::half(const std::array<float, 3>& step) const {
   const Vec3 eye = to_eye(step);
   const Vec3 sum = volume::length(direction_) > 0 ? add(direction_, eye) : eye;
   const double distance = volume::length(sum);
@@ -213,7 +213,7 @@ SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest&
   }
   std::stable_sort(levels.begin(), levels.end(),
                    [](const Level& a, const Level& b) { return a.value < b.value; });
-  if (request.light) lamp.emplace(*request.light, volume);
+  if (request.light) prepared_light.emplace(*request.light, volume);
 }
 
 }  // namespace understudy::volume

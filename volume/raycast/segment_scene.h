@@ -12,9 +12,9 @@ namespace understudy::volume {
 bool walks_segments(const RenderRequest& request);
 
 /// How far from its own cells a rank looks for the sake of segments and gradients, in cells: the volume's
-/// margin must be no smaller. Of steps between planes it depends on the camera; elsewhere
+/// ghost layer must be no smaller. Of steps between planes it depends on the camera; elsewhere
 /// their metric must not be singular.
-int margin_needed(const VolumeDescription& volume, const RenderRequest& request);
+int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& request);
 
 /// How far one step leads along each axis, at most, in cells.
 std::array<double, 3> step_reach(const VolumeDescription& volume, const RenderRequest& request);
@@ -30,8 +30,8 @@ struct Level {
 
 /// A light over gradients g per cell. With |g| = sqrt(g . metric g), the cosine between normal and light is
 /// -g . light / |g|, and that between normal and h is -g . half / |g|.
-struct Lamp {
-  Lamp(const Light& light, const VolumeDescription& volume);
+struct PreparedLight {
+  PreparedLight(const Light& light, const VolumeDescription& volume);
 
   /// `half` of a ray that goes along `step` (in cells); zero where there is none.
   std::array<float, 3> half(const std::array<float, 3>& step) const;
@@ -57,7 +57,7 @@ struct SegmentScene {
   std::vector<Level> levels;  ///< rising
   bool pre_integrated = false;
   bool lit_samples = false;
-  std::optional<Lamp> lamp;
+  std::optional<PreparedLight> prepared_light;
 };
 
 }  // namespace understudy::volume

@@ -208,20 +208,20 @@ HWY_INLINE void take_steps(SegmentPacket& rays, const AdaptiveConstants& constan
 }
 
 template <typename Source>
-void walk_steps_of_strip(const Scene& scene, const RayStrip& strip, Source source, float* rgba,
-                         KernelCounts& counts) {
+void walk_steps_of_packet(const Scene& scene, const RayPacket& packet, Source source, float* rgba,
+                          KernelCounts& counts) {
   const FloatTag f;
   const IntTag d;
   const AdaptiveConstants constants(scene, source);
   const Floats one = hn::Set(f, 1.0F);
   Ints taken = hn::Zero(d), hidden = hn::Zero(d);
-  for (std::size_t y = 0; y < strip_height; y += rows)
+  for (std::size_t y = 0; y < packet_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       SegmentGroup packets;
       std::array<Colours, group> pixels;
       bool done = true;
       for (std::size_t g = 0; g < group; ++g) {
-        packets[g] = segment_packet_of(strip, x + 4 * g, y, constants);
+        packets[g] = segment_packet_of(packet, x + 4 * g, y, constants);
         pixels[g].fill(hn::Zero(f));
         done = done && packets[g].done();
       }
@@ -253,14 +253,14 @@ void walk_steps_of_strip(const Scene& scene, const RayStrip& strip, Source sourc
   counts.samples_hidden += total(hidden);
 }
 
-void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void vector_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_steps_of_strip(scene, strip, Bytes8(), rgba, counts);
+      return walk_steps_of_packet(scene, packet, Bytes8(), rgba, counts);
     case TexelType::u16:
-      return walk_steps_of_strip(scene, strip, Shorts16(), rgba, counts);
+      return walk_steps_of_packet(scene, packet, Shorts16(), rgba, counts);
     case TexelType::f32:
-      return walk_steps_of_strip(scene, strip, Floats32(), rgba, counts);
+      return walk_steps_of_packet(scene, packet, Floats32(), rgba, counts);
     case TexelType::rgba8:  // refused by validate()
       return;
   }
@@ -268,8 +268,8 @@ void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, Ker
 
 #else
 
-void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  generic_adaptive(scene, strip, rgba, counts);
+void vector_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  generic_adaptive(scene, packet, rgba, counts);
 }
 
 #endif
@@ -284,8 +284,8 @@ namespace understudy::volume {
 
 HWY_EXPORT(vector_adaptive);
 
-void vector_adaptive(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(vector_adaptive)(scene, strip, rgba, counts);
+void vector_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(vector_adaptive)(scene, packet, rgba, counts);
 }
 
 }  // namespace understudy::volume

@@ -20,7 +20,7 @@ using Bytes = hn::Vec<ByteTag>;
 
 constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
 constexpr std::size_t rows = lanes / 4;
-static_assert(strip_height % rows == 0 && tile_width % 4 == 0);
+static_assert(packet_height % rows == 0 && tile_width % 4 == 0);
 
 /// 128 bits from each of the addresses from[q], from[q + 4], ..., `offset` elements on.
 template <std::size_t q, class D, typename T = hn::TFromD<D>>
@@ -119,7 +119,7 @@ struct Constants {
       : blocks(scene.store->block_data().data()),
         distances(reinterpret_cast<const std::int32_t*>(scene.skip->distances())),
         bounds(scene.bounds),
-        skips(scene.skip->empty_blocks() > 0),
+        skips(scene.skip->empty_bricks() > 0),
         nearest(scene.filter == Filter::nearest),
         with_border(scene.has_border[0] || scene.has_border[1] || scene.has_border[2]),
         op(scene.op) {
@@ -162,7 +162,7 @@ struct Constants {
       };
       border = hn::Set(f, border_texel[0]);
       if (scene.pairs != nullptr) {
-        const PairLookup& pairs = *scene.pairs;
+        const PreIntegrationLookup& pairs = *scene.pairs;
         take(pairs);
         entries = pairs.entries();
         neutral_entry = hn::Set(d, std::int32_t(pairs.neutral_entry()));
@@ -204,7 +204,7 @@ struct Constants {
   Ints blocks_x, blocks_y, first_block;
   Floats neutral, termination, border;
 
-  const float* entries = nullptr;  // of the transfer function, or of the table of pairs
+  const float* entries = nullptr;  // of the transfer function, or of the pre-integration table
   Floats table_low, table_scale, table_last;
   Ints neutral_entry;
 
@@ -227,12 +227,12 @@ struct Packet {
   std::array<Floats, 3> start, step;
   Floats k, last;
   std::array<Floats, 3> steps_per_block,
-      direction;  // for leaps: a little too few steps, and the sign of `step`
+      direction;  // for skips: a little too few steps, and the sign of `step`
 
   bool done() const { return hn::AllTrue(FloatTag(), hn::Gt(k, last)); }
 };
 
-/// Packets side by side that leap together, so that one's chain of instructions fills the gaps of the
+/// Packets side by side that skip together, so that one's chain of instructions fills the gaps of the
 /// other's.
 constexpr std::size_t group = 2;
 static_assert(tile_width % (4 * group) == 0);
@@ -261,10 +261,10 @@ HWY_INLINE Ints block_index(Ints x, Ints y, Ints z, const Constants& constants) 
   return hn::Add(hn::Mul(row, constants.blocks_x), hn::Sub(x, constants.first_block));
 }
 
-/// Lets the rays that are in an empty block leap, and with `bounded` those in a block that can show no more
+/// Lets the rays that are in an empty block skip, and with `bounded` those in a block that can show no more
 /// than `shown`; false when there were none.
 template <bool bounded>
-HWY_INLINE bool leap(Packet& rays, const Constants& constants, Floats shown) {
+HWY_INLINE bool skip(Packet& rays, const Constants& constants, Floats shown) {
   const FloatTag f;
   const IntTag d;
   const Floats half = hn::Set(f, 0.5F);
@@ -297,13 +297,13 @@ HWY_INLINE bool leap(Packet& rays, const Constants& constants, Floats shown) {
   return !hn::AllFalse(f, empty);
 }
 
-/// Moves every ray out of empty blocks, to its next sample in a block that shows something or past its last
+/// Moves every ray out of empty bricks, to its next sample in a block that shows something or past its last
 /// sample.
 HWY_INLINE void skip_empty(Group& packets, const Constants& constants) {
   for (bool again = true; again;) {
     again = false;
 #pragma GCC unroll 2
-    for (Packet& rays : packets) again |= leap<false>(rays, constants, hn::Zero(FloatTag()));
+    for (Packet& rays : packets) again |= skip<false>(rays, constants, hn::Zero(FloatTag()));
   }
 }
 
@@ -313,7 +313,7 @@ HWY_INLINE void skip_exhausted(Group& packets, const std::array<Floats, group>& 
   for (bool again = true; again;) {
     again = false;
 #pragma GCC unroll 2
-    for (std::size_t g = 0; g < group; ++g) again |= leap<true>(packets[g], constants, shown[g]);
+    for (std::size_t g = 0; g < group; ++g) again |= skip<true>(packets[g], constants, shown[g]);
   }
 }
 
@@ -595,8 +595,8 @@ HWY_INLINE Floats alphas(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveUpper(wide, pair01, pair23));
 }
 
-/// The packet whose lowest left pixel is (x, y) of the strip.
-HWY_INLINE Packet packet_of(const RayStrip& strip, std::size_t x, std::size_t y) {
+/// The packet whose lowest left pixel is (x, y) of the packet.
+HWY_INLINE Packet packet_of(const RayPacket& packet, std::size_t x, std::size_t y) {
   const FloatTag f;
   const auto load = [&](const auto& values) HWY_ATTR {
     alignas(64) float packed[lanes];
@@ -606,11 +606,11 @@ HWY_INLINE Packet packet_of(const RayStrip& strip, std::size_t x, std::size_t y)
   };
   constexpr float block_cells = BrickStore::block_cells;
   Packet rays;
-  rays.k = load(strip.first);
-  rays.last = load(strip.last);
+  rays.k = load(packet.first);
+  rays.last = load(packet.last);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    rays.start[axis] = load(strip.start[axis]);
-    rays.step[axis] = load(strip.step[axis]);
+    rays.start[axis] = load(packet.start[axis]);
+    rays.step[axis] = load(packet.step[axis]);
     rays.direction[axis] = hn::CopySign(hn::Set(f, 1.0F), rays.step[axis]);
     const Floats speed = hn::Max(hn::Abs(rays.step[axis]), hn::Set(f, 1e-20F));
     rays.steps_per_block[axis] = hn::Div(hn::Set(f, block_cells * (1 - 1e-6F)), speed);

@@ -1,6 +1,6 @@
 // All that the generic kernel does, on the vector instructions of the machine it runs on.
 //
-// Early termination and empty blocks are looked at once per eight samples, so that addresses never wait for
+// Early termination and empty bricks are looked at once per eight samples, so that addresses never wait for
 // colours.
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
     HWY_TARGET == HWY_AVX3_DL
 
 #include "volume/raycast/vector_field-inl.h"
-#include "volume/raycast/vector_slabs-inl.h"
+#include "volume/raycast/vector_slice_segments-inl.h"
 
 /// `colour` after the row of fog (added colour, weight): components side by side.
 HWY_INLINE Floats fogged(Floats colour, Floats row) {
@@ -117,12 +117,12 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
   compose(seen, constants, pixels);
 }
 
-/// Eight slabs of every ray, as take_samples() takes samples.
+/// Eight segments of every ray, as take_samples() takes samples.
 template <typename Source>
 HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
   const Floats one = hn::Set(FloatTag(), 1.0F);
   std::array<Located, samples_between_tests> front, back;
-  std::array<PairPlace, samples_between_tests> classified;
+  std::array<SegmentIndex, samples_between_tests> classified;
   Packet ahead = rays;
   for (std::size_t i = 0; i < front.size(); ++i) {
     locate(position_of(ahead, constants), constants, front[i]);
@@ -130,7 +130,7 @@ HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source sour
     ahead.k = hn::Add(ahead.k, one);
   }
   for (std::size_t i = 0; i < classified.size(); ++i) {
-    classify_slab(front[i], back[i], rays, constants, source, classified[i]);
+    classify_slice_segment(front[i], back[i], rays, constants, source, classified[i]);
     rays.k = hn::Add(rays.k, one);
   }
   compose(classified, constants, pixels);
@@ -151,20 +151,21 @@ HWY_INLINE Floats sum_seen(const std::array<Floats, 4>& pixels) {
   return hn::BitCast(f, hn::InterleaveLower(wide, pair01, pair23));
 }
 
-template <bool slabs, typename Source>
-void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float* rgba, KernelCounts& counts) {
+template <bool slice_segments, typename Source>
+void walk_packet(const Scene& scene, const RayPacket& packet, Source source, float* rgba,
+                 KernelCounts& counts) {
   const FloatTag f;
   const IntTag d;
   const Constants constants(scene, source);
   const Floats one = hn::Set(f, 1.0F);
   Ints taken = hn::Zero(d), hidden = hn::Zero(d);
-  for (std::size_t y = 0; y < strip_height; y += rows)
+  for (std::size_t y = 0; y < packet_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       Group packets;
       std::array<Colours, group> pixels;
       bool done = true;
       for (std::size_t g = 0; g < group; ++g) {
-        packets[g] = packet_of(strip, x + 4 * g, y);
+        packets[g] = packet_of(packet, x + 4 * g, y);
         pixels[g].fill(constants.neutral);
         done = done && packets[g].done();
       }
@@ -183,7 +184,7 @@ void walk_strip(const Scene& scene, const RayStrip& strip, Source source, float*
           const Floats left = hn::Add(hn::Sub(rays.last, rays.k), one);
           const Floats block = hn::Set(f, float(samples_between_tests));
           taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
-          if constexpr (slabs) {
+          if constexpr (slice_segments) {
             take_slabs(rays, constants, source, pixels[g]);
           } else {
             take_samples(rays, constants, source, pixels[g]);
@@ -213,10 +214,10 @@ const char* target_name() {
   return hwy::TargetName(HWY_TARGET);
 }
 
-void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   const auto walk = [&](auto source) {
-    if (scene.pairs != nullptr) return walk_strip<true>(scene, strip, source, rgba, counts);
-    walk_strip<false>(scene, strip, source, rgba, counts);
+    if (scene.pairs != nullptr) return walk_packet<true>(scene, packet, source, rgba, counts);
+    walk_packet<false>(scene, packet, source, rgba, counts);
   };
   switch (scene.store->description().type) {
     case TexelType::u8:
@@ -226,7 +227,7 @@ void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, Kerne
     case TexelType::f32:
       return walk(Floats32());
     case TexelType::rgba8:
-      return walk_strip<false>(scene, strip, Colours8(), rgba, counts);
+      return walk_packet<false>(scene, packet, Colours8(), rgba, counts);
   }
 }
 
@@ -236,8 +237,8 @@ const char* target_name() {
   return "scalar";
 }
 
-void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  generic_kernel(scene, strip, rgba, counts);
+void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  generic_kernel(scene, packet, rgba, counts);
 }
 
 #endif
@@ -253,8 +254,8 @@ namespace understudy::volume {
 HWY_EXPORT(vector_kernel);
 HWY_EXPORT(target_name);
 
-void vector_kernel(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(vector_kernel)(scene, strip, rgba, counts);
+void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(vector_kernel)(scene, packet, rgba, counts);
 }
 
 const char* instruction_set() {

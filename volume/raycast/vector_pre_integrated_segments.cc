@@ -27,16 +27,16 @@ namespace HWY_NAMESPACE {
 
 #include "volume/raycast/vector_segments-inl.h"
 
-void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
+void vector_pre_integrated_segments(const Scene& scene, const RayPacket& packet, float* rgba,
                                     KernelCounts& counts) {
-  walk_segments<true>(scene, strip, rgba, counts);
+  walk_segments<true>(scene, packet, rgba, counts);
 }
 
 #else
 
-void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
+void vector_pre_integrated_segments(const Scene& scene, const RayPacket& packet, float* rgba,
                                     KernelCounts& counts) {
-  generic_segments(scene, strip, rgba, counts);
+  generic_segments(scene, packet, rgba, counts);
 }
 
 #endif
@@ -51,9 +51,9 @@ namespace understudy::volume {
 
 HWY_EXPORT(vector_pre_integrated_segments);
 
-void vector_pre_integrated_segments(const Scene& scene, const RayStrip& strip, float* rgba,
+void vector_pre_integrated_segments(const Scene& scene, const RayPacket& packet, float* rgba,
                                     KernelCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(vector_pre_integrated_segments)(scene, strip, rgba, counts);
+  HWY_DYNAMIC_DISPATCH(vector_pre_integrated_segments)(scene, packet, rgba, counts);
 }
 
 }  // namespace understudy::volume

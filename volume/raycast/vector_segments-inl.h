@@ -4,7 +4,7 @@
 // once per instruction set.
 
 #include "volume/raycast/vector_field-inl.h"
-#include "volume/raycast/vector_slabs-inl.h"
+#include "volume/raycast/vector_slice_segments-inl.h"
 
 using Mask = hn::Mask<FloatTag>;
 
@@ -24,33 +24,33 @@ struct SegmentConstants : Constants {
       level[i] = hn::Set(f, Source::factor * (segments.levels[i].value - Source::zero));
       surface[i] = hn::LoadDup128(f, segments.levels[i].colour.data());
     }
-    lamp = segments.lamp ? &*segments.lamp : nullptr;
-    if (lamp == nullptr) return;
+    prepared_light = segments.prepared_light ? &*segments.prepared_light : nullptr;
+    if (prepared_light == nullptr) return;
     set_neighbourhood(scene);
     // Of the size of one, so that squares of slopes lie far from the ends of what a float holds.
-    const std::array<float, 9>& of_lamp = lamp->metric;
-    const float unit = 1 / std::sqrt(std::max({of_lamp[0], of_lamp[4], of_lamp[8]}));
-    for (std::size_t i = 0; i < 9; ++i) metric[i] = hn::Set(f, of_lamp[i] * unit * unit);
+    const std::array<float, 9>& of_light = prepared_light->metric;
+    const float unit = 1 / std::sqrt(std::max({of_light[0], of_light[4], of_light[8]}));
+    for (std::size_t i = 0; i < 9; ++i) metric[i] = hn::Set(f, of_light[i] * unit * unit);
     normal_of_slope = Source::factor < 0 ? unit : -unit;
     // Differences span two cells.
-    fades = segments.lamp->full_slope > 0;
+    fades = segments.prepared_light->full_slope > 0;
     if (fades)
-      share_of_slope =
-          hn::Set(f, std::min(1 / (2 * std::abs(Source::factor) * unit * segments.lamp->full_slope), 1e30F));
-    two_sided = lamp->model.two_sided;
+      share_of_slope = hn::Set(
+          f, std::min(1 / (2 * std::abs(Source::factor) * unit * segments.prepared_light->full_slope), 1e30F));
+    two_sided = prepared_light->model.two_sided;
     const auto colour = [&](const std::array<float, 3>& rgb, float alpha) HWY_ATTR {
       alignas(16) const float components[4] = {rgb[0], rgb[1], rgb[2], alpha};
       return hn::LoadDup128(f, components);
     };
-    ambient = colour(lamp->model.ambient, 1);
-    diffuse = colour(lamp->model.diffuse, 0);
-    specular = colour(lamp->model.specular, 0);
-    const float exponent = lamp->model.shininess;
+    ambient = colour(prepared_light->model.ambient, 1);
+    diffuse = colour(prepared_light->model.diffuse, 0);
+    specular = colour(prepared_light->model.specular, 0);
+    const float exponent = prepared_light->model.shininess;
     constexpr float largest_whole = 1024;
     if (exponent <= largest_whole && exponent == std::floor(exponent)) whole_shininess = unsigned(exponent);
     shininess = hn::Set(f, exponent);
     least_cosine = hn::Set(f, std::max(std::exp(-40 / exponent), 1e-30F));
-    gleams = lamp->model.specular != std::array<float, 3>{};
+    gleams = prepared_light->model.specular != std::array<float, 3>{};
   }
 
   /// Where blocks and their neighbours are held.
@@ -74,7 +74,7 @@ struct SegmentConstants : Constants {
   std::array<Floats, max_surfaces> level;    // as field_at() gives values
   std::array<Floats, max_surfaces> surface;  // components side by side
 
-  const Lamp* lamp = nullptr;
+  const PreparedLight* prepared_light = nullptr;
   std::array<Floats, 9> metric;
   float normal_of_slope = 1;  // what directions over gradients are scaled with to suit `metric` and slopes
   Floats ambient, diffuse, specular;  // components side by side
@@ -127,8 +127,8 @@ HWY_INLINE Floats value_at(const Position& p, const SegmentConstants& constants,
   return value_of(at, constants, source);
 }
 
-/// Lets the rays leap over the segments that lie in empty blocks from end to end; false when there were none.
-HWY_INLINE bool leap_segments(SegmentPacket& rays, const SegmentConstants& constants) {
+/// Lets the rays skip over the segments that lie in empty bricks from end to end; false when there were none.
+HWY_INLINE bool skip_empty_runs_of_segments(SegmentPacket& rays, const SegmentConstants& constants) {
   const FloatTag f;
   const IntTag d;
   const Floats half = hn::Set(f, 0.5F), one = hn::Set(f, 1.0F);
@@ -323,7 +323,7 @@ HWY_INLINE void show_stretch(Floats front, Floats back, Floats length, Mask abse
   const AxisPlace x = between_entries(front, constants), y = between_entries(back, constants);
   const hn::Mask<IntTag> nothing = hn::RebindMask(IntTag(), absent);
   const auto look_up = [&](const AxisPlace& a, const AxisPlace& b, Colours& colours) HWY_ATTR {
-    PairPlace place;
+    SegmentIndex place;
     set_pair(a, b, hn::IfThenElse(nothing, constants.neutral_entry, corner_of_pair(a, b, constants)), place);
     colours_of(place, constants, colours);
   };
@@ -414,7 +414,7 @@ HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& seg
       Colours colours;
       colours.fill(constants.surface[which]);
       keep(hn::IfThenElseZero(sought, hn::Set(f, 1.0F)), colours);
-      if (constants.lamp != nullptr)
+      if (constants.prepared_light != nullptr)
         lay_in_light(rays, segment.point(found, constants), sought, constants, source, colours);
       compose_over(colours, pixels);
       front = hn::IfThenElse(sought, found, front);
@@ -429,12 +429,12 @@ HWY_NOINLINE void compose_surfaces(const SegmentPacket& rays, const Segment& seg
   }
 }
 
-/// A whole segment's place in the table of pairs, whose entries are premultiplied.
-struct SegmentPlace : PairPlace {};
+/// A whole segment's place in the pre-integration table, whose entries are premultiplied.
+struct SegmentPlace : SegmentIndex {};
 
 template <std::size_t q>
 HWY_INLINE Floats colour_at(const SegmentPlace& at, const Constants& constants) {
-  return interpolated_pair<q>(at, constants);
+  return interpolated_segment<q>(at, constants);
 }
 
 /// The ends of eight segments of every ray, and what they show.
@@ -624,21 +624,21 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
   rays.k = hn::Add(rays.k, hn::Set(f, float(block.count)));
 }
 
-/// The packet whose lowest left pixel is (x, y) of the strip.
-HWY_INLINE SegmentPacket segment_packet_of(const RayStrip& strip, std::size_t x, std::size_t y,
+/// The packet whose lowest left pixel is (x, y) of the packet.
+HWY_INLINE SegmentPacket segment_packet_of(const RayPacket& packet, std::size_t x, std::size_t y,
                                            const SegmentConstants& constants) {
   const FloatTag f;
-  const Lamp* const lamp = constants.lamp;
+  const PreparedLight* const prepared_light = constants.prepared_light;
   SegmentPacket rays;
-  static_cast<Packet&>(rays) = packet_of(strip, x, y);
+  static_cast<Packet&>(rays) = packet_of(packet, x, y);
   alignas(64) std::array<std::array<float, lanes>, 8> packed{};
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::size_t ray = (y + lane / 4) * tile_width + x + lane % 4;
-    packed[0][lane] = strip.begin[ray];
-    packed[1][lane] = strip.end[ray];
-    if (lamp == nullptr) continue;
-    const std::array<float, 3> step{strip.step[0][ray], strip.step[1][ray], strip.step[2][ray]};
-    const std::array<float, 3> light = lamp->light(step), half = lamp->half(step);
+    packed[0][lane] = packet.begin[ray];
+    packed[1][lane] = packet.end[ray];
+    if (prepared_light == nullptr) continue;
+    const std::array<float, 3> step{packet.step[0][ray], packet.step[1][ray], packet.step[2][ray]};
+    const std::array<float, 3> light = prepared_light->light(step), half = prepared_light->half(step);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       packed[2 + axis][lane] = light[axis] * constants.normal_of_slope;
       packed[5 + axis][lane] = half[axis] * constants.normal_of_slope;
@@ -659,7 +659,7 @@ HWY_INLINE void skip_empty_segments(SegmentGroup& packets, const SegmentConstant
     again = false;
 #pragma GCC unroll 2
     for (SegmentPacket& rays : packets)
-      if (leap_segments(rays, constants)) {
+      if (skip_empty_runs_of_segments(rays, constants)) {
         rays.known = false;
         again = true;
       }
@@ -667,20 +667,20 @@ HWY_INLINE void skip_empty_segments(SegmentGroup& packets, const SegmentConstant
 }
 
 template <bool pre_integrated, bool lit, typename Source>
-void walk_segments_of_strip(const Scene& scene, const RayStrip& strip, Source source, float* rgba,
-                            KernelCounts& counts) {
+void walk_segments_of_packet(const Scene& scene, const RayPacket& packet, Source source, float* rgba,
+                             KernelCounts& counts) {
   const FloatTag f;
   const IntTag d;
   const SegmentConstants constants(scene, source);
   const Floats one = hn::Set(f, 1.0F);
   Ints taken = hn::Zero(d), hidden = hn::Zero(d);
-  for (std::size_t y = 0; y < strip_height; y += rows)
+  for (std::size_t y = 0; y < packet_height; y += rows)
     for (std::size_t x = 0; x < tile_width; x += 4 * group) {
       SegmentGroup packets;
       std::array<Colours, group> pixels;
       bool done = true;
       for (std::size_t g = 0; g < group; ++g) {
-        packets[g] = segment_packet_of(strip, x + 4 * g, y, constants);
+        packets[g] = segment_packet_of(packet, x + 4 * g, y, constants);
         pixels[g].fill(hn::Zero(f));
         done = done && packets[g].done();
       }
@@ -716,11 +716,11 @@ void walk_segments_of_strip(const Scene& scene, const RayStrip& strip, Source so
 }
 
 template <bool pre_integrated>
-void walk_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
+void walk_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   const auto walk = [&](auto source) {
     return scene.segments->lit_samples
-               ? walk_segments_of_strip<pre_integrated, true>(scene, strip, source, rgba, counts)
-               : walk_segments_of_strip<pre_integrated, false>(scene, strip, source, rgba, counts);
+               ? walk_segments_of_packet<pre_integrated, true>(scene, packet, source, rgba, counts)
+               : walk_segments_of_packet<pre_integrated, false>(scene, packet, source, rgba, counts);
   };
   switch (scene.store->description().type) {
     case TexelType::u8:

@@ -28,14 +28,14 @@ namespace HWY_NAMESPACE {
 
 #include "volume/raycast/vector_segments-inl.h"
 
-void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  walk_segments<false>(scene, strip, rgba, counts);
+void vector_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  walk_segments<false>(scene, packet, rgba, counts);
 }
 
 #else
 
-void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  generic_segments(scene, strip, rgba, counts);
+void vector_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  generic_segments(scene, packet, rgba, counts);
 }
 
 #endif
@@ -50,9 +50,9 @@ namespace understudy::volume {
 
 HWY_EXPORT(vector_segments);
 
-void vector_segments(const Scene& scene, const RayStrip& strip, float* rgba, KernelCounts& counts) {
-  if (scene.segments->pre_integrated) return vector_pre_integrated_segments(scene, strip, rgba, counts);
-  HWY_DYNAMIC_DISPATCH(vector_segments)(scene, strip, rgba, counts);
+void vector_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+  if (scene.segments->pre_integrated) return vector_pre_integrated_segments(scene, packet, rgba, counts);
+  HWY_DYNAMIC_DISPATCH(vector_segments)(scene, packet, rgba, counts);
 }
 
 }  // namespace understudy::volume

@@ -30,7 +30,7 @@ Medium::Medium(double low, double high, std::vector<std::array<double, 4>> entri
   }
   const std::size_t n = entries_.size();
   for (std::size_t i = 0; i < n; ++i)
-    knots_.push_back(n == 1 ? low : low + (high - low) * (double(i) / double(n - 1)));
+    control_points_.push_back(n == 1 ? low : low + (high - low) * (double(i) / double(n - 1)));
   for (std::size_t segment = 0; segment <= n; ++segment) {
     const auto& below = entries_[segment == 0 ? 0 : segment - 1];
     const auto& above = entries_[std::min(segment, n - 1)];
@@ -56,14 +56,15 @@ Medium Medium::of_samples(const TransferFunction& function, double distance) {
 }
 
 std::size_t Medium::segment_of(double value) const {
-  return std::size_t(std::lower_bound(knots_.begin(), knots_.end(), value) - knots_.begin());
+  return std::size_t(std::lower_bound(control_points_.begin(), control_points_.end(), value) -
+                     control_points_.begin());
 }
 
 std::array<double, 4> Medium::entry_at(std::size_t segment, double value) const {
   if (segment == 0) return entries_.front();
   if (segment == entries_.size()) return entries_.back();
-  const double low = knots_[segment - 1];
-  const double s = std::clamp((value - low) / (knots_[segment] - low), 0.0, 1.0);
+  const double low = control_points_[segment - 1];
+  const double s = std::clamp((value - low) / (control_points_[segment] - low), 0.0, 1.0);
   const auto& below = entries_[segment - 1];
   const auto& above = entries_[segment];
   std::array<double, 4> entry{};
@@ -83,8 +84,8 @@ Rate Medium::rate(std::size_t segment, double value) const {
 
 double Medium::noise(std::size_t segment) const {
   const std::size_t below = segment == 0 ? 0 : segment - 1;
-  const std::size_t above = std::min(segment, knots_.size() - 1);
-  const double low = knots_[below], high = knots_[above];
+  const std::size_t above = std::min(segment, control_points_.size() - 1);
+  const double low = control_points_[below], high = control_points_[above];
   double greatest = std::max(rate(segment, low).extinction, rate(segment, high).extinction);
   if (distance_ > 0) {
     // The last bit of an opacity near 1 is many of its transparency, whose logarithm the extinction is.

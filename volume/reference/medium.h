@@ -19,7 +19,8 @@ struct Rate {
   double extinction = 0;
 };
 
-/// Rates as functions of the field's value, smooth between neighbouring knots and constant outside of them.
+/// Rates as functions of the field's value, smooth between neighbouring control points and constant outside of
+/// them.
 class Medium {
  public:
   /// Source and extinction themselves are linear between `entries`, which lie evenly from `low` to `high`.
@@ -33,10 +34,11 @@ class Medium {
   static Medium of_samples(const TransferFunction& function, double distance);
 
   /// Values at which the rates have a kink, ascending.
-  const std::vector<double>& knots() const { return knots_; }
+  const std::vector<double>& control_points() const { return control_points_; }
 
-  /// Segment 0 lies below the first knot, segment i between knots i - 1 and i, the last above all knots.
-  std::size_t segments() const { return knots_.size() + 1; }
+  /// Segment 0 lies below the first control point, segment i between control points i - 1 and i, the last above
+  /// all control points.
+  std::size_t segments() const { return control_points_.size() + 1; }
   std::size_t segment_of(double value) const;
   bool empty(std::size_t segment) const { return empty_[segment] != 0; }
   /// Opacity is 1 all over the segment: no light passes, however short the way.
@@ -57,8 +59,8 @@ class Medium {
  private:
   Medium(double low, double high, std::vector<std::array<double, 4>> entries, double distance);
 
-  std::vector<double> knots_;
-  std::vector<std::array<double, 4>> entries_;  ///< at the knots
+  std::vector<double> control_points_;
+  std::vector<std::array<double, 4>> entries_;  ///< at the control points
   double distance_;                             ///< 0: entries are rates
   std::vector<char> empty_;
   std::vector<char> opaque_;

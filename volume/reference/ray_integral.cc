@@ -163,21 +163,21 @@ class Integrator {
 template <typename Visit>
 void for_each_smooth_part(const Cubic& value, const Medium& medium, Visit visit) {
   const auto turns = monotone_parts(value);
-  const auto& knots = medium.knots();
+  const auto& control_points = medium.control_points();
   for (std::size_t i = 0; i + 1 < turns.size(); ++i) {
     const double at_begin = value(turns[i]), at_end = value(turns[i + 1]);
     const double low = std::min(at_begin, at_end), high = std::max(at_begin, at_end);
-    const auto first = std::upper_bound(knots.begin(), knots.end(), low);
-    const auto last = std::lower_bound(first, knots.end(), high);
+    const auto first = std::upper_bound(control_points.begin(), control_points.end(), low);
+    const auto last = std::lower_bound(first, control_points.end(), high);
     std::vector<double> cuts;
-    // Within this part the cubic is monotone, so it crosses each of these knots once.
-    for (auto knot = first; knot < last; ++knot) {
+    // Within this part the cubic is monotone, so it crosses each of these control points once.
+    for (auto point = first; point < last; ++point) {
       double a = turns[i], b = turns[i + 1];
       const bool rising = at_end > at_begin;
       for (int step = 0; step < 100; ++step) {
         const double middle = 0.5 * (a + b);
         if (!(a < middle && middle < b)) break;
-        ((value(middle) > *knot) == rising ? b : a) = middle;
+        ((value(middle) > *point) == rising ? b : a) = middle;
       }
       cuts.push_back(0.5 * (a + b));
     }

@@ -22,9 +22,10 @@ struct RayIntegral {
 };
 
 /// The integral over the stretches of a scalar field, front to back. Every stretch is split where the field
-/// turns and where it crosses a knot of the medium; what is left is smooth, and is integrated by Gauss-Legendre
-/// quadrature of order 16, bisected until halves and whole agree to `tolerance`. Where the medium's opacity has
-/// a step and the field only touches it, the place is known to the square root of the machine precision.
+/// turns and where it crosses a control point of the medium; what is left is smooth, and is integrated by
+/// Gauss-Legendre quadrature of order 16, bisected until halves and whole agree to `tolerance`. Where the
+/// medium's opacity has a step and the field only touches it, the place is known to the square root of the
+/// machine precision.
 RayIntegral ray_integral(std::span<const Stretch> ray, const Medium& medium, double tolerance = 1e-13);
 
 /// The same for colours in the texels; a fragment is the colour of a layer as thick as `distance`.

@@ -148,8 +148,8 @@ bool fragment(const Classification& classification, const Sample& sample, Sample
   return true;
 }
 
-/// The fragment that a slab becomes, premultiplied; false when there is none.
-bool slab_fragment(const PairTable& table, double front, double back, Sample& colour) {
+/// The fragment that a segment becomes, premultiplied; false when there is none.
+bool slice_segment_fragment(const PreIntegrationTable& table, double front, double back, Sample& colour) {
   if (std::isnan(front) || std::isnan(back)) return false;
   const double last = table.edge - 1;
   const auto place = [&](double value) {
@@ -206,7 +206,7 @@ bool cut_away(const RenderRequest& request, const Vec3& t) {
 }
 
 /// Calls `sample_at` with every sample of pixel (x, y) on the request's planes, front to back, and with the far
-/// end of its slab.
+/// end of its segment.
 template <typename SampleAt>
 void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far, int x, int y,
                  SampleAt sample_at) {
@@ -227,13 +227,14 @@ void meet_planes(const RenderRequest& request, const Vec4& near, const Vec4& far
     const double depth = request.depth_range[0] + s * (request.depth_range[1] - request.depth_range[0]);
     if (!kept || !nearer(request.depth, x, y, depth)) continue;
     Vec3 behind = t;
-    if (request.slab) {
-      // The same pixel's point on the plane of the slab's far end.
-      const double further = plane + request.slab->planes * request.planes.spacing;
+    if (request.slice_segment) {
+      // The same pixel's point on the plane of the segment's far end.
+      const double further = plane + request.slice_segment->planes * request.planes.spacing;
       const auto to_end = [&](const Vec4& p) {
         return dot(request.planes.normal, {p[0], p[1], p[2]}) - further * p[3];
       };
-      behind = add(between(near, far, to_end(near) / (to_end(near) - to_end(far))), request.slab->offset);
+      behind =
+          add(between(near, far, to_end(near) / (to_end(near) - to_end(far))), request.slice_segment->offset);
     }
     sample_at(t, behind);
   }
@@ -316,8 +317,8 @@ ReferenceImage slice_sum(const Field& field, const RenderRequest& request, const
       double* pixel = image.rgba.data() + (image.at(x, y) - image.rgba.data());
       const auto sample_at = [&](const Vec3& t, const Vec3& behind) {
         Sample colour;
-        if (const auto* pairs = std::get_if<PairTable>(&request.classification)) {
-          if (!slab_fragment(*pairs, field(t)[0], field(behind)[0], colour)) return;
+        if (const auto* pairs = std::get_if<PreIntegrationTable>(&request.classification)) {
+          if (!slice_segment_fragment(*pairs, field(t)[0], field(behind)[0], colour)) return;
         } else if (!fragment(request.classification, field(t), colour)) {
           return;
         }

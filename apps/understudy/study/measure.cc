@@ -83,14 +83,14 @@ Point measure(Scene& scene, const Setting& setting, int repetitions, Scene::Rays
   }
   volume::RenderRequest request = scene.request(setting.step, method_of(setting.scheme), setting.termination);
   request.tolerance = float(adaptive_tolerance * setting.step * setting.step);
-  volume::Image picture(request.window);
+  volume::Image image(request.window);
   volume::RayCaster caster(scene.store());
   std::vector<double> times;
-  // The first picture prepares what depends on the table alone, which a viewer pays once a table.
+  // The first image prepares what depends on the table alone, which a viewer pays once a table.
   for (int i = 0; i <= repetitions; ++i) {
     volume::FrameCounts counts;
     const auto start = std::chrono::steady_clock::now();
-    caster.render(request, picture, counts);
+    caster.render(request, image, counts);
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
     if (i > 0) times.push_back(time.count());
     point.samples = counts.samples;
@@ -100,7 +100,7 @@ Point measure(Scene& scene, const Setting& setting, int repetitions, Scene::Rays
   std::ranges::nth_element(times, times.begin() + std::ptrdiff_t(times.size() / 2));
   point.time_ms = times[times.size() / 2];
   point.ns_per_ray *= point.time_ms;
-  rays = scene.compared(picture);
+  rays = scene.compared(image);
   point.error = difference(rays, scene.exact());
   return point;
 }

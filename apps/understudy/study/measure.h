@@ -42,7 +42,7 @@ std::vector<Setting> settings(bool quick);
 struct Difference {
   double max = 0;
   double rms = 0;
-  double colour = 0;  ///< RMS without opacity, which not every program's picture tells
+  double colour = 0;  ///< RMS without opacity, which not every program's image tells
 };
 Difference difference(const Scene::Rays& a, const Scene::Rays& b);
 

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "apps/understudy/image.h"
 #include "apps/understudy/installation.h"
-#include "apps/understudy/picture.h"
 #include "apps/understudy/study/viewer_command.h"
 
 namespace understudy::launcher::study {
@@ -35,7 +35,7 @@ fs::path vtk_script() {
 
 struct OtherPrograms::Drawn {
   double time_ms = 0;
-  volume::Image picture;
+  volume::Image image;
 };
 
 OtherPrograms::OtherPrograms(fs::path folder) : folder_(std::move(folder)) {
@@ -86,12 +86,12 @@ OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
   times.erase(times.begin(), times.begin() + frames_that_settle);
 
   Drawn drawn{median(std::move(times)), volume::Image({0, 0, scene.edge(), scene.edge()})};
-  const Picture picture = read_picture(screenshot);
-  if (picture.width != scene.edge() || picture.height != scene.edge())
-    throw std::runtime_error("understudy-viewer's picture has another size");
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      std::copy_n(picture.pixel(x, picture.height - 1 - y), 4, drawn.picture.at(x, y));
+  const RgbaImage image = read_image(screenshot);
+  if (image.width != scene.edge() || image.height != scene.edge())
+    throw std::runtime_error("understudy-viewer's image has another size");
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      std::copy_n(image.pixel(x, image.height - 1 - y), 4, drawn.image.at(x, y));
   return drawn;
 }
 
@@ -99,15 +99,15 @@ OtherPrograms::Drawn OtherPrograms::vtk(const Scene& scene, const char* mapper) 
   const fs::path floats = folder_ / "vtk.f32";
   const std::string text =
       output_of({"xvfb-run", "-a", python, "-B", vtk_script().string(), description_in(folder_).string(),
-                 "--mapper", mapper, "--frames", fmt::format("{}", vtk_frames), "--picture", floats.string()},
+                 "--mapper", mapper, "--frames", fmt::format("{}", vtk_frames), "--image", floats.string()},
                 folder_ / "vtk.txt");
   const auto figures = nlohmann::json::parse(text.substr(std::min(text.rfind('{'), text.size())));
   Drawn drawn{1000 * figures.at("wall_seconds").get<double>(),
               volume::Image({0, 0, scene.edge(), scene.edge()})};
   std::ifstream file(floats, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(drawn.picture.rgba.data()),
-                 std::streamsize(sizeof(float) * drawn.picture.rgba.size())))
-    throw std::runtime_error("VTK left no whole picture");
+  if (!file.read(reinterpret_cast<char*>(drawn.image.rgba.data()),
+                 std::streamsize(sizeof(float) * drawn.image.rgba.size())))
+    throw std::runtime_error("VTK left no whole image");
   return drawn;
 }
 
@@ -126,7 +126,7 @@ Point OtherPrograms::measure(const Scene& scene, const Setting& setting, Scene::
   Point point{setting};
   point.time_ms = drawn.time_ms;
   point.ns_per_ray = 1e6 * drawn.time_ms / (double(scene.edge()) * scene.edge());
-  rays = scene.compared(drawn.picture);
+  rays = scene.compared(drawn.image);
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i][3] = scene.exact()[i][3];
   point.error = difference(rays, scene.exact());
   point.error.rms = point.error.colour;

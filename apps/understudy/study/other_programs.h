@@ -1,6 +1,6 @@
 // What other programs show of a scene, and how long they take: the bundled viewer, bare, whose slices OpenGL
 // blends in eight bits, and VTK's two volume mappers, where they are installed. All get the same texels, table,
-// camera and number of samples a voxel. Their errors are of colour alone: not every picture tells opacity.
+// camera and number of samples a voxel. Their errors are of colour alone: not every image tells opacity.
 #pragma once
 
 #include <filesystem>

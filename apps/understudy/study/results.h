@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/study/leaving_out.h"
 #include "apps/understudy/study/measure.h"
+#include "apps/understudy/study/optimization_study.h"
 
 namespace understudy::launcher::study {
 
@@ -20,7 +20,7 @@ struct SceneResults {
   int rays = 0;
   double reference_seconds = 0;
   std::vector<Point> points;
-  /// Pictures of where a setting is wrong, by the setting's name; files beside study.json.
+  /// Images of where a setting is wrong, by the setting's name; files beside study.json.
   std::map<std::string, std::string> error_maps;
   /// Why other programs have no point here, by the scheme's name.
   std::map<std::string, std::string> absent;
@@ -30,12 +30,12 @@ struct SceneResults {
 };
 
 struct Results {
-  int edge = 0;    ///< of the pictures, in pixels
+  int edge = 0;    ///< of the images, in pixels
   int stride = 0;  ///< every so manieth pixel is compared
   std::vector<SceneResults> scenes;
 };
 
-/// Of an earlier study in this folder with pictures of the same size; nothing where there is none.
+/// Of an earlier study in this folder with images of the same size; nothing where there is none.
 Results read_results(const std::filesystem::path& folder, int edge, int stride);
 
 /// Throws std::runtime_error naming the file.

@@ -24,7 +24,7 @@ namespace {
 using volume::Rgba;
 using volume::TransferFunction;
 
-constexpr std::size_t slab_bytes = std::size_t(16) << 20;
+constexpr std::size_t slice_range_bytes = std::size_t(16) << 20;
 /// As many as most viewers' tables have.
 constexpr std::size_t table_entries = 256;
 
@@ -61,8 +61,8 @@ double in_bytes(double value) {
 }  // namespace
 
 std::vector<SceneDescription> built_in_scenes() {
-  const auto range = [](std::vector<volume::TransferKnots::Knot> knots) {
-    return volume::TransferKnots{false, std::move(knots)};
+  const auto range = [](std::vector<volume::TransferControlPoints::ControlPoint> control_points) {
+    return volume::TransferControlPoints{false, std::move(control_points)};
   };
   return {
       {"smooth", "a smooth field under a smooth table: the order of accuracy shows",
@@ -112,15 +112,15 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
 
   volume::TexelStream stream(std::move(file), {}, description_.stored);
   while (!stream.done()) {
-    const volume::TexelStream::Slab slab = stream.next(slab_bytes);
-    texels_.insert(texels_.end(), slab.texels.begin(), slab.texels.end());
+    const volume::TexelStream::SliceSegment slice_range = stream.next(slice_range_bytes);
+    texels_.insert(texels_.end(), slice_range.texels.begin(), slice_range.texels.end());
   }
   const volume::TexelFigures& values = stream.figures();
   const double low = values.low <= values.high ? values.low : 0;
   const double high = values.low < values.high ? values.high : low + 1;
   value_range_ = {mapping.normalised(low), mapping.normalised(high)};
   std::ranges::sort(value_range_);
-  table_ = resampled(sampled(spanning(description.knots, low, high), low, high, 1));
+  table_ = resampled(sampled(spanning(description.control_points, low, high), low, high, 1));
   table_.low = float(mapping.normalised(double(table_.low)));
   table_.high = float(mapping.normalised(double(table_.high)));
   if (table_.low > table_.high) {  // texels fall where values rise
@@ -128,7 +128,7 @@ Scene::Scene(const SceneDescription& description, int edge, int stride)
     std::ranges::reverse(table_.entries);
   }
 
-  description_.margin = margin_needed(description_, request(8, volume::Method::pre_integrated, 0));
+  description_.ghost_layer = ghost_layer_needed(description_, request(8, volume::Method::pre_integrated, 0));
   store_ = std::make_unique<volume::BrickStore>(description_, volume::cell_lattice(description_).box());
   store_->add_slices(description_.stored, texels_);
   store_->finish();
@@ -187,11 +187,11 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
   for (std::size_t i = plain.size() - 1; i-- > 0;)
     if (plain[i][3] <= 0 && (i == 0 || plain[i - 1][3] <= 0))
       std::copy_n(plain[i + 1].begin(), 3, plain[i].begin());
-  nlohmann::json knots = nlohmann::json::array();
+  nlohmann::json control_points = nlohmann::json::array();
   for (std::size_t i = 0; i < plain.size(); ++i)
-    knots.push_back({{"at", double(i) / double(table_entries - 1)},
-                     {"colour", {plain[i][0], plain[i][1], plain[i][2]}},
-                     {"opacity", plain[i][3]}});
+    control_points.push_back({{"at", double(i) / double(table_entries - 1)},
+                              {"colour", {plain[i][0], plain[i][1], plain[i][2]}},
+                              {"opacity", plain[i][3]}});
 
   volume::Vec3 extent{};
   for (std::size_t k = 0; k < 3; ++k) extent[k] = description_.size[k] * spacing_[k];
@@ -203,7 +203,7 @@ void Scene::hand_out(const std::filesystem::path& texels, const std::filesystem:
                             {"spacing", spacing_},
                             {"value_at_0", low * unit},
                             {"value_at_1", high * unit},
-                            {"knots", knots},
+                            {"knots", control_points},
                             {"unit_distance", finest},
                             {"sample_distance", finest},
                             {"eye", volume::add(centre, volume::scale(back, camera().distance * radius))},
@@ -237,11 +237,11 @@ void Scene::integrate(const std::function<void(double done)>& progress) {
   reference_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-Scene::Rays Scene::compared(const volume::Image& picture) const {
+Scene::Rays Scene::compared(const volume::Image& image) const {
   Rays rays;
   for (int row = 0; row < rays_across(); ++row)
     for (int column = 0; column < rays_across(); ++column) {
-      const float* const at = picture.at(pixel(column), pixel(row));
+      const float* const at = image.at(pixel(column), pixel(row));
       rays.push_back({double(at[0]), double(at[1]), double(at[2]), double(at[3])});
     }
   return rays;

@@ -14,7 +14,7 @@
 #include "volume/raycast/ray_caster.h"
 #include "volume/reference/slice_sum.h"
 #include "volume/request.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace understudy::launcher::study {
 
@@ -22,7 +22,7 @@ struct SceneDescription {
   std::string name;
   std::string shows;   ///< why it is looked at, in a few words
   std::string volume;  ///< a file, or "synthetic:..."
-  volume::TransferKnots knots;
+  volume::TransferControlPoints control_points;
   volume::Vec3 spacing{};  ///< zeros: the file's own
 };
 
@@ -31,7 +31,7 @@ std::vector<SceneDescription> built_in_scenes();
 
 class Scene {
  public:
-  /// Every `stride`-th pixel across and up of a picture of `edge`^2 pixels is compared. Reads the volume.
+  /// Every `stride`-th pixel across and up of an image of `edge`^2 pixels is compared. Reads the volume.
   /// Throws volume::FileError, std::invalid_argument.
   Scene(const SceneDescription& description, int edge, int stride);
 
@@ -44,12 +44,12 @@ class Scene {
   /// Rays that are compared: premultiplied colour and opacity, row by row from the bottom.
   using Rays = std::vector<std::array<double, 4>>;
   const Rays& exact() const { return exact_; }
-  Rays compared(const volume::Image& picture) const;
-  /// The picture of slices blended into eight bits a channel, back to front: what the viewer itself would show
+  Rays compared(const volume::Image& image) const;
+  /// The image of slices blended into eight bits a channel, back to front: what the viewer itself would show
   /// of the same samples.
   Rays in_eight_bits(double step) const;
   int rays_across() const { return edge_ / stride_; }
-  /// Of the pictures, in pixels.
+  /// Of the images, in pixels.
   int edge() const { return edge_; }
 
   /// The scene for other programs: its texels in `texels`, and in `description` what apps/bench/vtk_mappers.py

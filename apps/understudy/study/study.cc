@@ -15,9 +15,9 @@
 #include <system_error>
 
 #include "apps/understudy/child_process.h"
+#include "apps/understudy/control_points_file.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/installation.h"
-#include "apps/understudy/knots_file.h"
-#include "apps/understudy/picture.h"
 #include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
 #include "volume/file/volume_file.h"
@@ -98,7 +98,8 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
     const std::string file = given.substr(0, comma);
     const std::string table = comma == std::string::npos ? "grey" : given.substr(comma + 1);
     const std::string name = fs::path(file).filename().string();
-    all.push_back({name.substr(0, name.find_first_of("._")), "table " + table, file, read_knots(table), {}});
+    all.push_back(
+        {name.substr(0, name.find_first_of("._")), "table " + table, file, read_control_points(table), {}});
   }
   return all;
 }
@@ -107,20 +108,20 @@ std::vector<SceneDescription> scenes_of(const StudyArguments& arguments) {
 void write_error_map(const fs::path& path, const Scene& scene, const Scene::Rays& rays) {
   constexpr int pixels_a_ray = 6;
   const int across = scene.rays_across();
-  Picture picture;
-  picture.width = picture.height = across * pixels_a_ray;
-  picture.rgba.assign(std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height), 1);
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) {
+  RgbaImage image;
+  image.width = image.height = across * pixels_a_ray;
+  image.rgba.assign(std::size_t(4) * std::size_t(image.width) * std::size_t(image.height), 1);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
       const auto ray =
           std::size_t(across - 1 - y / pixels_a_ray) * std::size_t(across) + std::size_t(x / pixels_a_ray);
       double error = 0;
       for (std::size_t k = 0; k < 4; ++k)
         error = std::max(error, std::abs(rays[ray][k] - scene.exact()[ray][k]));
       const auto heat = float(std::clamp((std::log10(std::max(error, 1e-9)) + 6) / 5, 0.0, 1.0));
-      for (int k = 0; k < 3; ++k) picture.pixel(x, y)[k] = std::clamp(3 * heat - float(k), 0.0F, 1.0F);
+      for (int k = 0; k < 3; ++k) image.pixel(x, y)[k] = std::clamp(3 * heat - float(k), 0.0F, 1.0F);
     }
-  write_png(path, picture);
+  write_png(path, image);
 }
 
 bool has_error_map(const Setting& setting) {
@@ -142,14 +143,14 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     else
       missing.push_back(setting);
   }
-  const bool to_leave_out =
+  const bool optimizations_of =
       with_savings &&
       (results.savings.empty() ||
        std::ranges::any_of(results.savings, [](const Saving& saving) { return !saving.absent.empty(); }));
-  if (missing.empty() && !to_leave_out) return;
+  if (missing.empty() && !optimizations_of) return;
   progress.show(0, "reading");
   Scene scene(description, all.edge, all.stride);
-  if (to_leave_out) {
+  if (optimizations_of) {
     results.savings = savings_of(scene, folder / "left-out", [&](const std::string& item) {
       progress.show(0, "without leaving out " + item);
     });
@@ -238,7 +239,7 @@ void print_savings(const SceneResults& scene) {
     if (!saving.absent.empty())
       fmt::print("  {:<20} absent: {}\n", saving.item, saving.absent);
     else
-      fmt::print("  {:<20} {:5.1f} % of {} {}: {:.2f} ms a frame, {:.2f} without; pictures differ by {:.1e}\n",
+      fmt::print("  {:<20} {:5.1f} % of {} {}: {:.2f} ms a frame, {:.2f} without; images differ by {:.1e}\n",
                  saving.item, saving.all > 0 ? 100 * double(saving.left_out) / double(saving.all) : 0,
                  saving.all, saving.unit, saving.ms, saving.ms_without, saving.difference);
   }
@@ -302,8 +303,8 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--volume", arguments->volumes,
                    "a file as a scene of its own, with a built-in table or a file of knots")
       ->type_name("FILE[,TABLE]");
-  command->add_flag("--quick", arguments->quick, "fewer settings, smaller pictures, fewer repetitions");
-  command->add_option("--size", arguments->edge, "edge of the pictures, in pixels")->check(CLI::Range(8, 4096));
+  command->add_flag("--quick", arguments->quick, "fewer settings, smaller images, fewer repetitions");
+  command->add_option("--size", arguments->edge, "edge of the images, in pixels")->check(CLI::Range(8, 4096));
   command->add_flag("--fresh", arguments->fresh, "measure again what an earlier study in DIR has measured");
   command->add_flag("--alone", arguments->alone, "without the bare viewer and VTK beside it");
   command->add_option("--out", arguments->out, "where study.json, study.csv, error maps and index.html go")

@@ -73,7 +73,7 @@ def work_precision(scene):
             elif point["time_ms"] is None:
                 axes.axhline(point["rms_colour"], color="grey", linestyle="--" if point["step"] == 1 else ":", linewidth=1,
                              label=f"{point['scheme']}, step {point['step']:g}")
-        axes.set_xlabel("ms a picture")
+        axes.set_xlabel("ms an image")
         axes.set_ylabel("RMS error of colour against the integral")
     return plot(draw, f"{scene['name']}: error over time")
 
@@ -144,7 +144,7 @@ def section(scene, folder):
 def savings(study):
     """What was left out of frames of the viewer, and what frames take without that."""
     rows = ["<tr><th>scene<th class=name>item<th>left out<th class=name>of<th>ms a frame<th>ms without<th>times"
-            "<th>pictures differ by<th>tolerance<th class=name>shown with</tr>"]
+            "<th>images differ by<th>tolerance<th class=name>shown with</tr>"]
     for scene in study["scenes"]:
         for saving in scene["savings"]:
             start = f"<tr><td>{html.escape(scene['name'])}<td class=name>{html.escape(saving['item'])}"
@@ -167,10 +167,10 @@ def main():
                      + "".join(f"<td>{scene['orders'][scheme]:.2f}" if scheme in scene["orders"] else "<td>–"
                                for scheme in COLOURS) + "</tr>" for scene in study["scenes"])
     text = f"""<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Error against run time</title>
-<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; margin: 2em auto; padding: 0 1em }}
+<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; ghost layer: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child, .name {{ text-align: left }} .front {{ font-weight: bold }}
-figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
+figure {{ display: inline-block; ghost layer: 4px }} figcaption {{ font-size: 12px; text-align: center }}
 figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
 <p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the

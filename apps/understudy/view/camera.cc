@@ -47,7 +47,7 @@ void set_axes(volume::OrbitCamera& camera, const Axes& axes) {
   camera.roll = std::atan2(dot(axes.side, cross(axes.back, level)), dot(axes.side, level)) * degrees;
 }
 
-Vec3 on_ball(const PicturePoint& point) {
+Vec3 on_ball(const ImagePoint& point) {
   const double squared = point[0] * point[0] + point[1] * point[1];
   if (squared <= 1) return {point[0], point[1], std::sqrt(1 - squared)};
   const double far = std::sqrt(squared);
@@ -56,8 +56,8 @@ Vec3 on_ball(const PicturePoint& point) {
 
 }  // namespace
 
-ViewCamera rotated(const ViewCamera& camera, const PicturePoint& from, const PicturePoint& to) {
-  const auto around_middle = [&](const PicturePoint& point) {
+ViewCamera rotated(const ViewCamera& camera, const ImagePoint& from, const ImagePoint& to) {
+  const auto around_middle = [&](const ImagePoint& point) {
     return on_ball({point[0] - camera.shift[0], point[1] - camera.shift[1]});
   };
   const Vec3 a = around_middle(from), b = around_middle(to);
@@ -83,14 +83,14 @@ ViewCamera rotated(const ViewCamera& camera, const PicturePoint& from, const Pic
   return result;
 }
 
-ViewCamera panned(const ViewCamera& camera, const PicturePoint& by) {
+ViewCamera panned(const ViewCamera& camera, const ImagePoint& by) {
   ViewCamera result = camera;
   for (std::size_t k = 0; k < 2; ++k)
     result.shift[k] = std::clamp(camera.shift[k] + by[k], -farthest_shift, farthest_shift);
   return result;
 }
 
-ViewCamera zoomed(const ViewCamera& camera, double factor, const PicturePoint& at) {
+ViewCamera zoomed(const ViewCamera& camera, double factor, const ImagePoint& at) {
   ViewCamera result = camera;
   result.orbit.distance = std::clamp(camera.orbit.distance / factor, nearest_distance, farthest_distance);
   const double grown = camera.orbit.distance / result.orbit.distance;
@@ -99,7 +99,7 @@ ViewCamera zoomed(const ViewCamera& camera, double factor, const PicturePoint& a
   return result;
 }
 
-void shift(volume::RenderRequest& request, const PicturePoint& shift) {
+void shift(volume::RenderRequest& request, const ImagePoint& shift) {
   const double shorter = std::min(request.viewport.width, request.viewport.height);
   const std::array<double, 2> in_clip{shift[0] * shorter / request.viewport.width,
                                       shift[1] * shorter / request.viewport.height};

@@ -1,4 +1,4 @@
-// The camera of a viewer as its hand moves it: rotated by an arcball, moved across the picture, brought nearer.
+// The camera of a viewer as its hand moves it: rotated by an arcball, moved across the image, brought nearer.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace understudy::launcher {
 
-/// In halves of the picture's shorter side, right and up from its middle.
-using PicturePoint = std::array<double, 2>;
+/// In halves of the image's shorter side, right and up from its middle.
+using ImagePoint = std::array<double, 2>;
 
 struct ViewCamera {
   volume::OrbitCamera orbit;
-  PicturePoint shift{};  ///< where the volume's middle is seen
+  ImagePoint shift{};  ///< where the volume's middle is seen
 
   bool operator==(const ViewCamera&) const = default;
 };
@@ -25,13 +25,13 @@ constexpr double farthest_shift = 100;
 /// Shoemake's ball of radius 1 around the volume's middle: the point under `from` comes under `to`, turned by
 /// twice the angle between them, so that any way of several moves ends where one move would. (Shoemake 1992,
 /// ARCBALL, Graphics Interface.)
-ViewCamera rotated(const ViewCamera& camera, const PicturePoint& from, const PicturePoint& to);
+ViewCamera rotated(const ViewCamera& camera, const ImagePoint& from, const ImagePoint& to);
 /// What is seen moves by so much.
-ViewCamera panned(const ViewCamera& camera, const PicturePoint& by);
+ViewCamera panned(const ViewCamera& camera, const ImagePoint& by);
 /// The camera comes nearer by the factor (below 1: goes away); what is seen at `at` stays there.
-ViewCamera zoomed(const ViewCamera& camera, double factor, const PicturePoint& at);
+ViewCamera zoomed(const ViewCamera& camera, double factor, const ImagePoint& at);
 
 /// Brings the request of `camera.orbit` where the shift is.
-void shift(volume::RenderRequest& request, const PicturePoint& shift);
+void shift(volume::RenderRequest& request, const ImagePoint& shift);
 
 }  // namespace understudy::launcher

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/view/picture_encoding.h"
+#include "apps/understudy/view/image_encoding.h"
 #include "volume/brick/cell_lattice.h"
 #include "volume/file/scalar_type.h"
 
@@ -18,14 +18,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int moving_quality = 85;
 
-Json json_of(const volume::TransferKnots& table, double low, double high) {
-  Json knots = Json::array();
-  for (const volume::TransferKnots::Knot& knot : table.knots) {
-    // Pages place knots in the range, whatever the file said.
-    const double at = table.of_values ? (knot.at - low) / (high - low) : knot.at;
-    knots.push_back({{"at", at}, {"colour", knot.colour}, {"opacity", knot.opacity}});
+Json json_of(const volume::TransferControlPoints& table, double low, double high) {
+  Json control_points = Json::array();
+  for (const volume::TransferControlPoints::ControlPoint& point : table.control_points) {
+    // Pages place control points in the range, whatever the file said.
+    const double at = table.of_values ? (point.at - low) / (high - low) : point.at;
+    control_points.push_back({{"at", at}, {"colour", point.colour}, {"opacity", point.opacity}});
   }
-  return knots;
+  return control_points;
 }
 
 Json json_of(const ViewCamera& camera) {
@@ -68,10 +68,10 @@ std::string volume_message(const ShownVolume& volume, const ViewState& state) {
   const double low = values.low <= values.high ? values.low : 0.0;
   const double high = values.low < values.high ? values.high : low + 1;
   Json tables = Json::object();
-  for (const std::string& name : volume::built_in_knot_names())
-    tables[name] = json_of(volume::knots_named(name), low, high);
+  for (const std::string& name : volume::built_in_control_points_names())
+    tables[name] = json_of(volume::control_points_named(name), low, high);
   Json surfaces = Json::array();
-  for (const SurfaceChoice& surface : state.picture().shading.surfaces)
+  for (const SurfaceChoice& surface : state.image().shading.surfaces)
     surfaces.push_back({{"at", surface.of_range ? surface.at : (surface.at - low) / (high - low)},
                         {"colour", {surface.colour[0], surface.colour[1], surface.colour[2]}},
                         {"opacity", surface.colour[3]}});
@@ -86,11 +86,11 @@ std::string volume_message(const ShownVolume& volume, const ViewState& state) {
        {"high", high},
        {"histogram", {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}}},
        {"tables", tables},
-       {"table", json_of(state.picture().knots, low, high)},
-       {"volume", state.picture().shading.shows_volume},
+       {"table", json_of(state.image().control_points, low, high)},
+       {"volume", state.image().shading.shows_volume},
        {"surfaces", surfaces},
-       {"light", state.picture().shading.light.has_value()},
-       {"step", state.picture().step},
+       {"light", state.image().shading.light.has_value()},
+       {"step", state.image().step},
        {"camera", json_of(state.camera())},
        {"nodes", volume.nodes()}});
 }
@@ -101,8 +101,8 @@ std::string figures_message(std::uint64_t sequence, const FileScene& scene,
   Json loads = Json::array();
   for (const compositor::RankLoad& rank : ranks)
     loads.push_back({{"box", json_of(rank.cells, scene.load.volume)},
-                     {"ms", rank.picture_ms},
-                     {"samples", rank.picture_samples},
+                     {"ms", rank.image_ms},
+                     {"samples", rank.image_samples},
                      {"bytes", rank.brick_bytes}});
   Json figures{{"kind", "figures"}, {"sequence", sequence}, {"ranks", loads}};
   if (exactness) {
@@ -116,16 +116,16 @@ std::string refusal_message(std::uint64_t sequence, std::string_view reason) {
   return dumped({{"kind", "impossible"}, {"sequence", sequence}, {"text", reason}});
 }
 
-std::vector<std::byte> picture_message(const ViewState& state, const ShownVolume::Drawn& drawn) {
+std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::Drawn& drawn) {
   const Clock::time_point start = Clock::now();
-  const std::vector<std::byte> picture =
-      state.lossless() ? png_of(drawn.picture) : jpeg_of(drawn.picture, moving_quality);
+  const std::vector<std::byte> image =
+      state.lossless() ? png_of(drawn.image) : jpeg_of(drawn.image, moving_quality);
   const std::string head =
-      dumped({{"kind", "picture"},
+      dumped({{"kind", "image"},
               {"sequence", state.sequence()},
               {"still", state.still()},
-              {"width", drawn.picture.width},
-              {"height", drawn.picture.height},
+              {"width", drawn.image.width},
+              {"height", drawn.image.height},
               {"format", state.lossless() ? "png" : "jpeg"},
               {"camera", json_of(state.camera())},
               {"matrix", drawn.request.texture_to_clip},
@@ -133,12 +133,12 @@ std::vector<std::byte> picture_message(const ViewState& state, const ShownVolume
               {"ms",
                {{"render", drawn.counts.render_ms},
                 {"composite", drawn.counts.composite_ms},
-                {"picture", drawn.ms},
+                {"image", drawn.ms},
                 {"pack", std::chrono::duration<double, std::milli>(Clock::now() - start).count()}}}});
-  std::vector<std::byte> message(4 + head.size() + picture.size());
+  std::vector<std::byte> message(4 + head.size() + image.size());
   for (std::size_t i = 0; i < 4; ++i) message[i] = std::byte(head.size() >> 8 * i & 255U);
   std::memcpy(message.data() + 4, head.data(), head.size());
-  std::memcpy(message.data() + 4 + head.size(), picture.data(), picture.size());
+  std::memcpy(message.data() + 4 + head.size(), image.data(), image.size());
   return message;
 }
 

@@ -1,4 +1,4 @@
-// What is said to a viewer's page: JSON text, and pictures with a head of JSON (README.md lists the keys).
+// What is said to a viewer's page: JSON text, and images with a head of JSON (README.md lists the keys).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ std::string status_message(Readiness readiness, std::string_view text, double pa
 /// What is there to be seen, and how it is seen at first.
 std::string volume_message(const ShownVolume& volume, const ViewState& state);
 
-/// What the picture `sequence` and the ranks say of themselves.
+/// What the image `sequence` and the ranks say of themselves.
 std::string figures_message(std::uint64_t sequence, const FileScene& scene,
                             const std::optional<ShownVolume::Exactness>& exactness,
                             const std::vector<compositor::RankLoad>& ranks);
@@ -28,7 +28,7 @@ std::string figures_message(std::uint64_t sequence, const FileScene& scene,
 /// What was asked for cannot be drawn.
 std::string refusal_message(std::uint64_t sequence, std::string_view reason);
 
-/// The head's length (four bytes, the lowest first), the head, and the picture: PNG, or JPEG.
-std::vector<std::byte> picture_message(const ViewState& state, const ShownVolume::Drawn& drawn);
+/// The head's length (four bytes, the lowest first), the head, and the image: PNG, or JPEG.
+std::vector<std::byte> image_message(const ViewState& state, const ShownVolume::Drawn& drawn);
 
 }  // namespace understudy::launcher

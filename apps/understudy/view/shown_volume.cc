@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Rays that are integrated of a picture at rest, and what that may take.
+/// Rays that are integrated of an image at rest, and what that may take.
 constexpr std::size_t rays_at_once = 256;
 constexpr double most_ms = 40;
 
@@ -78,7 +78,7 @@ std::optional<ShownVolume::Exactness> ShownVolume::exactness() {
 }
 
 std::vector<compositor::RankLoad> ShownVolume::ranks() {
-  // The picture of the service is valid until the next call but integrals().
+  // The image of the service is valid until the next call but integrals().
   if (image_.rgba.data() != kept_.data()) {
     kept_.assign(image_.rgba.begin(), image_.rgba.end());
     image_.rgba = kept_;

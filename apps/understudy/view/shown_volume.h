@@ -8,7 +8,7 @@
 
 #include "apps/understudy/file_scene.h"
 #include "apps/understudy/loading_nodes.h"
-#include "apps/understudy/view/picture_encoding.h"
+#include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/view_state.h"
 
 namespace understudy::launcher {
@@ -26,7 +26,7 @@ class ShownVolume {
   // From here on the volume is loaded. What is lost throws ServiceLost; then load() again.
 
   struct Drawn {
-    RgbPicture picture;
+    RgbImage image;
     volume::RenderRequest request;
     volume::FrameCounts counts;
     double ms = 0;  ///< to render and to composite, as it was waited for
@@ -37,11 +37,11 @@ class ShownVolume {
     double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
     std::size_t rays = 0;
   };
-  /// Of the picture drawn last, each time of other rays; nothing where what it shows has no integral (surfaces,
+  /// Of the image drawn last, each time of other rays; nothing where what it shows has no integral (surfaces,
   /// light, other operators).
   std::optional<Exactness> exactness();
 
-  /// What each rank has, and what its part of the last picture took.
+  /// What each rank has, and what its part of the last image took.
   std::vector<compositor::RankLoad> ranks();
   int nodes() const { return service_->nodes(); }
   const volume::TexelFigures& values() const { return values_; }
@@ -61,7 +61,7 @@ class ShownVolume {
   std::unique_ptr<compositor::LoadingService> service_;
   volume::TexelFigures values_;
   Histogram histogram_;
-  // Of the last picture.
+  // Of the last image.
   volume::RenderRequest request_;
   volume::ImageView image_;
   std::vector<float> kept_;  ///< its pixels, once the service's are gone

@@ -32,11 +32,11 @@ struct ViewArguments {
 
 int view(const ViewArguments& arguments) {
   FileScene scene = scene_of(arguments.scene);
-  if (std::min(scene.picture.width, scene.picture.height) < least_view_side ||
-      std::max(scene.picture.width, scene.picture.height) > most_view_side)
+  if (std::min(scene.image.width, scene.image.height) < least_view_side ||
+      std::max(scene.image.width, scene.image.height) > most_view_side)
     throw std::invalid_argument(fmt::format("a view of {} pixels; give {} to {} a side", arguments.scene.size,
                                             least_view_side, most_view_side));
-  widen_margin(scene);
+  widen_ghost_layer(scene);
   with_loading_nodes(arguments.nodes, [&](const ServiceMaker& make, const std::stop_token& stop) {
     if (arguments.port)
       show_on_web(scene, make, stop, {arguments.host, *arguments.port});

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/knots_file.h"
+#include "apps/understudy/control_points_file.h"
 #include "volume/surface.h"
 
 namespace understudy::launcher {
@@ -40,7 +40,7 @@ std::array<double, count> numbers_in(const char* key, const Json& json, double l
   return values;
 }
 
-PicturePoint point_in(const char* key, const Json& json) {
+ImagePoint point_in(const char* key, const Json& json) {
   return numbers_in<2>(key, json, -farthest_point, farthest_point);
 }
 
@@ -61,12 +61,12 @@ ViewCamera camera_in(const Json& json) {
   return camera;
 }
 
-volume::TransferKnots table_in(const Json& json) {
+volume::TransferControlPoints table_in(const Json& json) {
   constexpr const char* key = "table";
-  if (member(key, json, "knots").size() > max_view_knots)
-    fail(key, fmt::format("has more than {} knots", max_view_knots));
+  if (member(key, json, "knots").size() > max_view_control_points)
+    fail(key, fmt::format("has more than {} knots", max_view_control_points));
   try {
-    volume::TransferKnots table = knots_in(json);
+    volume::TransferControlPoints table = control_points_in(json);
     if (table.of_values) fail(key, "is of values, not of places in the range");
     return table;
   } catch (const MalformedView&) {

@@ -10,14 +10,14 @@
 
 #include "apps/understudy/shading_options.h"
 #include "apps/understudy/view/camera.h"
-#include "volume/transfer_knots.h"
+#include "volume/transfer_control_points.h"
 
 namespace understudy::launcher {
 
 constexpr std::size_t max_view_message_bytes = std::size_t(32) << 10U;
 constexpr int least_view_side = 16;
 constexpr int most_view_side = 4096;
-constexpr std::size_t max_view_knots = 256;
+constexpr std::size_t max_view_control_points = 256;
 constexpr double least_view_step = 0.25;  ///< voxels
 constexpr double most_view_step = 4;
 
@@ -29,20 +29,20 @@ class MalformedView : public std::runtime_error {
 
 /// What is not there stays as it was.
 struct ViewMessage {
-  std::uint64_t sequence = 0;     ///< comes back with the picture
+  std::uint64_t sequence = 0;     ///< comes back with the image
   bool still = true;              ///< false: while the camera moves
   std::optional<bool> lossless;   ///< while it moves as well
-  std::optional<double> took_ms;  ///< the last picture, from the hand to the eye
+  std::optional<double> took_ms;  ///< the last image, from the hand to the eye
   std::optional<std::array<int, 2>> size;
   std::optional<ViewCamera> camera;
-  std::optional<std::array<PicturePoint, 2>> rotate;  ///< from, to
-  std::optional<PicturePoint> pan;
+  std::optional<std::array<ImagePoint, 2>> rotate;  ///< from, to
+  std::optional<ImagePoint> pan;
   struct Zoom {
     double by = 1;
-    PicturePoint at{};
+    ImagePoint at{};
   };
   std::optional<Zoom> zoom;
-  std::optional<volume::TransferKnots> table;
+  std::optional<volume::TransferControlPoints> table;
   std::optional<bool> shows_volume;
   std::optional<std::vector<SurfaceChoice>> surfaces;  ///< at places of the range
   std::optional<bool> light;

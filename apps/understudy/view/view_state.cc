@@ -9,21 +9,21 @@ namespace understudy::launcher {
 namespace {
 
 /// Where no light was asked for on the command line, it shines from the eye on everything.
-volume::Light usual_lamp(const FileScene& scene) {
+volume::Light usual_light(const FileScene& scene) {
   ShadingArguments arguments;
   arguments.light = "all";
   return *shading_of(arguments, scene.extent()).light;
 }
 
-/// A picture is never divided by more along a side.
+/// An image is never divided by more along a side.
 constexpr double coarsest = 6;
 
 }  // namespace
 
 ViewState::ViewState(const FileScene& scene)
-    : camera_{scene.picture.camera, {}},
-      picture_(scene.picture),
-      lamp_(scene.picture.shading.light.value_or(usual_lamp(scene))) {}
+    : camera_{scene.image.camera, {}},
+      image_(scene.image),
+      prepared_light_(scene.image.shading.light.value_or(usual_light(scene))) {}
 
 void ViewState::apply(const ViewMessage& message) {
   sequence_ = message.sequence;
@@ -31,28 +31,28 @@ void ViewState::apply(const ViewMessage& message) {
   if (message.lossless) lossless_moving_ = *message.lossless;
   if (message.took_ms) learn(*message.took_ms);
   if (message.size) {
-    picture_.width = (*message.size)[0];
-    picture_.height = (*message.size)[1];
+    image_.width = (*message.size)[0];
+    image_.height = (*message.size)[1];
   }
   if (message.camera) camera_ = *message.camera;
   if (message.rotate) camera_ = rotated(camera_, (*message.rotate)[0], (*message.rotate)[1]);
   if (message.pan) camera_ = panned(camera_, *message.pan);
   if (message.zoom) camera_ = zoomed(camera_, message.zoom->by, message.zoom->at);
-  if (message.table) picture_.knots = *message.table;
-  Shading& shading = picture_.shading;
+  if (message.table) image_.control_points = *message.table;
+  Shading& shading = image_.shading;
   if (message.shows_volume) shading.shows_volume = *message.shows_volume;
   if (message.surfaces) shading.surfaces = *message.surfaces;
-  if (message.light) shading.light = *message.light ? std::optional(lamp_) : std::nullopt;
-  if (message.step) picture_.step = *message.step;
+  if (message.light) shading.light = *message.light ? std::optional(prepared_light_) : std::nullopt;
+  if (message.step) image_.step = *message.step;
 }
 
 std::array<int, 2> ViewState::size() const {
-  const std::array<int, 2> whole{picture_.width, picture_.height};
+  const std::array<int, 2> whole{image_.width, image_.height};
   if (still_ || !ms_a_pixel_) return whole;
-  const double ms = *ms_a_pixel_ * picture_.width * picture_.height;
+  const double ms = *ms_a_pixel_ * image_.width * image_.height;
   if (ms <= moving_ms) return whole;
   const double by = std::min(coarsest, std::sqrt(ms / moving_ms));
-  return {std::max(1, int(picture_.width / by)), std::max(1, int(picture_.height / by))};
+  return {std::max(1, int(image_.width / by)), std::max(1, int(image_.height / by))};
 }
 
 void ViewState::took(const std::array<int, 2>& size, double ms) {
@@ -68,32 +68,32 @@ void ViewState::learn(double ms) {
 }
 
 volume::RenderRequest ViewState::request(const FileScene& scene, const volume::TexelFigures& values) const {
-  PictureSettings picture = picture_;
-  picture.camera = camera_.orbit;
+  ImageSettings image = image_;
+  image.camera = camera_.orbit;
   const std::array<int, 2> now = size();
-  picture.width = now[0];
-  picture.height = now[1];
-  Shading& shading = picture.shading;
+  image.width = now[0];
+  image.height = now[1];
+  Shading& shading = image.shading;
   if (!shading.surfaces.empty() || shading.light) {
     // These show under `over`, with samples or segments.
     shading.op = volume::Operator::over;
     if (shading.method == volume::Method::adaptive) shading.method = volume::Method::post_classified;
   }
-  volume::RenderRequest request = request_of(scene, picture, values);
+  volume::RenderRequest request = request_of(scene, image, values);
   shift(request, camera_.shift);
   return request;
 }
 
-void widen_margin(FileScene& scene) {
-  PictureSettings widest = scene.picture;
+void widen_ghost_layer(FileScene& scene) {
+  ImageSettings widest = scene.image;
   widest.step = std::max(widest.step, most_view_step);
   widest.shading.op = volume::Operator::over;
   widest.shading.method = volume::Method::pre_integrated;
-  widest.shading.light = usual_lamp(scene);
+  widest.shading.light = usual_light(scene);
   widest.shading.surfaces = {SurfaceChoice{}};
-  const int margin = volume::margin_needed(scene.load.volume, unclassified_request(scene, widest));
-  if (margin <= *std::ranges::max_element(scene.file.size))
-    scene.load.volume.margin = std::max(scene.load.volume.margin, margin);
+  const int ghost_layer = volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, widest));
+  if (ghost_layer <= *std::ranges::max_element(scene.file.size))
+    scene.load.volume.ghost_layer = std::max(scene.load.volume.ghost_layer, ghost_layer);
 }
 
 }  // namespace understudy::launcher

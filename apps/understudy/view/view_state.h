@@ -17,28 +17,28 @@ class ViewState {
   void apply(const ViewMessage& message);
 
   const ViewCamera& camera() const { return camera_; }
-  const PictureSettings& picture() const { return picture_; }
+  const ImageSettings& image() const { return image_; }
   bool still() const { return still_; }
   bool lossless() const { return still_ || lossless_moving_; }
   std::uint64_t sequence() const { return sequence_; }
 
-  /// Of the picture that is due: smaller while the camera moves, as far as its time asks for.
+  /// Of the image that is due: smaller while the camera moves, as far as its time asks for.
   std::array<int, 2> size() const;
-  /// The picture took so long to make. What the viewer says of the whole way to the eye counts more.
+  /// The image took so long to make. What the viewer says of the whole way to the eye counts more.
   void took(const std::array<int, 2>& size, double ms);
 
-  /// The picture that is due. Throws std::invalid_argument.
+  /// The image that is due. Throws std::invalid_argument.
   volume::RenderRequest request(const FileScene& scene, const volume::TexelFigures& values) const;
 
-  /// While it moves, a picture is to take no longer.
+  /// While it moves, an image is to take no longer.
   static constexpr double moving_ms = 50;
 
  private:
   void learn(double ms);
 
   ViewCamera camera_;
-  PictureSettings picture_;  ///< but for the camera
-  volume::Light lamp_;       ///< when there is light
+  ImageSettings image_;           ///< but for the camera
+  volume::Light prepared_light_;  ///< when there is light
   bool still_ = true;
   bool lossless_moving_ = false;
   std::uint64_t sequence_ = 0;
@@ -46,8 +46,8 @@ class ViewState {
   std::optional<double> ms_a_pixel_;  ///< smoothed
 };
 
-/// The margin of texels that whatever a viewer may ask for needs; where the volume is smaller, that its first
-/// picture needs.
-void widen_margin(FileScene& scene);
+/// The ghost layer of texels that whatever a viewer may ask for needs; where the volume is smaller, that its
+/// first image needs.
+void widen_ghost_layer(FileScene& scene);
 
 }  // namespace understudy::launcher

@@ -22,8 +22,8 @@ class WebClient {
   using tcp = boost::asio::ip::tcp;
 
   struct Message {
-    Json json;            ///< of a picture its head
-    std::string picture;  ///< empty: there is none
+    Json json;          ///< of an image its head
+    std::string image;  ///< empty: there is none
   };
 
   explicit WebClient(int port, const std::string& origin = "") : socket_(io_) {
@@ -66,15 +66,15 @@ class WebClient {
       if (Message message = receive(); message.json.at("kind") == kind) return message;
   }
 
-  /// Asks for a picture and waits for it.
-  Message picture(Json request) {
+  /// Asks for an image and waits for it.
+  Message image(Json request) {
     request["sequence"] = ++sequence_;
     send(request);
     while (true) {
       Message message = receive();
       if (message.json.at("kind") == "impossible")
         throw std::runtime_error(message.json.at("text").get<std::string>());
-      if (message.json.at("kind") == "picture" && message.json.at("sequence") == sequence_) return message;
+      if (message.json.at("kind") == "image" && message.json.at("sequence") == sequence_) return message;
     }
   }
 

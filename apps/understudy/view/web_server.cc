@@ -89,7 +89,7 @@ class WebServer::Listener {
 
   class Connection;
   struct Outgoing {
-    bool picture = false;
+    bool image = false;
     std::vector<std::byte> bytes;
   };
   void send(Viewer viewer, Outgoing message);
@@ -258,8 +258,8 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   }
 
   void write() {
-    conversation_->text(!outbox_.front().picture);
-    conversation_->binary(outbox_.front().picture);
+    conversation_->text(!outbox_.front().image);
+    conversation_->binary(outbox_.front().image);
     sending_.expires_after(listener_.limits_.sending);
     sending_.async_wait([self = shared_from_this()](error_code error) {
       if (!error && !self->outbox_.empty()) self->drop();
@@ -273,14 +273,14 @@ class WebServer::Listener::Connection : public std::enable_shared_from_this<Conn
   }
 
   void written() {
-    const bool picture = outbox_.front().picture;
+    const bool image = outbox_.front().image;
     outbox_.pop_front();
     sending_.cancel();
     if (!outbox_.empty())
       write();
     else if (ending_)
       drop();
-    if (picture && is_viewer_ && !dropped_) listener_.handlers_.picture_sent(number_);
+    if (image && is_viewer_ && !dropped_) listener_.handlers_.image_sent(number_);
   }
 
   Listener& listener_;
@@ -417,7 +417,7 @@ void WebServer::send_text(Viewer viewer, std::string text) {
   });
 }
 
-void WebServer::send_picture(Viewer viewer, std::vector<std::byte> message) {
+void WebServer::send_image(Viewer viewer, std::vector<std::byte> message) {
   listener_->post([listener = listener_.get(), viewer, message = std::move(message)]() mutable {
     listener->send(viewer, {true, std::move(message)});
   });

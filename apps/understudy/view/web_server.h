@@ -33,7 +33,7 @@ class WebServer {
   struct Handlers {
     std::function<void(Viewer)> joined;
     std::function<void(Viewer, std::string_view text)> said;
-    std::function<void(Viewer)> picture_sent;
+    std::function<void(Viewer)> image_sent;
     std::function<void(Viewer)> left;
   };
 
@@ -50,7 +50,7 @@ class WebServer {
 
   // From any thread. To a viewer that has left, nothing is sent.
   void send_text(Viewer viewer, std::string text);
-  void send_picture(Viewer viewer, std::vector<std::byte> message);
+  void send_image(Viewer viewer, std::vector<std::byte> message);
   void send_text_to_all(std::string text);
 
  private:

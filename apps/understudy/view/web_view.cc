@@ -26,9 +26,9 @@ using Viewer = WebServer::Viewer;
 constexpr std::size_t secret_bytes = 16;
 /// Between two attempts to have nodes again.
 constexpr std::chrono::seconds a_while{1};
-/// So long nobody wants anything before a picture at rest is examined: the next request finds no work begun.
+/// So long nobody wants anything before an image at rest is examined: the next request finds no work begun.
 constexpr std::chrono::milliseconds calm{100};
-/// Of a picture at rest.
+/// Of an image at rest.
 constexpr std::size_t enough_rays = 256;
 /// What is said of a load that goes on.
 constexpr std::chrono::milliseconds progress_interval{100};
@@ -68,14 +68,14 @@ class WebView {
   }
 
  private:
-  struct Seat {
+  struct Session {
     ViewState state;
-    bool wants_picture = false;
+    bool wants_image = false;
     bool is_sent_one = false;  ///< which has not left yet
   };
 
-  /// Of a picture at rest that its viewer has already.
-  struct Examination {
+  /// Of an image at rest that its viewer has already.
+  struct ErrorCheck {
     Viewer viewer = 0;
     std::uint64_t sequence = 0;
     Clock::time_point begins;
@@ -87,19 +87,19 @@ class WebView {
 
   void join(Viewer viewer) {
     const std::lock_guard lock(mutex_);
-    Seat& seat = seats_.emplace(viewer, Seat{ViewState(scene_)}).first->second;
+    Session& session = sessions_.emplace(viewer, Session{ViewState(scene_)}).first->second;
     server_.send_text(viewer, status_);
-    if (is_ready_) server_.send_text(viewer, volume_message(volume_, seat.state));
+    if (is_ready_) server_.send_text(viewer, volume_message(volume_, session.state));
   }
 
   void hear(Viewer viewer, std::string_view text) {
     const std::lock_guard lock(mutex_);
-    const auto found = seats_.find(viewer);
-    if (found == seats_.end()) return;
+    const auto found = sessions_.find(viewer);
+    if (found == sessions_.end()) return;
     try {
       // Whatever was wanted before and has not been begun, this takes its place.
       found->second.state.apply(decode_view_message(text));
-      found->second.wants_picture = true;
+      found->second.wants_image = true;
     } catch (const MalformedView& error) {
       server_.send_text(viewer, refusal_message(found->second.state.sequence(), error.what()));
     }
@@ -108,13 +108,13 @@ class WebView {
 
   void sent(Viewer viewer) {
     const std::lock_guard lock(mutex_);
-    if (const auto found = seats_.find(viewer); found != seats_.end()) found->second.is_sent_one = false;
+    if (const auto found = sessions_.find(viewer); found != sessions_.end()) found->second.is_sent_one = false;
     something_new_.notify_all();
   }
 
   void leave(Viewer viewer) {
     const std::lock_guard lock(mutex_);
-    seats_.erase(viewer);
+    sessions_.erase(viewer);
   }
 
   // On the caller's.
@@ -137,11 +137,12 @@ class WebView {
     });
     say(Readiness::ready, "", 1);
     const std::lock_guard lock(mutex_);
-    for (const auto& [viewer, seat] : seats_) server_.send_text(viewer, volume_message(volume_, seat.state));
+    for (const auto& [viewer, session] : sessions_)
+      server_.send_text(viewer, volume_message(volume_, session.state));
   }
 
   void recover(const std::string& why) {
-    examination_.reset();
+    error_check_.reset();
     std::string reason = why;
     while (!stop_.stop_requested()) {
       // What follows is meant for applications, which can draw by themselves.
@@ -169,15 +170,13 @@ class WebView {
   }
 
   /// Whose turn it is: nobody twice before everybody once.
-  std::map<Viewer, Seat>::iterator next_seat() {
-    const auto wants = [](const auto& entry) {
-      return entry.second.wants_picture && !entry.second.is_sent_one;
-    };
-    const auto after = seats_.upper_bound(last_);
-    const auto found = std::find_if(after, seats_.end(), wants);
-    if (found != seats_.end()) return found;
-    const auto before = std::find_if(seats_.begin(), after, wants);
-    return before != after ? before : seats_.end();
+  std::map<Viewer, Session>::iterator next_session() {
+    const auto wants = [](const auto& entry) { return entry.second.wants_image && !entry.second.is_sent_one; };
+    const auto after = sessions_.upper_bound(last_);
+    const auto found = std::find_if(after, sessions_.end(), wants);
+    if (found != sessions_.end()) return found;
+    const auto before = std::find_if(sessions_.begin(), after, wants);
+    return before != after ? before : sessions_.end();
   }
 
   void serve() {
@@ -185,22 +184,22 @@ class WebView {
     Viewer viewer = 0;
     {
       std::unique_lock lock(mutex_);
-      const auto is_wanted = [&] { return next_seat() != seats_.end(); };
-      if (examination_ && !something_new_.wait_until(lock, stop_, examination_->begins, is_wanted)) {
+      const auto is_wanted = [&] { return next_session() != sessions_.end(); };
+      if (error_check_ && !something_new_.wait_until(lock, stop_, error_check_->begins, is_wanted)) {
         lock.unlock();
         try {
           return examine();
         } catch (const compositor::RequestRefused&) {
-          return examination_.reset();  // the picture is there; what it lacks is its figures
+          return error_check_.reset();  // the image is there; what it lacks is its figures
         }
       }
       if (!something_new_.wait(lock, stop_, is_wanted)) return;
-      examination_.reset();
-      const auto seat = next_seat();
-      viewer = last_ = seat->first;
-      seat->second.wants_picture = false;
-      seat->second.is_sent_one = true;
-      state = seat->second.state;
+      error_check_.reset();
+      const auto session = next_session();
+      viewer = last_ = session->first;
+      session->second.wants_image = false;
+      session->second.is_sent_one = true;
+      state = session->second.state;
     }
     try {
       draw_for(viewer, *state);
@@ -210,9 +209,9 @@ class WebView {
       refuse(viewer, *state, error.what());
     } catch (const compositor::ServiceLost&) {
       const std::lock_guard lock(mutex_);
-      if (const auto seat = seats_.find(viewer); seat != seats_.end()) {
-        seat->second.is_sent_one = false;
-        seat->second.wants_picture = true;
+      if (const auto session = sessions_.find(viewer); session != sessions_.end()) {
+        session->second.is_sent_one = false;
+        session->second.wants_image = true;
       }
       throw;
     }
@@ -221,34 +220,34 @@ class WebView {
   void draw_for(Viewer viewer, const ViewState& state) {
     const Clock::time_point start = Clock::now();
     const ShownVolume::Drawn drawn = volume_.draw(state);
-    server_.send_picture(viewer, picture_message(state, drawn));
+    server_.send_image(viewer, image_message(state, drawn));
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     {
       const std::lock_guard lock(mutex_);
-      const auto seat = seats_.find(viewer);
-      if (seat == seats_.end()) return;
-      seat->second.state.took({drawn.picture.width, drawn.picture.height}, ms);
+      const auto session = sessions_.find(viewer);
+      if (session == sessions_.end()) return;
+      session->second.state.took({drawn.image.width, drawn.image.height}, ms);
       // Nobody waits for figures.
-      if (!state.still() || next_seat() != seats_.end()) return;
+      if (!state.still() || next_session() != sessions_.end()) return;
     }
-    examination_ = {viewer, state.sequence(), Clock::now() + calm, {}, {}};
+    error_check_ = {viewer, state.sequence(), Clock::now() + calm, {}, {}};
   }
 
-  /// What the ranks did for the last picture, then a few of its rays each time, while nobody wants another.
+  /// What the ranks did for the last image, then a few of its rays each time, while nobody wants another.
   void examine() {
-    if (examination_->ranks.empty()) {
-      examination_->ranks = volume_.ranks();
-      server_.send_text(examination_->viewer,
-                        figures_message(examination_->sequence, scene_, {}, examination_->ranks));
+    if (error_check_->ranks.empty()) {
+      error_check_->ranks = volume_.ranks();
+      server_.send_text(error_check_->viewer,
+                        figures_message(error_check_->sequence, scene_, {}, error_check_->ranks));
       return;
     }
     const auto more = volume_.exactness();
-    if (!more) return examination_.reset();
-    ShownVolume::Exactness& seen = examination_->exactness;
+    if (!more) return error_check_.reset();
+    ShownVolume::Exactness& seen = error_check_->exactness;
     seen = {std::max(seen.error, more->error), seen.rays + more->rays};
-    server_.send_text(examination_->viewer,
-                      figures_message(examination_->sequence, scene_, seen, examination_->ranks));
-    if (seen.rays >= enough_rays || more->rays == 0) examination_.reset();
+    server_.send_text(error_check_->viewer,
+                      figures_message(error_check_->sequence, scene_, seen, error_check_->ranks));
+    if (seen.rays >= enough_rays || more->rays == 0) error_check_.reset();
   }
 
   void refuse(Viewer viewer, const ViewState& state, const char* reason) {
@@ -259,10 +258,10 @@ class WebView {
   const FileScene& scene_;
   const std::stop_token stop_;
   ShownVolume volume_;
-  std::optional<Examination> examination_;
+  std::optional<ErrorCheck> error_check_;
   std::mutex mutex_;
   std::condition_variable_any something_new_;
-  std::map<Viewer, Seat> seats_;
+  std::map<Viewer, Session> sessions_;
   Viewer last_ = 0;
   bool is_ready_ = false;
   std::string status_ = status_message(Readiness::loading, "loading", 0);

@@ -14,7 +14,7 @@ struct WebAddress {
   int port = 0;  ///< 0: any
 };
 
-/// Prints the link, loads the volume and draws for all viewers, one picture at a time, until `stop` is
+/// Prints the link, loads the volume and draws for all viewers, one image at a time, until `stop` is
 /// requested. A service that is lost is made again, for as long as it takes. Throws what keeps the volume from
 /// being loaded the first time, and std::runtime_error where the address cannot be listened on.
 void show_on_web(const FileScene& scene, const ServiceMaker& make, const std::stop_token& stop,

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 #include "apps/understudy/load_progress.h"
-#include "apps/understudy/view/picture_encoding.h"
+#include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/shown_volume.h"
 #include "apps/understudy/view/view_state.h"
 
@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// After the last move, the picture at rest is drawn.
+/// After the last move, the image at rest is drawn.
 constexpr std::chrono::milliseconds rest{150};
 constexpr int wait_ms = 50;
 constexpr double wheel_step = 1.15;
@@ -37,7 +37,7 @@ constexpr double key_step = 0.1;
 /// SDL for as long as there is a window.
 struct Video {
   Video() {
-    // OpenGL, if there is any, is not needed to show a picture.
+    // OpenGL, if there is any, is not needed to show an image.
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     SDL_SetHint(SDL_HINT_RENDER_DRIVER, "software");
     // Signals that ask for the end are not SDL's.
@@ -59,7 +59,7 @@ class Window {
         volume_(scene, make),
         state_(scene),
         window_(SDL_CreateWindow(name_.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
-                                 scene.picture.width, scene.picture.height, SDL_WINDOW_RESIZABLE),
+                                 scene.image.width, scene.image.height, SDL_WINDOW_RESIZABLE),
                 SDL_DestroyWindow) {
     if (!window_) fail("there can be no window");
   }
@@ -120,7 +120,7 @@ class Window {
     const ShownVolume::Drawn drawn = draw();
     hear(0);
     if (!message.still || script_.save.empty()) return;
-    const std::vector<std::byte> png = png_of(drawn.picture);
+    const std::vector<std::byte> png = png_of(drawn.image);
     std::ofstream file(script_.save, std::ios::binary);
     file.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
     file.close();
@@ -146,25 +146,25 @@ class Window {
   ShownVolume::Drawn draw() {
     const Clock::time_point start = Clock::now();
     ShownVolume::Drawn drawn = volume_.draw(state_);
-    show(drawn.picture);
+    show(drawn.image);
     drawn_ms_ = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    state_.took({drawn.picture.width, drawn.picture.height}, drawn_ms_);
+    state_.took({drawn.image.width, drawn.image.height}, drawn_ms_);
     last_ms_ = drawn_ms_;
-    say(fmt::format("{:.0f} ms, {} x {}", drawn_ms_, drawn.picture.width, drawn.picture.height));
+    say(fmt::format("{:.0f} ms, {} x {}", drawn_ms_, drawn.image.width, drawn.image.height));
     return drawn;
   }
 
-  void show(const RgbPicture& picture) {
+  void show(const RgbImage& image) {
     // A copy that SDL may write to is not needed: it only reads.
-    auto* pixels = const_cast<std::uint8_t*>(picture.rgb.data());
+    auto* pixels = const_cast<std::uint8_t*>(image.rgb.data());
     const std::unique_ptr<SDL_Surface, void (*)(SDL_Surface*)> from(
-        SDL_CreateRGBSurfaceWithFormatFrom(pixels, picture.width, picture.height, 24, 3 * picture.width,
+        SDL_CreateRGBSurfaceWithFormatFrom(pixels, image.width, image.height, 24, 3 * image.width,
                                            SDL_PIXELFORMAT_RGB24),
         SDL_FreeSurface);
     SDL_Surface* const to = SDL_GetWindowSurface(window_.get());
-    if (!from || to == nullptr) fail("the window takes no picture");
+    if (!from || to == nullptr) fail("the window takes no image");
     if (SDL_BlitScaled(from.get(), nullptr, to, nullptr) != 0 || SDL_UpdateWindowSurface(window_.get()) != 0)
-      fail("the window takes no picture");
+      fail("the window takes no image");
   }
 
   void say(const std::string& what) {
@@ -195,8 +195,8 @@ class Window {
           return;
         break;
       case SDL_MOUSEMOTION: {
-        const PicturePoint to = point_at(event.motion.x, event.motion.y);
-        const PicturePoint from =
+        const ImagePoint to = point_at(event.motion.x, event.motion.y);
+        const ImagePoint from =
             point_at(event.motion.x - event.motion.xrel, event.motion.y - event.motion.yrel);
         const bool shifts = (SDL_GetModState() & KMOD_SHIFT) != 0;
         if ((event.motion.state & SDL_BUTTON_LMASK) != 0 && !shifts)
@@ -220,30 +220,30 @@ class Window {
         return;
     }
     if (!message.still) moved_ = Clock::now();
-    // Of the picture before, as it was shown.
+    // Of the image before, as it was shown.
     if (last_ms_) message.took_ms = std::exchange(last_ms_, std::nullopt);
     state_.apply(message);
     due_ = true;
   }
 
   bool take_key(SDL_Keycode key, ViewMessage& message) {
-    const Shading& shading = state_.picture().shading;
+    const Shading& shading = state_.image().shading;
     switch (key) {
       case SDLK_q:
       case SDLK_ESCAPE:
         over_ = true;
         return false;
       case SDLK_LEFT:
-        message.rotate = {PicturePoint{0, 0}, PicturePoint{-key_step, 0}};
+        message.rotate = {ImagePoint{0, 0}, ImagePoint{-key_step, 0}};
         return true;
       case SDLK_RIGHT:
-        message.rotate = {PicturePoint{0, 0}, PicturePoint{key_step, 0}};
+        message.rotate = {ImagePoint{0, 0}, ImagePoint{key_step, 0}};
         return true;
       case SDLK_UP:
-        message.rotate = {PicturePoint{0, 0}, PicturePoint{0, key_step}};
+        message.rotate = {ImagePoint{0, 0}, ImagePoint{0, key_step}};
         return true;
       case SDLK_DOWN:
-        message.rotate = {PicturePoint{0, 0}, PicturePoint{0, -key_step}};
+        message.rotate = {ImagePoint{0, 0}, ImagePoint{0, -key_step}};
         return true;
       case SDLK_PLUS:
       case SDLK_EQUALS:
@@ -253,7 +253,7 @@ class Window {
         message.zoom = {1 / wheel_step, {}};
         return true;
       case SDLK_HOME:
-        message.camera = ViewCamera{volume_.scene().picture.camera, {}};
+        message.camera = ViewCamera{volume_.scene().image.camera, {}};
         return true;
       case SDLK_l:
         message.light = !shading.light.has_value();
@@ -279,10 +279,10 @@ class Window {
     }
   }
 
-  PicturePoint point_at(int x, int y) const {
-    const auto& picture = state_.picture();
-    const double half = std::min(picture.width, picture.height) / 2.0;
-    return {(x - picture.width / 2.0) / half, (picture.height / 2.0 - y) / half};
+  ImagePoint point_at(int x, int y) const {
+    const auto& image = state_.image();
+    const double half = std::min(image.width, image.height) / 2.0;
+    return {(x - image.width / 2.0) / half, (image.height / 2.0 - y) / half};
   }
 
   const std::string name_;
@@ -293,10 +293,10 @@ class Window {
   ViewState state_;
   std::unique_ptr<SDL_Window, void (*)(SDL_Window*)> window_;
   bool over_ = false;
-  bool due_ = true;  // a picture
+  bool due_ = true;  // an image
   Clock::time_point moved_{};
   double drawn_ms_ = 0;
-  std::optional<double> last_ms_;  // of the last picture, until it is told
+  std::optional<double> last_ms_;  // of the last image, until it is told
 };
 
 }  // namespace

@@ -100,7 +100,7 @@ SliceStack part_of(const SliceStack& stack, const std::array<Interval, 3>& along
   return part;
 }
 
-/// The eye in object space; far away against the direction of view in orthographic pictures.
+/// The eye in object space; far away against the direction of view in orthographic images.
 Vec3 eye_of(const Matrices& matrices) {
   const Mat4& m = matrices.modelview;
   const double squared_scale = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];

@@ -6,7 +6,7 @@
 //   time   as table, with a new time step in the texture every frame
 //   bricks as table, with many small textures in visibility order
 //   lit    as table, with directional light on the field's surfaces
-//   preint pre-integrated slabs: two samples and a 2-D table a fragment
+//   preint pre-integrated segments: two samples and a 2-D table a fragment
 //   stacks three stacks of 2-D textures instead of one 3-D texture
 #pragma once
 

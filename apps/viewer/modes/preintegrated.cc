@@ -12,12 +12,12 @@ namespace viewer {
 namespace {
 
 constexpr const char* vertex_source = R"(#version 120
-uniform vec3 slab;
+uniform vec3 segment;
 varying vec3 front;
 varying vec3 back;
 void main() {
   front = gl_MultiTexCoord0.xyz;
-  back = front + slab;
+  back = front + segment;
   gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
 }
 )";

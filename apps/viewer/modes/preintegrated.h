@@ -1,4 +1,4 @@
-// Pre-integrated slabs (Engel, Kraus and Ertl 2001): each fragment looks at the slice's front and back
+// Pre-integrated segments (Engel, Kraus and Ertl 2001): each fragment looks at the slice's front and back
 // coordinate, and in a 2-D table at what lies between the two values.
 #pragma once
 

@@ -19,7 +19,7 @@ constexpr float finest_termination = 5e-6F;
 constexpr float coarsest_termination = 0.02F;
 /// Rays that are looked at are a few of many: what calibration says must leave room for the others.
 constexpr double room_for_others = 0.6;
-/// The same, once the worst of a picture have been looked at.
+/// The same, once the worst of an image have been looked at.
 constexpr double room_when_proven = 0.7;
 /// Of the time that passes, what looking may take.
 constexpr double share_of_looking = 0.02;
@@ -29,7 +29,7 @@ constexpr std::size_t proving_spread = 128;
 constexpr double proving_ms = 150;
 constexpr int patient_frames = 4;            ///< before time moves the setting again
 constexpr double finest_samples = 1.0 / 32;  ///< in texels; what lies between is linear
-/// Pictures of each kind to see whether half floats save time, and so much of it that they are worth their
+/// Images of each kind to see whether half floats save time, and so much of it that they are worth their
 /// error.
 constexpr int turns_to_compare = 3;
 constexpr double worthwhile = 0.95;
@@ -68,7 +68,7 @@ std::optional<volume::RenderRequest> Budget::request(
     }
     looked_at_ = Clock::now();
   }
-  if (!keep_margin(volume)) {
+  if (!keep_ghost_layer(volume)) {
     put_text(counters.note, "a budget cannot be kept: rays run along the slices");
     return std::nullopt;
   }
@@ -84,10 +84,10 @@ std::optional<volume::RenderRequest> Budget::request(
 }
 
 /// Segments between slices grow longer as the camera turns, and nodes know only so much beside their own.
-bool Budget::keep_margin(const volume::VolumeDescription& volume) {
+bool Budget::keep_ghost_layer(const volume::VolumeDescription& volume) {
   const auto& front = calibration_.front;
   const auto fits = [&](std::size_t i) {
-    return volume::margin_needed(volume, placed_as(meaning_, front[i].setting)) <= volume.margin;
+    return volume::ghost_layer_needed(volume, placed_as(meaning_, front[i].setting)) <= volume.ghost_layer;
   };
   if (fits(chosen_)) return true;
   const auto finer = chosen_ + 1;
@@ -119,7 +119,7 @@ void Budget::choose() {
   use(chosen_);
 }
 
-/// As calibration found it: no picture of it has been looked at.
+/// As calibration found it: no image of it has been looked at.
 void Budget::use(std::size_t of_front) {
   chosen_ = of_front;
   as_halves_ = false;
@@ -128,7 +128,7 @@ void Budget::use(std::size_t of_front) {
   frames_as_chosen_ = 0;
 }
 
-/// Looks where the picture changes most with a finer setting: there it is wrong, if anywhere.
+/// Looks where the image changes most with a finer setting: there it is wrong, if anywhere.
 void Budget::prove(compositor::RenderService& service) {
   const auto& front = calibration_.front;
   do {
@@ -204,18 +204,18 @@ bool Budget::go_finer() {
   return true;
 }
 
-void Budget::look_at(compositor::RenderService& service, const volume::ImageView& picture,
+void Budget::look_at(compositor::RenderService& service, const volume::ImageView& image,
                      std::optional<double> ms, BudgetCounters& counters) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double, std::milli> passed = now - looked_at_.value_or(now);
   looked_at_ = now;
-  // A picture that was there already leaves the time in which it would have been cast.
+  // An image that was there already leaves the time in which it would have been cast.
   credit_ms_ = std::min(credit_ms_ + share_of_looking * passed.count() + (ms ? 0 : ms_), most_credit_ms);
   if (ms) ms_ = frames_as_chosen_++ == 0 ? *ms : 0.8 * ms_ + 0.2 * *ms;
   const auto count = std::size_t(std::max(0.0, credit_ms_) / ms_a_ray_);
-  if (count > 0 && !picture.rect.empty()) {
+  if (count > 0 && !image.rect.empty()) {
     // Half where it was wrong before, half anywhere.
-    std::vector<Pixel> pixels = spread_over(picture.rect, spread_, (count + 1) / 2);
+    std::vector<Pixel> pixels = spread_over(image.rect, spread_, (count + 1) / 2);
     spread_ += pixels.size();
     for (std::size_t i = 0; i < count / 2 && i < suspects_.size(); ++i) pixels.push_back(suspects_[i]);
     if (!suspects_.empty())
@@ -226,11 +226,11 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
     const std::chrono::duration<double, std::milli> took = Clock::now() - now;
     credit_ms_ -= took.count();
     if (!integrals.empty()) ms_a_ray_ = 0.5 * (ms_a_ray_ + took.count() / double(integrals.size()));
-    worst_ = std::max(worst_, greatest_error(picture, pixels, integrals));
+    worst_ = std::max(worst_, greatest_error(image, pixels, integrals));
     counters.rays += integrals.size();
   }
   if (asked_.error > 0 && worst_ > asked_.error) {
-    ++counters.pictures_over;
+    ++counters.images_over;
     go_finer();
   } else if (!(asked_.error > 0) && ms) {
     keep_time();
@@ -238,7 +238,7 @@ void Budget::look_at(compositor::RenderService& service, const volume::ImageView
   tell(counters);
 }
 
-/// Moves along the front by one where the time that is asked for is not the time that pictures take.
+/// Moves along the front by one where the time that is asked for is not the time that images take.
 void Budget::keep_time() {
   const auto& front = calibration_.front;
   if (frames_as_chosen_ < patient_frames) return;
@@ -257,7 +257,7 @@ void Budget::tell(BudgetCounters& counters) const {
   // A finer one would have been taken.
   if (asked_.error > 0 && worst_ > asked_.error)
     note = fmt::format(
-        "the error that is asked for cannot be kept: {:.2g} is the best there is here, at {:.3g} ms a picture",
+        "the error that is asked for cannot be kept: {:.2g} is the best there is here, at {:.3g} ms an image",
         worst_, ms_);
   if (!(asked_.error > 0) && ms_ > asked_.ms && chosen_ == 0)
     note = fmt::format("the time that is asked for cannot be kept: {:.3g} ms is the least there is here", ms_);

@@ -1,7 +1,7 @@
 // One volume's error or time: asked for, chosen for, watched, and reported.
 //
 //   a new volume, table or service ──► calibrate ──► the cheapest setting that keeps the error, proven on the
-//   picture itself ──► every frame a few rays are integrated; one that is wrong by more makes the next finer
+//   image itself ──► every frame a few rays are integrated; one that is wrong by more makes the next finer
 #pragma once
 
 #include <chrono>
@@ -19,14 +19,14 @@ namespace understudy::spu {
 
 struct BudgetAsked {
   double error = 0;  ///< greatest difference of a channel from the integral, in (0, 1]; 0: none named
-  double ms = 0;     ///< to render and composite a picture; 0: none named. An error that is named goes first.
+  double ms = 0;     ///< to render and composite an image; 0: none named. An error that is named goes first.
   bool may_halve = false;  ///< nodes send each other floats, which may become half floats
 
   bool any() const { return error > 0 || ms > 0; }
 };
 
 /// Texels around its own that each node holds for the sake of segments of any setting.
-constexpr int budget_margin = 5;
+constexpr int budget_ghost_layer = 5;
 
 class Budget {
  public:
@@ -40,9 +40,9 @@ class Budget {
                                                const volume::VolumeDescription& volume,
                                                std::uint64_t service_generation, BudgetCounters& counters);
 
-  /// Looks at the picture of what request() gave last, which took `ms` if it was cast and not there already.
+  /// Looks at the image of what request() gave last, which took `ms` if it was cast and not there already.
   /// Takes a fiftieth of the time that passes, and the time of casting where nothing was cast.
-  void look_at(compositor::RenderService& service, const volume::ImageView& picture, std::optional<double> ms,
+  void look_at(compositor::RenderService& service, const volume::ImageView& image, std::optional<double> ms,
                BudgetCounters& counters);
 
  private:
@@ -64,7 +64,7 @@ class Budget {
   Setting setting() const;
   Measured next_finer() const;
   bool go_finer();
-  bool keep_margin(const volume::VolumeDescription& volume);
+  bool keep_ghost_layer(const volume::VolumeDescription& volume);
   void keep_time();
   void tell(BudgetCounters& counters) const;
 
@@ -82,7 +82,7 @@ class Budget {
   std::optional<Clock::time_point> looked_at_;
   double credit_ms_ = 0;  ///< that looking may take
   double ms_a_ray_ = 1;   ///< that it did take
-  double ms_ = 0;         ///< of a picture, smoothed
+  double ms_ = 0;         ///< of an image, smoothed
   int frames_as_chosen_ = 0;
 };
 

@@ -21,12 +21,12 @@ using volume::PixelIntegral;
 using Clock = std::chrono::steady_clock;
 
 /// In texels along the ray through the middle, in the order of trying. Finer than one, samples are tried until
-/// two pictures in a row are alike enough; tables of segments take time to make.
+/// two images in a row are alike enough; tables of segments take time to make.
 constexpr std::array coarse_samples{4.0, 2.0, 1.0};
 constexpr std::array fine_samples{0.5, 0.25, 0.125, 0.0625, 0.03125};
 constexpr std::array segments_apart{1.0, 0.5, 2.0, 0.25, 0.125};
-/// The small picture has about so many pixels where there is something to see.
-constexpr double small_picture = 80.0 * 80.0;
+/// The small image has about so many pixels where there is something to see.
+constexpr double small_image = 80.0 * 80.0;
 /// What may only save time is not tried after this.
 constexpr double patience_ms = 400;
 /// Where an error is named, finer samples are tried so long: a slow or busy machine is to keep it, too.
@@ -42,12 +42,12 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-std::array<float, 4> pixel_of(const ImageView& picture, const Pixel& pixel) {
-  const volume::Rect& rect = picture.rect;
+std::array<float, 4> pixel_of(const ImageView& image, const Pixel& pixel) {
+  const volume::Rect& rect = image.rect;
   const int x = pixel.x - rect.x, y = pixel.y - rect.y;
   if (x < 0 || y < 0 || x >= rect.width || y >= rect.height) return {};
   const std::size_t at = 4 * (std::size_t(y) * std::size_t(rect.width) + std::size_t(x));
-  return {picture.rgba[at], picture.rgba[at + 1], picture.rgba[at + 2], picture.rgba[at + 3]};
+  return {image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]};
 }
 
 /// The same camera on fewer pixels. Opaque geometry is not in it: rays that see more cost more, and err more.
@@ -66,7 +66,7 @@ volume::RenderRequest on_fewer_pixels(volume::RenderRequest request, int times) 
 struct Tried {
   Setting setting;
   double ms = 0;
-  Image picture;
+  Image image;
 };
 
 double greatest_difference(const ImageView& a, const ImageView& b) {
@@ -134,11 +134,11 @@ std::vector<PixelIntegral> integrals_of(compositor::RenderService& service,
   return integrals;
 }
 
-double greatest_error(const ImageView& picture, std::span<const Pixel> pixels,
+double greatest_error(const ImageView& image, std::span<const Pixel> pixels,
                       std::span<const PixelIntegral> integrals) {
   double greatest = 0;
   for (std::size_t i = 0; i < integrals.size(); ++i) {
-    const auto shown = pixel_of(picture, pixels[i]);
+    const auto shown = pixel_of(image, pixels[i]);
     for (std::size_t k = 0; k < 4; ++k)
       greatest = std::max(greatest, std::abs(double(shown[k]) - integrals[i][k]));
   }
@@ -149,14 +149,14 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
                       const volume::VolumeDescription& volume, float termination, double enough) {
   const auto start = Clock::now();
   const volume::Rect seen = footprint(meaning.request, meaning.request.region);
-  const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_picture))));
+  const int times = std::max(1, int(std::lround(std::sqrt(double(seen.pixels()) / small_image))));
   const Meaning small{on_fewer_pixels(meaning.request, times), meaning.texels_a_step};
   std::vector<Tried> tried;
   const auto try_out = [&](volume::Method method, double texels, double patience) {
     if (!tried.empty() && milliseconds_since(start) > patience) return;
     const Setting setting{method, texels / meaning.texels_a_step, termination};
     volume::RenderRequest request = sampled_as(small, setting);
-    if (volume::margin_needed(volume, request) > volume.margin) return;
+    if (volume::ghost_layer_needed(volume, request) > volume.ghost_layer) return;
     service.render(request);  // prepares what depends on the table alone
     request.termination = std::nextafter(request.termination, 1.0F);  // the same request is not cast again
     const auto begin = Clock::now();
@@ -168,16 +168,15 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   for (const double texels : fine_samples) {
     try_out(volume::Method::post_classified, texels, patience);
     const std::size_t last = tried.size() - 1;
-    if (last > 0 && greatest_difference(tried[last - 1].picture.view(), tried[last].picture.view()) < enough)
-      break;
+    if (last > 0 && greatest_difference(tried[last - 1].image.view(), tried[last].image.view()) < enough) break;
   }
   for (const double texels : segments_apart) try_out(volume::Method::pre_integrated, texels, patience_ms);
 
   const ImageView finest =
-      std::ranges::min_element(tried, {}, [](const Tried& one) { return one.setting.step; })->picture.view();
+      std::ranges::min_element(tried, {}, [](const Tried& one) { return one.setting.step; })->image.view();
   std::vector<Pixel> pixels;
   for (const Tried& one : tried) {
-    const std::vector<Pixel> worst = most_different(one.picture.view(), finest, worst_pixels);
+    const std::vector<Pixel> worst = most_different(one.image.view(), finest, worst_pixels);
     pixels.insert(pixels.end(), worst.begin(), worst.end());
   }
   const std::vector<Pixel> spread =
@@ -191,7 +190,7 @@ Calibration calibrate(compositor::RenderService& service, const Meaning& meaning
   std::vector<Measured> measured;
   measured.reserve(tried.size());
   for (const Tried& one : tried)
-    measured.push_back({one.setting, greatest_error(one.picture.view(), pixels, integrals), one.ms});
+    measured.push_back({one.setting, greatest_error(one.image.view(), pixels, integrals), one.ms});
   return {front_of(std::move(measured))};
 }
 

@@ -1,4 +1,4 @@
-// What settings cost and how wrong they are, measured on a small picture of the scene that is to be shown.
+// What settings cost and how wrong they are, measured on a small image of the scene that is to be shown.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ namespace understudy::spu {
 struct Measured {
   Setting setting;
   double error = 0;  ///< greatest difference of a channel from the integral, of the rays that were looked at
-  double ms = 0;     ///< for a picture of the request's own size
+  double ms = 0;     ///< for an image of the request's own size
 };
 
 struct Calibration {
   std::vector<Measured> front;  ///< each the cheapest of its error: cheapest first, most exact last
 };
 
-/// Settings that the volume was sent with enough margin for; `termination` belongs to all of them. Finer ones
-/// are not tried once pictures differ by less than `enough`; with 0 there is never enough, but time. Takes well
-/// under a second; on a slow or busy machine up to five, where they are what `enough` takes. Throws as the
+/// Settings that the volume was sent with enough ghost layer for; `termination` belongs to all of them. Finer
+/// ones are not tried once images differ by less than `enough`; with 0 there is never enough, but time. Takes
+/// well under a second; on a slow or busy machine up to five, where they are what `enough` takes. Throws as the
 /// service does.
 Calibration calibrate(compositor::RenderService& service, const Meaning& meaning,
                       const volume::VolumeDescription& volume, float termination, double enough);
 
-/// The pixels of two pictures of one rectangle that differ most, worst first; at most `count`.
+/// The pixels of two images of one rectangle that differ most, worst first; at most `count`.
 std::vector<volume::Pixel> most_different(const volume::ImageView& a, const volume::ImageView& b,
                                           std::size_t count);
 
@@ -42,9 +42,9 @@ std::vector<volume::PixelIntegral> integrals_of(compositor::RenderService& servi
                                                 std::span<const volume::Pixel> pixels, std::size_t at_least,
                                                 double usual_ms);
 
-/// The greatest difference of a channel between a picture and the first integrals of `pixels`. Pixels beside
-/// the picture show nothing.
-double greatest_error(const volume::ImageView& picture, std::span<const volume::Pixel> pixels,
+/// The greatest difference of a channel between an image and the first integrals of `pixels`. Pixels beside
+/// the image show nothing.
+double greatest_error(const volume::ImageView& image, std::span<const volume::Pixel> pixels,
                       std::span<const volume::PixelIntegral> integrals);
 
 }  // namespace understudy::spu

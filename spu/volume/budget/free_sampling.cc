@@ -22,7 +22,7 @@ std::optional<std::string> obstacle(const RenderRequest& request) {
   if (std::holds_alternative<volume::LinearMap>(request.classification))
     return "the texels are colours already, whose opacities are of the viewer's own samples";
   if (!std::holds_alternative<TransferFunction>(request.classification))
-    return "a table of pairs is of the viewer's own slabs";
+    return "a pre-integration table is of the viewer's own segments";
   if (request.op != volume::Operator::over) return "samples are not composed by over";
   if (request.filter != volume::Filter::linear) return "the filter is nearest, which has no samples in between";
   if (request.fog) return "samples fade in fog";
@@ -38,7 +38,7 @@ TransferFunction believable(TransferFunction function) {
   return function;
 }
 
-/// Direction of the ray through the middle of the picture, of any length; towards the far plane.
+/// Direction of the ray through the middle of the image, of any length; towards the far plane.
 std::optional<Vec3> middle_ray(const RenderRequest& request) {
   const auto clip_to_texture = volume::inverse(request.texture_to_clip);
   if (!clip_to_texture) return std::nullopt;
@@ -97,7 +97,7 @@ std::variant<Meaning, std::string> meaning_of(const RenderRequest& request, cons
   RenderRequest& meant = meaning.request;
   meant.classification = believable(std::get<TransferFunction>(request.classification));
   const auto way = middle_ray(request);
-  if (!way) return "nothing of it is in the picture";
+  if (!way) return "nothing of it is in the image";
   volume::RaySteps steps;
   if (request.steps) {
     steps.metric = request.steps->metric;

@@ -1,5 +1,5 @@
 // Samples that are not bound to the application's own: what a request means apart from where its samples lie,
-// and the same picture from other samples.
+// and the same image from other samples.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct Setting {
   volume::Method method = volume::Method::post_classified;
   double step = 1;            ///< from one sample to the next, in the application's own
   float termination = 5e-6F;  ///< as of RenderRequest
-  bool as_halves = false;     ///< nodes' parts of the picture travel as half floats
+  bool as_halves = false;     ///< nodes' parts of the image travel as half floats
   bool operator==(const Setting&) const = default;
 };
 
@@ -27,7 +27,7 @@ std::string name_of(const Setting& setting);
 /// a ray crosses them; a ray caster's steps are its own.
 struct Meaning {
   volume::RenderRequest request;
-  double texels_a_step = 1;  ///< along the ray through the middle of the picture
+  double texels_a_step = 1;  ///< along the ray through the middle of the image
 };
 
 /// Or why there is none, in words that end in the report. `size` is the texture's.

@@ -6,13 +6,13 @@
 #include <optional>
 #include <random>
 
-#include "spu/volume/classification/pairs.h"
+#include "spu/volume/classification/pre_integration.h"
 #include "spu/volume/saved_state.h"
 
 namespace understudy::spu {
 namespace {
 
-/// Both the probe's picture and its texture are squares of this edge: one texel a pixel.
+/// Both the probe's image and its texture are squares of this edge: one texel a pixel.
 constexpr int edge = 64;
 constexpr int pixels = edge * edge;
 static_assert(probed_entries <= pixels);
@@ -21,7 +21,7 @@ constexpr float same_colour = 2e-4F;
 /// Fog is interpolated between values of its number.
 constexpr float same_fogged_colour = 4e-3F;
 
-using Picture = std::vector<volume::Rgba>;
+using RenderedImage = std::vector<volume::Rgba>;
 
 /// The framebuffer, textures and vertex array of one probing; all gone afterwards.
 class Bench {
@@ -84,9 +84,9 @@ class Bench {
   }
 
   /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`. `across` and `up`: by how
-  /// much inputs grow over the picture's edges; empty where they are constant.
-  Picture draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
-               const InputValues& across = {}, const InputValues& up = {}) {
+  /// much inputs grow over the image's edges; empty where they are constant.
+  RenderedImage draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
+                     const InputValues& across = {}, const InputValues& up = {}) {
     gl_.ClearBufferfv(GL_COLOR, 0, background.data());
     if (with_alpha_test && alpha_test_) gl_.Enable(GL_ALPHA_TEST);
     gl_.UseProgram(program_);
@@ -96,9 +96,9 @@ class Bench {
     give("understudy_up", up.empty() ? level : up);
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
     if (alpha_test_) gl_.Disable(GL_ALPHA_TEST);
-    Picture picture(pixels);
-    gl_.ReadPixels(0, 0, edge, edge, GL_RGBA, GL_FLOAT, picture.data());
-    return picture;
+    RenderedImage image(pixels);
+    gl_.ReadPixels(0, 0, edge, edge, GL_RGBA, GL_FLOAT, image.data());
+    return image;
   }
 
   bool alpha_test_enabled() const { return alpha_test_; }
@@ -136,8 +136,8 @@ float largest_difference(const volume::Rgba& a, const volume::Rgba& b) {
   return largest;
 }
 
-bool finite(const Picture& picture) {
-  return std::all_of(picture.begin(), picture.end(), [](const volume::Rgba& p) {
+bool finite(const RenderedImage& image) {
+  return std::all_of(image.begin(), image.end(), [](const volume::Rgba& p) {
     return std::all_of(p.begin(), p.end(), [](float x) { return std::isfinite(x); });
   });
 }
@@ -146,7 +146,7 @@ bool finite(const Picture& picture) {
 /// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
 /// for about its value.
 bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescription& texture,
-                     const std::array<float, 2>& range, const InputValues& inputs, const Picture& table,
+                     const std::array<float, 2>& range, const InputValues& inputs, const RenderedImage& table,
                      bool stack) {
   constexpr int weight_error = 32;  // entries: hardware may weight texels by 8 bits
   const std::array<double, 3> slope{1.0 / 6, 2.0 / 6, stack ? 0 : 3.0 / 6};
@@ -158,14 +158,14 @@ bool sees_neighbours(Bench& bench, const GlContext& context, const TextureDescri
   }
   bench.show(probe_format(texture.base), upload_format(texture.base), {2, 2, 2}, texels, GL_LINEAR,
              texture.swizzle, context.version >= 330);
-  const Picture picture = bench.draw(inputs, true);
+  const RenderedImage image = bench.draw(inputs, true);
   // Between the texels' centres, and away from them: the slope has a bend there.
   for (int y = edge / 4 + 2; y < 3 * edge / 4 - 2; ++y) {
     for (int x = edge / 4 + 2; x < 3 * edge / 4 - 2; ++x) {
       const double place =
           slope[0] * ((x + 0.5) / edge * 2 - 0.5) + slope[1] * ((y + 0.5) / edge * 2 - 0.5) + slope[2] * 0.5;
       const int entry = int(std::lround(place * (probed_entries - 1)));
-      const volume::Rgba& colour = picture[std::size_t(y) * edge + std::size_t(x)];
+      const volume::Rgba& colour = image[std::size_t(y) * edge + std::size_t(x)];
       for (std::size_t c = 0; c < 4; ++c) {
         float low = std::numeric_limits<float>::max();
         float high = std::numeric_limits<float>::lowest();
@@ -226,7 +226,7 @@ InputRange widened(InputRange range, const std::vector<Number>& numbers) {
   return range;
 }
 
-float largest_difference(const Picture& a, const Picture& b) {
+float largest_difference(const RenderedImage& a, const RenderedImage& b) {
   float largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const float difference = largest_difference(a[i], b[i]);
@@ -248,17 +248,17 @@ class TableProbe {
   }
 
   /// All entries of the table, with the inputs given.
-  Picture table(const InputValues& inputs) {
+  RenderedImage table(const InputValues& inputs) {
     show(edge, ramp_);
     return bench_.draw(without_coordinate(fragment_, inputs), true);
   }
   /// One entry, at coordinates all over the volume.
-  Picture everywhere(std::size_t entry, const InputValues& inputs) {
+  RenderedImage everywhere(std::size_t entry, const InputValues& inputs) {
     show(1, {ramp_[entry]});
     return bench_.draw(without_coordinate(fragment_, inputs), true);
   }
   /// One entry, while one number runs from `low` in the first pixel to `high` in the last.
-  Picture along(std::size_t entry, const Number& number, float low, float high) {
+  RenderedImage along(std::size_t entry, const Number& number, float low, float high) {
     show(1, {ramp_[entry]});
     const float step = (high - low) / float(pixels - 1);
     InputValues values = fragment_.first;
@@ -292,7 +292,7 @@ class TableProbe {
 /// The fog in the one number that colours depend on; null when there is no such thing. Leaves in `table` the
 /// colours where the fog is thinnest.
 std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, const InputRange& needed,
-                                     const InputRange& range, bool premultiplied, Picture& table) {
+                                     const InputRange& range, bool premultiplied, RenderedImage& table) {
   const float low = range.low[number.input][number.component];
   const float high = range.high[number.input][number.component];
   std::vector<float> values(pixels);
@@ -308,7 +308,7 @@ std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, co
   for (const std::size_t k : {std::size_t(0), fog->entries.size() / 2, fog->entries.size() - 1}) {
     const volume::Rgba& entry = fog->entries[k];
     const float value = fog->low + (fog->high - fog->low) * float(k) / float(fog->entries.size() - 1);
-    const Picture seen = probe.table(probe.first_but(number, value));
+    const RenderedImage seen = probe.table(probe.first_but(number, value));
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (!(std::abs(seen[i][3] - table[i][3]) <= same_colour)) return std::nullopt;
       for (std::size_t c = 0; seen[i][3] > 0 && c < 3; ++c) {
@@ -322,15 +322,15 @@ std::optional<MeasuredFog> probe_fog(TableProbe& probe, const Number& number, co
   return fog;
 }
 
-/// Shows the probe program slabs whose ends are known: the coordinate runs through the middle layer of three,
-/// and the input that may address the volume a second time through the lowest.
-class SlabProbe {
+/// Shows the probe program segments whose ends are known: the coordinate runs through the middle layer of
+/// three, and the input that may address the volume a second time through the lowest.
+class SegmentProbe {
  public:
-  SlabProbe(Bench& bench, const GlContext& context, const TextureDescription& texture,
-            const FragmentInputs& fragment, std::size_t end)
+  SegmentProbe(Bench& bench, const GlContext& context, const TextureDescription& texture,
+               const FragmentInputs& fragment, std::size_t end)
       : bench_(bench), context_(context), texture_(texture), fragment_(fragment), end_(end) {}
 
-  Picture pairs(const PairValues& front, const PairValues& back, const InputValues& inputs) {
+  RenderedImage pairs(const SegmentValues& front, const SegmentValues& back, const InputValues& inputs) {
     std::vector<float> texels(back.begin(), back.end());
     texels.insert(texels.end(), front.begin(), front.end());
     texels.insert(texels.end(), front.begin(), front.end());
@@ -338,12 +338,12 @@ class SlabProbe {
     return draw(inputs, {0, 0.5F, in_lowest_layer, 1}, {}, {1, 0, 0, 0});
   }
   /// One pair, at coordinates all over the volume.
-  Picture everywhere(float front, float back, const InputValues& inputs) {
+  RenderedImage everywhere(float front, float back, const InputValues& inputs) {
     show({1, 1, 3}, {back, front, front}, GL_NEAREST);
     return draw(inputs, {0, 0, in_lowest_layer, 1}, {0.7F, 0.2F, 0, 0}, {0.1F, 0.8F, 0, 0});
   }
   /// Texels that rise along all axes; the second sample lies `off` the first.
-  Picture slope(const std::vector<float>& texels, const std::array<float, 3>& off) {
+  RenderedImage slope(const std::vector<float>& texels, const std::array<float, 3>& off) {
     show({2, 2, 2}, texels, GL_LINEAR);
     return draw(fragment_.first, {off[0], off[1], 0.5F + off[2], 1}, {1, 0, 0, 0}, {0, 1, 0, 0});
   }
@@ -355,8 +355,8 @@ class SlabProbe {
     bench_.show(probe_format(texture_.base), upload_format(texture_.base), size, texels, filter,
                 texture_.swizzle, context_.version >= 330);
   }
-  Picture draw(InputValues inputs, const std::array<float, 4>& end, const std::array<float, 4>& end_across,
-               const std::array<float, 4>& end_up) {
+  RenderedImage draw(InputValues inputs, const std::array<float, 4>& end,
+                     const std::array<float, 4>& end_across, const std::array<float, 4>& end_up) {
     InputValues across(inputs.size());
     InputValues up(inputs.size());
     inputs[end_] = end;
@@ -373,8 +373,8 @@ class SlabProbe {
   std::size_t end_;
 };
 
-/// Whether colours between the ends of slabs are those of the table where the field has a slope.
-bool slabs_see_neighbours(SlabProbe& probe, const volume::PairTable& table) {
+/// Whether colours between the ends of segments are those of the table where the field has a slope.
+bool slice_segments_see_neighbours(SegmentProbe& probe, const volume::PreIntegrationTable& table) {
   constexpr double weight_error = 4.0 / 510;  // hardware may weight texels by 8 bits
   constexpr std::array<double, 3> slope{1.0 / 6, 2.0 / 6, 3.0 / 6};
   constexpr std::array<float, 3> off{0.03F, -0.05F, 0.04F};
@@ -384,7 +384,7 @@ bool slabs_see_neighbours(SlabProbe& probe, const volume::PairTable& table) {
     const double place = (i & 1) * slope[0] + (i >> 1 & 1) * slope[1] + (i >> 2) * slope[2];
     texels.push_back(float(table.low + place * extent));
   }
-  const Picture picture = probe.slope(texels, off);
+  const RenderedImage image = probe.slope(texels, off);
   constexpr int rim = edge / 4 + 6;
   for (int y = rim; y < edge - rim; ++y) {
     for (int x = rim; x < edge - rim; ++x) {
@@ -396,7 +396,7 @@ bool slabs_see_neighbours(SlabProbe& probe, const volume::PairTable& table) {
         return sum;
       };
       const auto [low, high] = colours_around(table, place(0), place(1), weight_error * (table.edge - 1));
-      const volume::Rgba& colour = picture[std::size_t(y) * edge + std::size_t(x)];
+      const volume::Rgba& colour = image[std::size_t(y) * edge + std::size_t(x)];
       for (std::size_t c = 0; c < 4; ++c) {
         if (!(colour[c] >= low[c] - same_fogged_colour && colour[c] <= high[c] + same_fogged_colour))
           return true;
@@ -406,23 +406,25 @@ bool slabs_see_neighbours(SlabProbe& probe, const volume::PairTable& table) {
   return false;
 }
 
-/// The table of pairs that explains the colours, where input `end` addresses the volume a second time; null
-/// when they depend on more.
-std::optional<Probed> probe_slabs(SlabProbe& probe, const Pipeline& pipeline, const FragmentInputs& fragment,
-                                  const std::array<float, 2>& range, std::size_t end) {
+/// The pre-integration table that explains the colours, where input `end` addresses the volume a second time;
+/// null when they depend on more.
+std::optional<Probed> probe_slice_segments(SegmentProbe& probe, const Pipeline& pipeline,
+                                           const FragmentInputs& fragment, const std::array<float, 2>& range,
+                                           std::size_t end) {
   if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min)
     return std::nullopt;
-  PairValues spread{};
+  SegmentValues spread{};
   for (std::size_t i = 0; i < spread.size(); ++i) {
     const double place = double(i) / double(spread.size() - 1);
     spread[i] = float(range[0] + place * (double(range[1]) - range[0]));
   }
-  const Picture some = probe.pairs(spread, spread, fragment.first);
+  const RenderedImage some = probe.pairs(spread, spread, fragment.first);
   const auto same_everywhere = [&](const InputValues& inputs) {
-    for (const std::size_t front : {std::size_t(0), pair_tile / 5, pair_tile / 2, pair_tile - 1}) {
-      for (const std::size_t back : {std::size_t(0), pair_tile / 3, 4 * pair_tile / 5, pair_tile - 1}) {
+    for (const std::size_t front : {std::size_t(0), segment_tile / 5, segment_tile / 2, segment_tile - 1}) {
+      for (const std::size_t back :
+           {std::size_t(0), segment_tile / 3, 4 * segment_tile / 5, segment_tile - 1}) {
         for (const volume::Rgba& colour : probe.everywhere(spread[front], spread[back], inputs)) {
-          if (!(largest_difference(colour, some[back * pair_tile + front]) <= same_colour)) return false;
+          if (!(largest_difference(colour, some[back * segment_tile + front]) <= same_colour)) return false;
         }
       }
     }
@@ -440,10 +442,11 @@ std::optional<Probed> probe_slabs(SlabProbe& probe, const Pipeline& pipeline, co
       if (!(largest_difference(probe.pairs(spread, spread, inputs), some) <= same_colour)) return std::nullopt;
     }
   }
-  volume::PairTable table = measure_pairs(
-      [&](const PairValues& front, const PairValues& back) { return probe.pairs(front, back, fragment.first); },
-      range, pipeline.blending.premultiplied);
-  if (!finite(table.entries) || slabs_see_neighbours(probe, table)) return std::nullopt;
+  volume::PreIntegrationTable table =
+      measure_segments([&](const SegmentValues& front,
+                           const SegmentValues& back) { return probe.pairs(front, back, fragment.first); },
+                       range, pipeline.blending.premultiplied);
+  if (!finite(table.entries) || slice_segments_see_neighbours(probe, table)) return std::nullopt;
   for (volume::Rgba& entry : table.entries) {
     if (pipeline.target.floating) {
       if (*std::min_element(entry.begin(), entry.end()) < 0 || entry[3] > 1) return std::nullopt;
@@ -454,7 +457,7 @@ std::optional<Probed> probe_slabs(SlabProbe& probe, const Pipeline& pipeline, co
   // Where the second sample lies is the geometry's matter, and may change.
   probed.range.low[end].fill(std::numeric_limits<float>::lowest());
   probed.range.high[end].fill(std::numeric_limits<float>::max());
-  probed.slab_end = end;
+  probed.segment_end = end;
   probed.classification = std::move(table);
   return probed;
 }
@@ -465,7 +468,7 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   constexpr const char* more_than_the_sample =
       "the colour depends on more than the sample (position, lighting)";
   TableProbe probe(bench, context, texture, fragment, range);
-  Picture table = probe.table(fragment.first);
+  RenderedImage table = probe.table(fragment.first);
   if (!finite(table)) return "the fragment stage gives colours that are not finite";
 
   // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
@@ -502,7 +505,7 @@ ProbeFinding probe_table(Bench& bench, const GlContext& context, const Pipeline&
   }
   if (!explained) return more_than_the_sample;
 
-  // The same samples with other coordinates and other inputs: a single texel, spread over the whole picture.
+  // The same samples with other coordinates and other inputs: a single texel, spread over the whole image.
   for (const int entry :
        {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
     for (const volume::Rgba& colour : probe.everywhere(std::size_t(entry), elsewhere)) {
@@ -564,7 +567,7 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
   for (std::size_t i = 3; texture.opaque && i < texels.size(); i += 4) texels[i] = 1.0F;
   const GLenum format = texture.opaque ? GL_RGB32F : GL_RGBA32F;
   bench.show(format, GL_RGBA, edge, edge, texels, texture.swizzle, context.version >= 330);
-  const Picture mapped = bench.draw(without_coordinate(fragment, fragment.first), false);
+  const RenderedImage mapped = bench.draw(without_coordinate(fragment, fragment.first), false);
   for (std::size_t row = 0; row < 4; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {
       const float of_alpha = texture.opaque ? mapped[0][row] : 0.0F;
@@ -586,7 +589,7 @@ ProbeFinding probe_map(Bench& bench, const GlContext& context, const Pipeline& p
     return "the colours leave [0,1] in a float framebuffer";
   const float alpha = texture.opaque ? 1.0F : 0.5F;
   bench.show(format, GL_RGBA, 1, 1, {0.25F, 0.5F, 0.75F, alpha}, texture.swizzle, context.version >= 330);
-  const Picture constant = bench.draw(without_coordinate(fragment, fragment.last), false);
+  const RenderedImage constant = bench.draw(without_coordinate(fragment, fragment.last), false);
   for (std::size_t row = 0; row < 4; ++row) {
     const float* m = &map.matrix[4 * row];
     const float expected = 0.25F * m[0] + 0.5F * m[1] + 0.75F * m[2] + alpha * m[3];
@@ -640,10 +643,11 @@ ProbeFinding probe_classification(const GlContext& context, const Pipeline& pipe
   if (fragment.record != nullptr) copy_uniforms(context, fragment.application, bench.program());
   if (texture.base == BaseFormat::rgba) return probe_map(bench, context, pipeline, texture, fragment);
   ProbeFinding finding = probe_table(bench, context, pipeline, texture, fragment, range);
-  for (const std::size_t end : fragment.slab_ends) {
+  for (const std::size_t end : fragment.segment_ends) {
     if (std::holds_alternative<Probed>(finding)) break;
-    SlabProbe slabs(bench, context, texture, fragment, end);
-    if (auto pairs = probe_slabs(slabs, pipeline, fragment, range, end)) finding = *std::move(pairs);
+    SegmentProbe slice_segments(bench, context, texture, fragment, end);
+    if (auto pairs = probe_slice_segments(slice_segments, pipeline, fragment, range, end))
+      finding = *std::move(pairs);
   }
   return finding;
 }

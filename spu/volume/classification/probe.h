@@ -28,7 +28,7 @@ struct FragmentInputs {
   InputValues first;  ///< values of all inputs at one vertex, in the order of `inputs`
   InputValues last;   ///< and at another: a colour that differs between them depends on more than the sample
   InputRange range;   ///< of all inputs over the run
-  std::vector<std::size_t> slab_ends;  ///< inputs that may address the volume a second time
+  std::vector<std::size_t> segment_ends;  ///< inputs that may address the volume a second time
 };
 
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
@@ -43,7 +43,8 @@ struct Probed {
   volume::Classification classification;
   std::optional<MeasuredFog> fog;
   InputRange range;
-  std::optional<std::size_t> slab_end{};  ///< the input that addresses the second samples of a table of pairs
+  std::optional<std::size_t>
+      segment_end{};  ///< the input that addresses the second samples of a pre-integration table
 };
 
 using ProbeFinding = std::variant<Probed, std::string>;

@@ -90,7 +90,7 @@ InputValues values_at(const float* vertex, const ProgramStages& stages,
   return values;
 }
 
-/// Triangles that join strips or fill up a buffer paint nothing, and their vertices need not make sense.
+/// Triangles that join tiles or fill up a buffer paint nothing, and their vertices need not make sense.
 void drop_degenerate_triangles(std::vector<float>& data, std::size_t stride) {
   const auto position = [&](std::size_t vertex) {
     return std::array{data[vertex * stride], data[vertex * stride + 1], data[vertex * stride + 2],

@@ -127,7 +127,7 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
       low = std::min(low, d);
       high = std::max(high, d);
     }
-    // A degenerate vertex run (batched strips) paints nothing and says nothing.
+    // A degenerate vertex run (batched tiles) paints nothing and says nothing.
     if (length(area_vector(points)) < 1e-12) continue;
     if (high - low > 16 * same_plane) return "slices are not flat in texture space";
     for (const Vec3& t : points) {

@@ -32,7 +32,7 @@ bool alike(const Target& a, const Target& b) {
          a.samples == b.samples;
 }
 
-/// Whether two runs' pictures go the same way into the framebuffer, in the same colours.
+/// Whether two runs' images go the same way into the framebuffer, in the same colours.
 bool alike(const Pipeline& a, const volume::RenderRequest& first, const Pipeline& b,
            const volume::RenderRequest& second) {
   return a.blending == b.blending && alike(a.target, b.target) && a.depth_test == b.depth_test &&
@@ -136,7 +136,7 @@ MergedVolume* VolumeUnit::Merging::volume_with(GLuint texture) const {
 
 void VolumeUnit::note_brick(const Substitution& s) {
   Merging& merging = *merging_;
-  const bool plain = !s.proxy && !s.pipeline.stack && !s.request.slab && !s.request.fog &&
+  const bool plain = !s.proxy && !s.pipeline.stack && !s.request.slice_segment && !s.request.fog &&
                      !(s.pipeline.depth_test && s.pipeline.depth_write);
   if (!plain) return;
   const GLuint texture = s.pipeline.volume.texture;
@@ -171,7 +171,7 @@ void VolumeUnit::find_merged_volumes() {
     if (group.textures.size() < 2) continue;
     const bool all_known = std::all_of(group.textures.begin(), group.textures.end(), [&](GLuint texture) {
       const auto found = known_.find(texture);
-      return found != known_.end() && found->second.given_back.empty();
+      return found != known_.end() && found->second.handed_back.empty();
     });
     const MergedVolume* const before = merging.volume_with(group.textures.front());
     if (!all_known || (before != nullptr && before->textures.size() >= group.textures.size())) continue;
@@ -239,7 +239,7 @@ bool VolumeUnit::holds(std::unique_ptr<Run>& run, Substitution& s) {
   Merging& merging = *merging_;
   const GLuint texture = s.pipeline.volume.texture;
   MergedVolume* const merged = s.pipeline.stack || s.proxy ? nullptr : merging.volume_with(texture);
-  if (merged == nullptr || !merged->given_back.empty() || s.volume.frames == 0 || depth_watched_ != 0 ||
+  if (merged == nullptr || !merged->handed_back.empty() || s.volume.frames == 0 || depth_watched_ != 0 ||
       (s.pipeline.depth_test && s.pipeline.depth_write))
     return false;
   const std::size_t place = *merged->place_of(texture);
@@ -267,7 +267,7 @@ bool VolumeUnit::holds(std::unique_ptr<Run>& run, Substitution& s) {
   }
   if (floats) s.volume.range = merged->volume.range;
   classify(s);
-  if (s.request.slab || s.request.fog) return false;
+  if (s.request.slice_segment || s.request.fog) return false;
   compose_request(s);
   const auto same_texture = [&](const HeldRun& other) { return other.s.pipeline.volume.texture == texture; };
   if (!merging.held.empty() &&
@@ -322,7 +322,7 @@ bool VolumeUnit::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) 
     const volume::FrameCounts counts = show(service, whole, [&](const volume::ImageView& image) {
       if (!merging_->drawn || !merging_->drawn->complete()) return;
       const TimedShare timed(clock_, &FrameShares::verification);
-      judge(merged.volume, difference_between(whole.pipeline, merging_->drawn->picture(image.rect), image));
+      judge(merged.volume, difference_between(whole.pipeline, merging_->drawn->image(image.rect), image));
     });
     for (std::size_t k = 0; k < 3; ++k) merged.volume.counters->size[k] = merged.tiling.size[k];
     if (merged.volume.frames == 0 || session_->options().explain)
@@ -331,17 +331,17 @@ bool VolumeUnit::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) 
     if (++merged.volume.frames == frames_before_bricks_go) forget_single_bricks(merged);
     count_substituted(merged.volume, counts);
     return true;
-  } catch (const Doubt& doubt) {
-    merged.given_back = doubt.reason;
+  } catch (const Refusal& refusal) {
+    merged.handed_back = refusal.reason;
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
     session_->lost(lost.what());
     return false;
   } catch (const std::exception& error) {
-    merged.given_back = error.what();
+    merged.handed_back = error.what();
   }
   fmt::print(stderr, "understudy: {} textures of one volume are shown one by one: {}\n", merged.textures.size(),
-             merged.given_back);
+             merged.handed_back);
   return false;
 }
 
@@ -369,15 +369,16 @@ void VolumeUnit::compose_merged_request(MergedVolume& merged, const std::vector<
   }
   whole.polygons = polygons.sorted();
   whole.fit = fit_camera(whole.polygons.vertices);
-  if (!whole.fit || whole.fit->residual > max_fit_residual) throw Doubt{"the bricks have no camera in common"};
+  if (!whole.fit || whole.fit->residual > max_fit_residual)
+    throw Refusal{"the bricks have no camera in common"};
   for (volume::HalfSpace& plane : whole.request.clip_planes) plane = carried(plane, maps.front());
   SliceFinding finding = find_slices(whole.polygons, *whole.fit, whole.request.clip_planes, order);
   if (const auto* reason = std::get_if<std::string>(&finding))
-    throw Doubt{"of the bricks together, " + *reason};
+    throw Refusal{"of the bricks together, " + *reason};
   whole.slices = std::get<SliceSet>(finding);
   if (order != SliceOrder::any && !drawn_in_order(regions, whole.fit->texture_to_clip, whole.slices.planes,
                                                   order == SliceOrder::back_to_front))
-    throw Doubt{"the bricks are not drawn in the order in which they lie"};
+    throw Refusal{"the bricks are not drawn in the order in which they lie"};
   whole.request.texture_to_clip = whole.fit->texture_to_clip;
   whole.request.planes = whole.slices.planes;
   whole.request.region = whole.slices.region;
@@ -406,10 +407,10 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
       if (!volume::is_empty(box)) changed.push_back(box);
     }
   }
-  const bool everything = session_->never_left_out(Omission::unchanged_texels);
+  const bool everything = session_->disabled_optimizations(Optimization::unchanged_texels);
   if (kept && changed.empty() && !everything) {
     note([&](FrameRecord& frame) {
-      frame.amount(Omission::unchanged_texels).left_out +=
+      frame.amount(Optimization::unchanged_texels).left_out +=
           volume::texels_in(whole.description.stored) * volume::bytes_per_texel(whole.description.type);
     });
     merged.versions = std::move(versions);
@@ -423,7 +424,7 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
   wanted.wrap = whole.texture.wrap;
   wanted.border = whole.texture.border;
   wanted.stored = {{0, 0, 0}, wanted.size};
-  if (session_->options().has_budget()) wanted.margin = budget_margin;
+  if (session_->options().has_budget()) wanted.ghost_layer = budget_ghost_layer;
   if (wanted.id == 0) wanted.id = session_->new_volume_id();
   Transferred transferred;
   try {
@@ -435,7 +436,7 @@ void VolumeUnit::upload_merged(MergedVolume& merged, const std::vector<HeldRun>&
       transferred = send_changes(service, wanted, changed, *source, whole.hashes);
     } else {
       ++wanted.version;
-      whole.hashes = TileHashes(wanted.stored, wanted.type);
+      whole.hashes = BlockHashes(wanted.stored, wanted.type);
       transferred = send_volume(service, wanted, *source, whole.hashes);
     }
   } catch (const std::runtime_error&) {
@@ -480,7 +481,7 @@ void VolumeUnit::show_alone(Substitution& s) {
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
     session_->lost(lost.what());
-  } catch (const Doubt&) {
+  } catch (const Refusal&) {
     // The texture cannot be read as it was: the last way tells why.
   } catch (const std::exception&) {
     // Refused, for want of memory perhaps: below it is told what the last way came to.
@@ -498,7 +499,7 @@ void VolumeUnit::show_alone(Substitution& s) {
     {
       const SavedState saved(context());
       const BoundAgain bound(gl, s.pipeline.volume);
-      TileHashes hashes(description.stored, description.type);
+      BlockHashes hashes(description.stored, description.type);
       const auto source = texture_source(context(), s.pipeline.volume.texture, s.volume.texture);
       send_volume(*service, description, *source, hashes);
     }
@@ -506,7 +507,7 @@ void VolumeUnit::show_alone(Substitution& s) {
     s.request.version = description.version;
     count_substituted(s.volume, show(*service, s, unverified));
   } catch (const std::exception& error) {
-    s.volume.given_back = error.what();
+    s.volume.handed_back = error.what();
     leave(s.pipeline.volume.texture, error.what());
   }
 }

@@ -20,8 +20,8 @@ struct MergedVolume {
   std::vector<std::uint64_t> versions;           ///< of the textures, whose texels the service has
   std::vector<volume::TexelBox> shown;           ///< of each texture's own texels
   Tiling tiling;
-  KnownVolume volume;      ///< the whole
-  std::string given_back;  ///< why it is drawn brick by brick for good; empty: it is not
+  KnownVolume volume;       ///< the whole
+  std::string handed_back;  ///< why it is drawn brick by brick for good; empty: it is not
 
   std::optional<std::size_t> place_of(GLuint texture) const;
 };

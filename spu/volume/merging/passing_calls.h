@@ -1,5 +1,5 @@
 // Calls while runs wait for the others of their volume: those that neither see pixels nor change what the
-// picture will be shown with go by, every other one shows what waits first.
+// image will be shown with go by, every other one shows what waits first.
 #pragma once
 
 #include "dispatch/call_id.h"

@@ -39,7 +39,7 @@ struct Tiling {
 
 /// Either the places of all bricks in one volume, or why they are none. Samples near a brick's face must find
 /// the neighbour's texels in the brick itself: where they do not, the faces are to be seen in the application's
-/// own picture, and one volume would not show them. Only the outer faces may be the texture's ends.
+/// own image, and one volume would not show them. Only the outer faces may be the texture's ends.
 std::variant<Tiling, std::string> find_tiling(std::span<const DrawnBrick> bricks, volume::Filter filter,
                                               const std::array<volume::Wrap, 3>& wrap);
 

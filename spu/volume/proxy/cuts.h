@@ -1,8 +1,8 @@
 // Planes by which a ray caster cuts its volume: regions of a grid that it crops away, and half-spaces.
 //
-// A picture tells such planes only to within a step, so they are read from the uniforms whose names say what
+// An image tells such planes only to within a step, so they are read from the uniforms whose names say what
 // they hold (VTK's and ParaView's). The names only propose: measuring is done with the planes lifted, and the
-// picture of the cut volume is compared with the application's own like any other.
+// image of the cut volume is compared with the application's own like any other.
 #pragma once
 
 #include <array>

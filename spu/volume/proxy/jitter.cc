@@ -20,7 +20,7 @@ struct Tile {
   std::size_t texels() const { return std::size_t(width) * std::size_t(height); }
 };
 
-/// The size of a texture that may hold noise; none of tables, depths and pictures.
+/// The size of a texture that may hold noise; none of tables, depths and images.
 std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& texture) {
   if (texture.target != GL_TEXTURE_2D || texture.texture == 0 || is_depth_texture(gl, texture))
     return std::nullopt;

@@ -539,7 +539,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
       march.steps = rule;
       // The step that reaches the opaque geometry is usually taken before it is noticed.
       march.steps.past_depth = ends_at_depth ? 1 : 0;
-      // Planes end rays as opaque geometry does; where no ray leaves by one, both pictures are alike.
+      // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
       for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
         if (!measured.clipped && past_planes != march.steps.past_depth) continue;
         march.past_planes = past_planes;
@@ -666,20 +666,19 @@ bool needs_finish(const March& march) {
   return march.extreme || march.sum;
 }
 
-void finish_picture(const March& march, volume::Image& picture) {
+void finish_image(const March& march, volume::Image& image) {
   const volume::TransferFunction& table = march.table;
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     Rgba colour{};
     // Pixels without samples hold what changes no extreme.
-    const float sampled = picture.rgba[i + 3];
+    const float sampled = image.rgba[i + 3];
     if (march.sum) {
       // Alpha counts samples.
-      if (sampled > 0)
-        colour = ray_of(march, {picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2], 1}, 1);
+      if (sampled > 0) colour = ray_of(march, {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], 1}, 1);
     } else if (sampled > 0 && sampled <= 1) {
-      colour = table_at(table, table.low + picture.rgba[i] * (table.high - table.low));
+      colour = table_at(table, table.low + image.rgba[i] * (table.high - table.low));
     }
-    std::copy(colour.begin(), colour.end(), picture.rgba.begin() + std::ptrdiff_t(i));
+    std::copy(colour.begin(), colour.end(), image.rgba.begin() + std::ptrdiff_t(i));
   }
 }
 

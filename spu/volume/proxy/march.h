@@ -2,7 +2,7 @@
 //
 // Four things are asked: which input of the fragment stage is the texture coordinate, how samples are placed on
 // a ray, how they are composed, and what colour one sample has. Where two answers fit, all are given: the
-// volume unit takes the one whose picture is the application's.
+// volume unit takes the one whose image is the application's.
 #pragma once
 
 #include <limits>
@@ -110,9 +110,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);
 
-/// What their picture then becomes: of extreme values the colours that these have, of sums what is shown of
-/// them. Samples that are composed by over already are the picture.
+/// What their image then becomes: of extreme values the colours that these have, of sums what is shown of
+/// them. Samples that are composed by over already are the image.
 bool needs_finish(const March& march);
-void finish_picture(const March& march, volume::Image& picture);
+void finish_image(const March& march, volume::Image& image);
 
 }  // namespace understudy::spu

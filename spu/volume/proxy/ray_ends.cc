@@ -131,14 +131,14 @@ void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_plane
 }
 
 void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
-                   float alpha, volume::Image& picture) {
+                   float alpha, volume::Image& image) {
   const auto back = volume::inverse(request.texture_to_clip);
   if (!back) return;
-  const volume::DepthImage depth = depths_over(picture.rect, request);
+  const volume::DepthImage depth = depths_over(image.rect, request);
   std::size_t pixel = 0;
-  for (int y = picture.rect.y; y < picture.rect.y + picture.rect.height; ++y) {
-    for (int x = picture.rect.x; x < picture.rect.x + picture.rect.width; ++x, ++pixel) {
-      float& covered = picture.rgba[4 * pixel + 3];
+  for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y) {
+    for (int x = image.rect.x; x < image.rect.x + image.rect.width; ++x, ++pixel) {
+      float& covered = image.rgba[4 * pixel + 3];
       if (covered == 0 && PixelRay(request, *back, planes, x, y).enters_before(depth.depth[pixel]))
         covered = alpha;
     }

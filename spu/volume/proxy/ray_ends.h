@@ -16,6 +16,6 @@ void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_plane
 
 /// Gives `alpha` to the pixels without it whose rays enter the box, between the planes, before opaque geometry.
 void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
-                   float alpha, volume::Image& picture);
+                   float alpha, volume::Image& image);
 
 }  // namespace understudy::spu

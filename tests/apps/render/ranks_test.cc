@@ -1,4 +1,4 @@
-// One rank or four: the same picture, under a table so narrow that samples mostly miss it as well.
+// One rank or four: the same image, under a table so narrow that samples mostly miss it as well.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,10 +30,10 @@ TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
         {"at": 0.598, "colour": [0.2, 0.4, 1], "opacity": 0}, {"at": 0.6, "colour": [1, 0.9, 0.5], "opacity": 0.9},
         {"at": 0.602, "colour": [1, 0.4, 0.2], "opacity": 0}, {"at": 1, "colour": [1, 0.4, 0.2], "opacity": 0}]})");
   for (const char* method : {"post-classified", "pre-integrated"}) {
-    std::vector<Picture> floats, bytes;
+    std::vector<Image> floats, bytes;
     for (const char* ranks : {"1", "4"}) {
-      floats.push_back(picture(fmt::format("{} --method {} -n {}", common, method, ranks)));
-      bytes.push_back(read_picture(folder_.file("p.png")));
+      floats.push_back(image(fmt::format("{} --method {} -n {}", common, method, ranks)));
+      bytes.push_back(read_image(folder_.file("p.png")));
     }
     const Difference apart = difference(floats[1], floats[0]), shown = difference(bytes[1], bytes[0]);
     std::printf("%s, four ranks from one: at most %.1e; rounded to bytes RMS %.2f/255\n", method, apart.max,
@@ -41,8 +41,8 @@ TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
     EXPECT_LE(apart.max, 1e-5);
     EXPECT_LE(255 * shown.rms, 0.05);
   }
-  // Samples elsewhere show another picture: what the table is narrow for.
-  const Difference other = difference(picture(common + " --step 0.97"), picture(common));
+  // Samples elsewhere show another image: what the table is narrow for.
+  const Difference other = difference(image(common + " --step 0.97"), image(common));
   EXPECT_GT(255 * other.rms, 10);
 }
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "apps/understudy/compare.h"
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
 #include "tests/apps/viewer/temporary_folder.h"
 
 namespace understudy::launcher {
@@ -59,11 +59,11 @@ class Render : public ::testing::Test {
     return folder_.write(name + "_f64.raw", std::as_bytes(std::span(values)));
   }
 
-  /// The picture before it was rounded, of a rendering that succeeds.
-  Picture picture(const std::string& arguments) const {
+  /// The image before it was rounded, of a rendering that succeeds.
+  Image image(const std::string& arguments) const {
     const Result result = render(arguments + " --save-float " + folder_.file("f.pfm"));
     EXPECT_EQ(result.status, 0) << arguments << ": " << result.output;
-    return read_picture(folder_.file("f.pfm"));
+    return read_image(folder_.file("f.pfm"));
   }
 
   TemporaryFolder folder_;

@@ -1,4 +1,4 @@
-// `understudy render` as its user sees it: pictures of files without a viewer, in one process and on nodes.
+// `understudy render` as its user sees it: images of files without a viewer, in one process and on nodes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,18 +20,18 @@ TEST_F(Render, APictureAndAReportOfAFile) {
   ASSERT_EQ(result.status, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 40 x 40 of f64, in this process"), HasSubstr("3 frames"),
                                    HasSubstr("became f32 texels")));
-  const Picture picture = read_picture(folder_.file("p.png"));
-  EXPECT_EQ(picture.width, 120);
-  EXPECT_EQ(picture.height, 90);
-  const float* middle = picture.pixel(60, 45);
+  const Image image = read_image(folder_.file("p.png"));
+  EXPECT_EQ(image.width, 120);
+  EXPECT_EQ(image.height, 90);
+  const float* middle = image.pixel(60, 45);
   EXPECT_GT(middle[0] + middle[1] + middle[2], 0.5F) << "the ball is to be seen";
-  const float* corner = picture.pixel(2, 2);
+  const float* corner = image.pixel(2, 2);
   EXPECT_EQ(corner[0] + corner[1] + corner[2], 0.0F);
-  const Picture exact = read_picture(folder_.file("f.pfm"));
+  const Image exact = read_image(folder_.file("f.pfm"));
   EXPECT_TRUE(exact.has_alpha);
   EXPECT_GT(exact.pixel(60, 45)[3], 0.5F);
   EXPECT_EQ(exact.pixel(2, 2)[3], 0.0F);
-  EXPECT_NEAR(exact.pixel(60, 45)[0], middle[0], 0.5 / 255 + 1e-6) << "the PNG is the picture, rounded";
+  EXPECT_NEAR(exact.pixel(60, 45)[0], middle[0], 0.5 / 255 + 1e-6) << "the PNG is the image, rounded";
 
   const Json json = report();
   EXPECT_EQ(json["volume"]["size"], Json({40, 40, 40}));
@@ -51,41 +51,43 @@ TEST_F(Render, APictureAndAReportOfAFile) {
   EXPECT_GT(json["ranks"][0]["peak_bytes"], json["ranks"][0]["brick_bytes"]);
 }
 
-TEST_F(Render, SmallerStepsComeNearerToOnePicture) {
+TEST_F(Render, SmallerStepsComeNearerToOneImage) {
   const std::string file = ball(32);
-  std::vector<Picture> pictures;
+  std::vector<Image> images;
   for (const char* step : {"2", "1", "0.5", "0.125"}) {
     ASSERT_EQ(
         render(file + " --table rainbow --size 60x60 --step " + step + " --save-float " + folder_.file("f.pfm"))
             .status,
         0);
-    pictures.push_back(read_picture(folder_.file("f.pfm")));
+    images.push_back(read_image(folder_.file("f.pfm")));
   }
   double before = 1;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double rms = difference(pictures[i], pictures.back()).rms;
+    const double rms = difference(images[i], images.back()).rms;
     std::printf("rms %.2e\n", rms);
     EXPECT_LT(rms, before / 1.5);
     before = rms;
   }
 }
 
-TEST_F(Render, TheWaysToSayTheSameGiveTheSamePicture) {
+TEST_F(Render, TheWaysToSayTheSameGiveTheSameImage) {
   const std::string file = ball(24);
   const std::string common = " --size 50x50 --save-float " + folder_.file("f.pfm");
   ASSERT_EQ(render(file + common).status, 0);
-  const Picture expected = read_picture(folder_.file("f.pfm"));
+  const Image expected = read_image(folder_.file("f.pfm"));
   // The built-in table in a file, by range and by the raw scalars' hints.
-  const std::string knots =
+  const std::string control_points =
       folder_.write("grey.json", std::string(R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                                              {"at": 1, "colour": [1, 1, 1], "opacity": 0.1}]})"));
   std::filesystem::copy(file, folder_.file("plain"));
   ASSERT_EQ(
-      render(folder_.file("plain") + " --volume-size 24 24 24 --type f64 --table " + knots + common).status, 0);
-  EXPECT_EQ(difference(read_picture(folder_.file("f.pfm")), expected).max, 0);
+      render(folder_.file("plain") + " --volume-size 24 24 24 --type f64 --table " + control_points + common)
+          .status,
+      0);
+  EXPECT_EQ(difference(read_image(folder_.file("f.pfm")), expected).max, 0);
   // Sixteen bits over the values' range are nearly floats.
   ASSERT_EQ(render(file + " --texels u16 --range=-0.34,1.67" + common).status, 0);
-  const double apart = difference(read_picture(folder_.file("f.pfm")), expected).max;
+  const double apart = difference(read_image(folder_.file("f.pfm")), expected).max;
   EXPECT_GT(apart, 0);
   EXPECT_LT(apart, 2e-3);
 }
@@ -114,21 +116,21 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("p.png"))) << arguments;
     return result.output;
   };
-  const auto table = [&](const std::string& knots) {
-    return file + " --table " + folder_.write("t.json", knots);
+  const auto table = [&](const std::string& control_points) {
+    return file + " --table " + folder_.write("t.json", control_points);
   };
   EXPECT_THAT(trouble(folder_.file("nothing_8x8x8.raw")), HasSubstr("check the path"));
   EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
   EXPECT_THAT(trouble(file + " --table nothing"), HasSubstr("grey, engine, ct"));
   EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
-  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'knots'"));
+  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'control points'"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("too few"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 1, "colour": [0,0,0], "opacity": 0},
                                           {"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("sort them"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": null}]})")),
-              HasSubstr("knot 1: 'opacity' is missing or no number"));
+              HasSubstr("control point 1: 'opacity' is missing or no number"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0},
                                           {"at": 1, "colour": [0,0,0], "opacity": -1}]})")),
               HasSubstr("opacity is -1"));
@@ -144,15 +146,15 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
 
 #ifdef UNDERSTUDY_HAS_NODES
 
-TEST_F(Render, NodesGiveThePictureOfOneProcessAndReadTheirSharesAlone) {
+TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
   const std::string file = ball(48), common = file + " --table rainbow --size 90x80 --save-float " +
                                               folder_.file("f.pfm") + " --report " + folder_.file("r.json");
   ASSERT_EQ(render(common).status, 0);
-  const Picture expected = read_picture(folder_.file("f.pfm"));
+  const Image expected = read_image(folder_.file("f.pfm"));
   for (const int nodes : {1, 2, 4}) {
     const Result result = render(common + " -n " + std::to_string(nodes));
     ASSERT_EQ(result.status, 0) << result.output;
-    const Difference apart = difference(read_picture(folder_.file("f.pfm")), expected);
+    const Difference apart = difference(read_image(folder_.file("f.pfm")), expected);
     std::printf("%d nodes: at most %.1e apart\n", nodes, apart.max);
     EXPECT_LE(apart.max, 1e-5) << nodes;
     const Json json = report();

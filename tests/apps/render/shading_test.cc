@@ -30,8 +30,8 @@ std::string cone(const TemporaryFolder& folder, int side) {
 constexpr const char* view = " --size 80x80 --camera 0,0,4";
 
 TEST_F(Render, ASurfaceLiesWhereTheValueIs) {
-  const Picture picture = this->picture(cone(folder_, 40) + " --no-volume --surface 30000,#ff8000" + view);
-  // The ball's half side is 1 / sqrt(3) of the half diagonals in which the eye is 4 away, and the picture shows
+  const Image image = this->image(cone(folder_, 40) + " --no-volume --surface 30000,#ff8000" + view);
+  // The ball's half side is 1 / sqrt(3) of the half diagonals in which the eye is 4 away, and the image shows
   // 2 * 4 * tan(15 degrees) of them: half the half side has a silhouette of 10.8 pixels.
   const double half = 0.5 / std::sqrt(3.0);
   const double radius = 40 * half / std::sqrt(16 - half * half) / std::tan(std::numbers::pi / 12);
@@ -39,41 +39,41 @@ TEST_F(Render, ASurfaceLiesWhereTheValueIs) {
     const double away = std::abs(x + 0.5 - 40);
     if (std::abs(away - radius) < 0.7) continue;
     const bool inside = away < radius;
-    EXPECT_NEAR(picture.pixel(x, 40)[0], inside ? 1 : 0, 1e-5) << x;
-    EXPECT_NEAR(picture.pixel(x, 40)[1], inside ? 128.0 / 255 : 0, 1e-5) << x;
-    EXPECT_NEAR(picture.pixel(x, 40)[3], inside ? 1 : 0, 1e-5) << x;
+    EXPECT_NEAR(image.pixel(x, 40)[0], inside ? 1 : 0, 1e-5) << x;
+    EXPECT_NEAR(image.pixel(x, 40)[1], inside ? 128.0 / 255 : 0, 1e-5) << x;
+    EXPECT_NEAR(image.pixel(x, 40)[3], inside ? 1 : 0, 1e-5) << x;
   }
 }
 
 TEST_F(Render, APlaceInTheRangeIsAValue) {
   const std::string file = cone(folder_, 20);
-  const Picture by_place =
-      picture(file + " --no-volume --surface 40%,c0c0c0,0.5 --report " + folder_.file("r.json") + view);
-  const Json surface = report()["picture"]["surfaces"][0], values = report()["volume"]["values"];
+  const Image by_place =
+      image(file + " --no-volume --surface 40%,c0c0c0,0.5 --report " + folder_.file("r.json") + view);
+  const Json surface = report()["image"]["surfaces"][0], values = report()["volume"]["values"];
   EXPECT_NEAR(double(surface["value"]), double(values[0]) + 0.4 * (double(values[1]) - double(values[0])), 0.1);
   EXPECT_EQ(surface["colour"][3], 0.5);
-  EXPECT_EQ(report()["picture"]["method"], "post-classified");
-  EXPECT_EQ(report()["picture"]["light"], "none");
-  const Picture by_value =
-      picture(file + " --no-volume --surface " + surface["value"].dump() + ",c0c0c0,0.5" + view);
+  EXPECT_EQ(report()["image"]["method"], "post-classified");
+  EXPECT_EQ(report()["image"]["light"], "none");
+  const Image by_value =
+      image(file + " --no-volume --surface " + surface["value"].dump() + ",c0c0c0,0.5" + view);
   EXPECT_LE(difference(by_place, by_value).max, 1e-6);
   EXPECT_NEAR(by_place.pixel(40, 40)[3], 0.75, 1e-5) << "in through half of it, and out through half of it";
 }
 
 TEST_F(Render, LightFallsOnWhatItIsMeantFor) {
   const std::string surface = cone(folder_, 40) + " --no-volume --surface 30000 --material 0.1,0.9,0,1" + view;
-  const Picture head_light = picture(surface + " --light all");
+  const Image head_light = image(surface + " --light all");
   EXPECT_GT(head_light.pixel(40, 40)[0], 0.85F) << "it faces the eye";
   EXPECT_LT(head_light.pixel(50, 40)[0], 0.6F) << "it is nearly seen from the side";
-  const Picture from_the_right = picture(surface + " --light-from 90,0");
+  const Image from_the_right = image(surface + " --light-from 90,0");
   EXPECT_GT(from_the_right.pixel(48, 40)[0], from_the_right.pixel(41, 40)[0] + 0.3F);
   // The same on both sides: a surface is lit from behind as well.
   EXPECT_NEAR(from_the_right.pixel(48, 40)[0], from_the_right.pixel(31, 40)[0], 0.02);
 
   const std::string both = cone(folder_, 40) + " --table grey --surface 45000" + view;
-  const Picture dark = picture(both), surfaces = picture(both + " --light surfaces"),
-                all = picture(both + " --light all");
-  const auto apart = [](const Picture& a, const Picture& b, int x) {
+  const Image dark = image(both), surfaces = image(both + " --light surfaces"),
+              all = image(both + " --light all");
+  const auto apart = [](const Image& a, const Image& b, int x) {
     return std::abs(a.pixel(x, 40)[0] - b.pixel(x, 40)[0]);
   };
   EXPECT_GT(apart(dark, surfaces, 43), 1e-3F) << "before the surface";
@@ -82,44 +82,44 @@ TEST_F(Render, LightFallsOnWhatItIsMeantFor) {
 }
 
 TEST_F(Render, SegmentsNeedFewerStepsThanSamples) {
-  const std::string knots = folder_.write("spikes.json", std::string(R"({"knots": [
+  const std::string control_points = folder_.write("spikes.json", std::string(R"({"knots": [
           {"at": 0, "colour": [1, 0, 0], "opacity": 0}, {"at": 0.30, "colour": [1, 0, 0], "opacity": 0},
           {"at": 0.32, "colour": [1, 0.5, 0], "opacity": 0.6}, {"at": 0.34, "colour": [1, 0, 0], "opacity": 0},
           {"at": 0.60, "colour": [0, 0, 1], "opacity": 0}, {"at": 0.62, "colour": [0, 0.5, 1], "opacity": 0.6},
           {"at": 0.64, "colour": [0, 0, 1], "opacity": 0}, {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
-  const std::string common = cone(folder_, 32) + " --table " + knots + view;
-  const Picture fine = picture(common + " --step 0.02"), samples = picture(common + " --step 1"),
-                segments = picture(common + " --step 1 --method pre-integrated");
+  const std::string common = cone(folder_, 32) + " --table " + control_points + view;
+  const Image fine = image(common + " --step 0.02"), samples = image(common + " --step 1"),
+              segments = image(common + " --step 1 --method pre-integrated");
   const double by_samples = difference(samples, fine).rms, by_segments = difference(segments, fine).rms;
   std::printf("rms error of samples %.2e, of segments %.2e\n", by_samples, by_segments);
   EXPECT_LT(by_segments, by_samples / 4);
 }
 
 TEST_F(Render, SegmentsLeaveATableThatDoesNotSpanTheVolume) {
-  const std::string knots = folder_.write("narrow.json", std::string(R"({"positions": "values",
+  const std::string control_points = folder_.write("narrow.json", std::string(R"({"positions": "values",
                                      "knots": [{"at": 30000, "colour": [1, 0.5, 0], "opacity": 0},
                                                {"at": 31000, "colour": [1, 1, 0.5], "opacity": 0.5}]})"));
-  const std::string common = cone(folder_, 32) + " --table " + knots + view;
-  const Picture fine = picture(common + " --step 0.02");
-  const double by_samples = difference(picture(common + " --step 1"), fine).rms,
-               by_segments = difference(picture(common + " --step 1 --method pre-integrated"), fine).rms;
+  const std::string common = cone(folder_, 32) + " --table " + control_points + view;
+  const Image fine = image(common + " --step 0.02");
+  const double by_samples = difference(image(common + " --step 1"), fine).rms,
+               by_segments = difference(image(common + " --step 1 --method pre-integrated"), fine).rms;
   std::printf("rms error of samples %.2e, of segments %.2e\n", by_samples, by_segments);
   EXPECT_GT(fine.pixel(40, 40)[3], 0.99F);
   EXPECT_LT(by_segments, by_samples / 4);
 }
 
 TEST_F(Render, AdaptiveStepsAreNearerThanSamplesAsMany) {
-  const std::string knots = folder_.write("spike.json", std::string(R"({"knots": [
+  const std::string control_points = folder_.write("spike.json", std::string(R"({"knots": [
           {"at": 0, "colour": [1, 0, 0], "opacity": 0}, {"at": 0.60, "colour": [1, 0, 0], "opacity": 0},
           {"at": 0.62, "colour": [1, 0.5, 0], "opacity": 0.6}, {"at": 0.64, "colour": [1, 0, 0], "opacity": 0},
           {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
   const std::string common =
-      cone(folder_, 64) + " --table " + knots + view + " --report " + folder_.file("r.json");
-  const Picture fine = picture(common + " --step 0.02");
-  const Picture adaptive = picture(common + " --step 1 --method adaptive --tolerance 0.01");
-  EXPECT_EQ(report()["picture"]["method"], "adaptive");
+      cone(folder_, 64) + " --table " + control_points + view + " --report " + folder_.file("r.json");
+  const Image fine = image(common + " --step 0.02");
+  const Image adaptive = image(common + " --step 1 --method adaptive --tolerance 0.01");
+  EXPECT_EQ(report()["image"]["method"], "adaptive");
   const double taken = report()["samples_taken"];
-  const Picture samples = picture(common + " --step 0.1");
+  const Image samples = image(common + " --step 0.1");
   std::printf("rms error of adaptive steps %.2e with %g samples, of samples %.2e with %g\n",
               difference(adaptive, fine).rms, taken, difference(samples, fine).rms,
               double(report()["samples_taken"]));
@@ -128,18 +128,18 @@ TEST_F(Render, AdaptiveStepsAreNearerThanSamplesAsMany) {
 }
 
 TEST_F(Render, AFirstHitIsOpaqueAndInTheTablesColour) {
-  const std::string knots = folder_.write("red.json", std::string(R"({"knots": [
+  const std::string control_points = folder_.write("red.json", std::string(R"({"knots": [
           {"at": 0, "colour": [1, 0.5, 0], "opacity": 0}, {"at": 0.5, "colour": [1, 0.5, 0], "opacity": 0},
           {"at": 1, "colour": [1, 0.5, 0], "opacity": 0.01}]})"));
-  const std::string common = cone(folder_, 40) + " --table " + knots + view;
+  const std::string common = cone(folder_, 40) + " --table " + control_points + view;
   for (const char* const ranks : {"", " -n 4"}) {
-    const Picture hit = picture(common + " --operator first-hit" + ranks);
+    const Image hit = image(common + " --operator first-hit" + ranks);
     EXPECT_NEAR(hit.pixel(40, 40)[0], 1, 1e-4);
     EXPECT_NEAR(hit.pixel(40, 40)[1], 0.5, 1e-4);
     EXPECT_EQ(hit.pixel(40, 40)[3], 1);
     EXPECT_EQ(hit.pixel(1, 1)[3], 0);
   }
-  EXPECT_LT(picture(common).pixel(40, 40)[3], 0.5F) << "composed, it is thin";
+  EXPECT_LT(image(common).pixel(40, 40)[3], 0.5F) << "composed, it is thin";
 }
 
 TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
@@ -182,10 +182,10 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
 
 TEST_F(Render, CutsSegmentsAtBricksWhereAskedTo) {
   const std::string common = ball(48) + " --table rainbow --method pre-integrated --size 90x80 --step 2";
-  const Picture seamless = picture(common);
-  EXPECT_EQ(difference(picture(common + " --cut-at-bricks 64"), seamless).max, 0) << "it is one brick";
-  const double few = difference(picture(common + " --cut-at-bricks 24"), seamless).max,
-               many = difference(picture(common + " --cut-at-bricks 8"), seamless).max;
+  const Image seamless = image(common);
+  EXPECT_EQ(difference(image(common + " --cut-at-bricks 64"), seamless).max, 0) << "it is one brick";
+  const double few = difference(image(common + " --cut-at-bricks 24"), seamless).max,
+               many = difference(image(common + " --cut-at-bricks 8"), seamless).max;
   std::printf("cut at bricks of 24 and of 8: %.1e and %.1e from uncut\n", few, many);
   EXPECT_GT(few, 1e-5);
   EXPECT_GT(many, 1e-5);
@@ -201,13 +201,13 @@ TEST_F(Render, NodesShowTheSameSurfacesLightAndSegments) {
         " --table rainbow --method pre-integrated --light all --light-from 20,50",
         " --table vessels --surface 70%,#4060ff,0.4 --surface 20%,#ff8040,0.2 --light surfaces --step 1.7"}) {
     const std::string common = file + shading + " --size 90x80";
-    const Picture expected = picture(common);
+    const Image expected = image(common);
     for (const char* nodes : {" -n 2", " -n 3 --exchange binary-swap"}) {
-      const Difference apart = difference(picture(common + nodes), expected);
+      const Difference apart = difference(image(common + nodes), expected);
       std::printf("%s%s: rms %.1e, at most %.1e apart\n", shading, nodes, apart.rms, apart.max);
       EXPECT_LE(apart.max, 1e-4) << shading << nodes;
     }
-    EXPECT_GT(difference(picture(common + " -n 2 --pixels byte"), expected).max, 1e-4)
+    EXPECT_GT(difference(image(common + " -n 2 --pixels byte"), expected).max, 1e-4)
         << "pixels are options too";
   }
 }

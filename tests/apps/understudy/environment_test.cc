@@ -1,4 +1,4 @@
-// The environments of children: doors for the viewer, none for the nodes.
+// The environments of children: injection methods for the viewer, none for the nodes.
 #include "apps/understudy/environment.h"
 
 #include <gtest/gtest.h>
@@ -9,31 +9,32 @@ namespace {
 
 const Installation here{"/opt/understudy/bin", "/opt/understudy/lib"};
 
-TEST(Environment, EveryDoorHasItsVariable) {
-  EXPECT_EQ(settings_of(Door::audit, here).variable, "LD_AUDIT");
-  EXPECT_EQ(settings_of(Door::audit, here).value, "/opt/understudy/lib/libunderstudy-audit.so");
-  EXPECT_EQ(settings_of(Door::preload, here).variable, "LD_PRELOAD");
-  EXPECT_EQ(settings_of(Door::preload, here).value, "/opt/understudy/lib/libunderstudy.so");
-  EXPECT_EQ(settings_of(Door::folder, here).variable, "LD_LIBRARY_PATH");
-  EXPECT_EQ(settings_of(Door::folder, here).value, "/opt/understudy/lib/door");
+TEST(Environment, EveryMethodHasItsVariable) {
+  EXPECT_EQ(settings_of(InjectionMethod::audit, here).variable, "LD_AUDIT");
+  EXPECT_EQ(settings_of(InjectionMethod::audit, here).value, "/opt/understudy/lib/libunderstudy-audit.so");
+  EXPECT_EQ(settings_of(InjectionMethod::preload, here).variable, "LD_PRELOAD");
+  EXPECT_EQ(settings_of(InjectionMethod::preload, here).value, "/opt/understudy/lib/libunderstudy.so");
+  EXPECT_EQ(settings_of(InjectionMethod::folder, here).variable, "LD_LIBRARY_PATH");
+  EXPECT_EQ(settings_of(InjectionMethod::folder, here).value, "/opt/understudy/lib/entry");
 }
 
-TEST(Environment, PutsADoorInFrontOfWhatTheUserHas) {
+TEST(Environment, PutsALibraryInFrontOfWhatTheUserHas) {
   Environment environment{{"LD_PRELOAD", "libuser.so"}};
   put_in_front(environment, "LD_PRELOAD", "door.so");
   put_in_front(environment, "LD_AUDIT", "audit.so");
-  EXPECT_EQ(environment["LD_PRELOAD"], "door.so:libuser.so");
+  EXPECT_EQ(environment["LD_PRELOAD"], "injection method.so:libuser.so");
   EXPECT_EQ(environment["LD_AUDIT"], "audit.so");
 }
 
-TEST(Environment, NodesSeeNoDoorAndNoOptionOfTheViewer) {
-  const Environment nodes = node_environment({{"LD_AUDIT", "x.so"},
-                                              {"LD_PRELOAD", "y.so"},
-                                              {"LD_LIBRARY_PATH", "/usr/local/lib:/opt/understudy/lib/door:/a"},
-                                              {"UNDERSTUDY_VERIFY", "1"},
-                                              {"UNDERSTUDY_RUN_DIR", "/run"},
-                                              {"HOME", "/nowhere"}},
-                                             here);
+TEST(Environment, NodesSeeNoLibraryAndNoOptionOfTheViewer) {
+  const Environment nodes =
+      node_environment({{"LD_AUDIT", "x.so"},
+                        {"LD_PRELOAD", "y.so"},
+                        {"LD_LIBRARY_PATH", "/usr/local/lib:/opt/understudy/lib/entry:/a"},
+                        {"UNDERSTUDY_VERIFY", "1"},
+                        {"UNDERSTUDY_RUN_DIR", "/run"},
+                        {"HOME", "/nowhere"}},
+                       here);
   EXPECT_EQ(nodes.count("LD_AUDIT"), 0);
   EXPECT_EQ(nodes.count("LD_PRELOAD"), 0);
   EXPECT_EQ(nodes.count("UNDERSTUDY_VERIFY"), 0);
@@ -43,8 +44,8 @@ TEST(Environment, NodesSeeNoDoorAndNoOptionOfTheViewer) {
   EXPECT_EQ(nodes.count("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"), geteuid() == 0 ? 1 : 0);
 }
 
-TEST(Environment, ALibraryPathThatHeldOnlyTheDoorIsGone) {
-  EXPECT_EQ(node_environment({{"LD_LIBRARY_PATH", "/opt/understudy/lib/door"}}, here).count("LD_LIBRARY_PATH"),
+TEST(Environment, ALibraryPathThatHeldOnlyTheEntryLibraryIsGone) {
+  EXPECT_EQ(node_environment({{"LD_LIBRARY_PATH", "/opt/understudy/lib/entry"}}, here).count("LD_LIBRARY_PATH"),
             0);
 }
 

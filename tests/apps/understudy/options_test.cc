@@ -35,7 +35,7 @@ TEST(Options, DefaultsInTheTableAreThoseInTheStructure) {
     EXPECT_EQ(options.disable, untouched.disable);
     EXPECT_EQ(options.debug_tint, untouched.debug_tint);
     EXPECT_EQ(options.chain, untouched.chain);
-    EXPECT_EQ(options.stage_opengl, untouched.stage_opengl);
+    EXPECT_EQ(options.server_opengl, untouched.server_opengl);
     EXPECT_EQ(options.error, untouched.error);
     EXPECT_EQ(options.time_ms, untouched.time_ms);
   }

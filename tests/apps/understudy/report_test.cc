@@ -151,7 +151,7 @@ TEST(Report, SaysInOneLineWhatHappenedAndWhy) {
   const ProcessCounters* const one = counters.get();
   const std::string line = summary_line(Processes(&one, 1));
   EXPECT_EQ(line,
-            "understudy: 1 volume seen, 3 frames: 2 substituted (4 nodes), 1 left to the application: "
+            "understudy: 1 volume seen, 3 frames: 2 substituted (4 nodes), 1 not substituted: "
             "classification depends on position (lighting)");
   EXPECT_THAT(explanation_text(Processes(&one, 1)), HasSubstr("256 x 128 x 110 GL_INTENSITY8"));
 }
@@ -165,7 +165,7 @@ TEST(Report, NamesNobodyAsTheOneWhoDrewWhereNothingWasSubstituted) {
   counters->volume[0].left_because[0].count = 3;
   const ProcessCounters* const one = counters.get();
   EXPECT_EQ(summary_line(Processes(&one, 1)),
-            "understudy: 1 volume seen, 3 frames: 0 substituted, 3 left to the application: "
+            "understudy: 1 volume seen, 3 frames: 0 substituted, 3 not substituted: "
             "the render nodes did not answer (3x)");
   counters->frames_substituted = 1;
   EXPECT_THAT(summary_line(Processes(&one, 1)), HasSubstr("1 substituted (embedded)"));
@@ -176,13 +176,13 @@ TEST(Report, KnowsNothingOfFramesThatAStageElsewhereHasDrawnButTheirNumber) {
   counters->remote.is = 1;
   counters->remote.frames = 12;
   const ProcessCounters* const one = counters.get();
-  EXPECT_EQ(
-      summary_line(Processes(&one, 1)),
-      "understudy: 12 frames came from a stage on another machine, which knows what of them was substituted");
-  // A window with one buffer shows pictures that end no frame.
-  const auto stage = std::make_unique<ProcessCounters>();
-  stage->calls[0] = 100;
-  const std::array<const ProcessCounters*, 2> both = {counters.get(), stage.get()};
+  EXPECT_EQ(summary_line(Processes(&one, 1)),
+            "understudy: 12 frames came from a GL server on another machine, which knows what of them was "
+            "substituted");
+  // A window with one buffer shows images that end no frame.
+  const auto server = std::make_unique<ProcessCounters>();
+  server->calls[0] = 100;
+  const std::array<const ProcessCounters*, 2> both = {counters.get(), server.get()};
   EXPECT_THAT(summary_line(both), HasSubstr("0 frames: 0 substituted"));
 }
 

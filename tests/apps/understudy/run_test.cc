@@ -158,8 +158,8 @@ TEST_F(UnderstudyRun, TellsTheViewersSideItsOptions) {
 }
 
 TEST_F(UnderstudyRun, RefusesAValueThatAnOptionCannotTake) {
-  for (const char* wrong :
-       {"--verify=often", "-n -1", "-n 1000000", "--door window", "--backend vulkan", "--no-such-option"}) {
+  for (const char* wrong : {"--verify=often", "-n -1", "-n 1000000", "--injection window", "--backend vulkan",
+                            "--no-such-option"}) {
     EXPECT_EQ(understudy("run " + std::string(wrong) + " -- true").status, 2) << wrong;
   }
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/picture.h"
+#include "apps/understudy/image.h"
 #include "apps/understudy/study/measure.h"
 #include "tests/apps/render/render_command.h"
 
@@ -41,8 +41,8 @@ class StudyCommand : public ::testing::Test {
   std::string volume(const std::string& name, char value) const {
     return folder_.write(name + "_9x8x7_u8.raw", std::string(9 * 8 * 7, value));
   }
-  std::string table(const std::string& knots) const {
-    return volume("some", 'x') + "," + folder_.write("t.json", knots) + " --scene thin-fog --size 8";
+  std::string table(const std::string& control_points) const {
+    return volume("some", 'x') + "," + folder_.write("t.json", control_points) + " --scene thin-fog --size 8";
   }
 
   TemporaryFolder folder_;
@@ -140,7 +140,7 @@ TEST_F(StudyCommand, ThePageShowsInABrowser) {
             folder_.file("profile") + " --window-size=1300,3000 --screenshot=" + screenshot + " file://" +
             folder_.file("out/index.html"));
   ASSERT_EQ(shown.status, 0) << shown.output;
-  const Picture page = read_picture(screenshot);
+  const Image page = read_image(screenshot);
   EXPECT_EQ(page.width, 1300);
   // Text is dark, the plots' lines are blue and orange: of each there is plenty.
   std::array<int, 3> pixels{};

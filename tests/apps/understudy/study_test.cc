@@ -128,7 +128,7 @@ TEST_F(StudyResults, AreReadAgainByAStudyThatGoesOn) {
   EXPECT_EQ(found->time_ms, 3);
   EXPECT_EQ(found->error.rms, 0.125);
   EXPECT_EQ(scene.find({Scheme::post_classified, 0.5, 0.01}), nullptr);
-  EXPECT_TRUE(read_results(folder, 128, 4).scenes.empty()) << "pictures of another size";
+  EXPECT_TRUE(read_results(folder, 128, 4).scenes.empty()) << "images of another size";
   std::ifstream csv(folder / "study.csv");
   std::string line;
   std::getline(csv, line);

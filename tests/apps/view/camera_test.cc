@@ -1,4 +1,4 @@
-// The camera under the hand: what an arcball promises, and that pictures follow the pointer.
+// The camera under the hand: what an arcball promises, and that images follow the pointer.
 #include "apps/understudy/view/camera.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ double difference(const ViewCamera& a, const ViewCamera& b) {
 }
 
 /// Where a point of texture space is seen, in halves of the shorter side.
-PicturePoint seen(const ViewCamera& camera, const Vec3& t, int width, int height) {
+ImagePoint seen(const ViewCamera& camera, const Vec3& t, int width, int height) {
   const Matrix4 m = request_of(camera, width, height).texture_to_clip;
   std::array<double, 4> clip{};
   for (std::size_t row = 0; row < 4; ++row)
@@ -45,7 +45,7 @@ PicturePoint seen(const ViewCamera& camera, const Vec3& t, int width, int height
 struct Hand {
   std::mt19937 random{seed};
   double number(double low, double high) { return std::uniform_real_distribution<>(low, high)(random); }
-  PicturePoint point() { return {number(-1.3, 1.3), number(-1.3, 1.3)}; }
+  ImagePoint point() { return {number(-1.3, 1.3), number(-1.3, 1.3)}; }
   ViewCamera camera() {
     return {{number(-400, 400), number(-90, 90), number(0.5, 8), number(-200, 200)},
             {number(-0.5, 0.5), number(-0.5, 0.5)}};
@@ -56,7 +56,7 @@ TEST(Arcball, AnyWayEndsWhereOneMoveWouldAndBackAgainIsHome) {
   Hand hand;
   for (int i = 0; i < 1000; ++i) {
     const ViewCamera start = hand.camera();
-    const PicturePoint a = hand.point(), b = hand.point(), c = hand.point();
+    const ImagePoint a = hand.point(), b = hand.point(), c = hand.point();
     const ViewCamera by_way = rotated(rotated(start, a, b), b, c);
     EXPECT_LT(difference(by_way, rotated(start, a, c)), 1e-9);
     EXPECT_LT(difference(rotated(by_way, c, a), start), 1e-9);
@@ -88,23 +88,23 @@ TEST(Arcball, WhatIsInFrontFollowsTheHand) {
     const Vec3 extent{40, 50, 120};
     Vec3 front{};
     for (std::size_t k = 0; k < 3; ++k) front[k] = 0.5 + 20 * towards[k] / extent[k];
-    const PicturePoint before = seen(start, front, 400, 300);
-    const PicturePoint to{start.shift[0] + 0.05, start.shift[1] - 0.03};
-    const PicturePoint after = seen(rotated(start, start.shift, to), front, 400, 300);
+    const ImagePoint before = seen(start, front, 400, 300);
+    const ImagePoint to{start.shift[0] + 0.05, start.shift[1] - 0.03};
+    const ImagePoint after = seen(rotated(start, start.shift, to), front, 400, 300);
     EXPECT_GT(after[0], before[0]);
     EXPECT_LT(after[1], before[1]);
   }
 }
 
-TEST(Pan, MovesThePictureByWhatTheHandMovesWhateverItsShape) {
+TEST(Pan, MovesTheImageByWhatTheHandMovesWhateverItsShape) {
   Hand hand;
   for (const auto& [width, height] : {std::pair{400, 300}, std::pair{300, 400}})
     for (int i = 0; i < 200; ++i) {
       ViewCamera start = hand.camera();
       start.orbit.distance = std::max(2.0, start.orbit.distance);
       const Vec3 point{hand.number(0, 1), hand.number(0, 1), hand.number(0, 1)};
-      const PicturePoint before = seen(start, point, width, height);
-      const PicturePoint after = seen(panned(start, {0.25, -0.125}), point, width, height);
+      const ImagePoint before = seen(start, point, width, height);
+      const ImagePoint after = seen(panned(start, {0.25, -0.125}), point, width, height);
       EXPECT_NEAR(after[0] - before[0], 0.25, 1e-9);
       EXPECT_NEAR(after[1] - before[1], -0.125, 1e-9);
     }

@@ -53,7 +53,7 @@ class Page:
             time.sleep(0.05)
 
     def rests(self, what, after=""):
-        """A picture at rest, another than `after`, and what is said of it."""
+        """An image at rest, another than `after`, and what is said of it."""
         def rests_now():
             shown = self.shown()
             busy, figures = self.driver.execute_script(
@@ -62,11 +62,11 @@ class Page:
         self.until(rests_now, what)
 
     def image(self):
-        """The picture's own pixels, as the browser has them."""
-        return self.driver.execute_script("return document.getElementById('picture').toDataURL('image/png')")
+        """The image's own pixels, as the browser has them."""
+        return self.driver.execute_script("return document.getElementById('image').toDataURL('image/png')")
 
     def save(self, name):
-        """Keeps the screenshot, and answers with the picture that is shown."""
+        """Keeps the screenshot, and answers with the image that is shown."""
         self.driver.save_screenshot(str(OUT / f"{name}.png"))
         return self.image()
 
@@ -87,21 +87,21 @@ def nodes_of(view):
 
 
 def check(page, view):
-    page.rests("the first picture")
-    pictures = {"first": page.save("1-first")}
+    page.rests("the first image")
+    images = {"first": page.save("1-first")}
     assert re.fullmatch(r"\d+ × \d+ without loss: .* from hand to eye .*", page.text("frame")), page.text("frame")
-    page.until(lambda: "error 0." in page.text("exactness"), "the error of the first picture")
+    page.until(lambda: "error 0." in page.text("exactness"), "the error of the first image")
     assert len(page.driver.find_elements(By.CLASS_NAME, "rank")) == 2
     assert "secret" not in page.driver.current_url, "the secret stays in no address"
 
     before = page.shown()
-    stage = page.element("picture")
-    ActionChains(page.driver, duration=20).move_to_element(stage).click_and_hold().move_by_offset(120, 40).move_by_offset(
+    server = page.element("image")
+    ActionChains(page.driver, duration=20).move_to_element(server).click_and_hold().move_by_offset(120, 40).move_by_offset(
         60, -20).release().perform()
-    page.rests("the turned picture", before)
-    pictures["turned"] = page.save("2-turned")
+    page.rests("the turned image", before)
+    images["turned"] = page.save("2-turned")
 
-    # A knot is grasped where it is drawn, and lifted.
+    # A control point is grasped where it is drawn, and lifted.
     before = page.shown()
     editor = page.element("editor")
     place = page.driver.execute_script("""
@@ -111,12 +111,12 @@ def check(page, view):
         ).move_by_offset(0, -50).release().perform()
     page.rests("the edited transfer function", before)
     assert "opacity" in page.text("knot-text")
-    pictures["edited"] = page.save("3-edited")
+    images["edited"] = page.save("3-edited")
 
     before = page.shown()
     page.driver.execute_script("[...document.querySelectorAll('#tables button')].find(b => b.textContent === 'rainbow').click()")
     page.rests("a built-in table", before)
-    pictures["table"] = page.save("4-table")
+    images["table"] = page.save("4-table")
 
     before = page.shown()
     page.element("shows-surface").click()
@@ -126,34 +126,34 @@ def check(page, view):
     page.element("shows-volume").click()
     page.rests("a surface in the light", before)
     page.element("shows-boxes").click()
-    pictures["surface"] = page.save("5-surface")
+    images["surface"] = page.save("5-surface")
     drawn = page.driver.execute_script("""
       const boxes = document.getElementById('boxes');
       return boxes.getContext('2d').getImageData(0, 0, boxes.width, boxes.height).data.some(value => value > 0)""")
     assert drawn, "no boxes are drawn"
-    assert len(set(pictures.values())) == len(pictures), "two steps show the same picture"
+    assert len(set(images.values())) == len(images), "two steps show the same image"
 
     # A page that is loaded again shows what it showed.
     page.driver.refresh()
     page.rests("the page once more")
-    assert page.save("6-again") == pictures["surface"], "the page has forgotten what it showed"
+    assert page.save("6-again") == images["surface"], "the page has forgotten what it showed"
 
     before = page.shown()
     os.kill(nodes_of(view)[-1], signal.SIGKILL)
-    ActionChains(page.driver, duration=20).move_to_element(page.element("picture")).click_and_hold().move_by_offset(
+    ActionChains(page.driver, duration=20).move_to_element(page.element("image")).click_and_hold().move_by_offset(
         10, 10).release().perform()
     page.until(lambda: "render nodes are gone" in page.text("banner-text") or page.text("banner-text").startswith("loading"),
                "a word that the nodes are gone")
     page.save("7-lost")
-    page.rests("a picture of new nodes", before)
+    page.rests("an image of new nodes", before)
     assert not page.element("banner").is_displayed()
     page.save("8-back")
     trouble = [entry for entry in page.driver.get_log("browser") if entry["level"] == "SEVERE"]
     assert not trouble, trouble
 
 
-def stranger(link):
-    """Without the secret there is a question and no picture."""
+def pending(link):
+    """Without the secret there is a question and no image."""
     page = Page(link.split("#")[0])
     try:
         page.until(lambda: page.element("ask").is_displayed(), "the question for the secret")
@@ -182,7 +182,7 @@ def main():
             check(page, view)
         finally:
             page.driver.quit()
-        stranger(link)
+        pending(link)
     finally:
         view.terminate()
         view.wait()

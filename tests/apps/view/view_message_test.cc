@@ -37,7 +37,7 @@ FileScene some_scene() {
   SceneArguments arguments;
   arguments.volume = "synthetic:24x20x16:u8:lobes";
   FileScene scene = scene_of(arguments);
-  widen_margin(scene);
+  widen_ghost_layer(scene);
   return scene;
 }
 
@@ -49,13 +49,13 @@ TEST(ViewMessage, EveryKeyArrives) {
   EXPECT_EQ(message.took_ms, 12.5);
   EXPECT_EQ(message.size, (std::array{320, 200}));
   EXPECT_EQ(message.camera, (ViewCamera{{10, -20, 3, 5}, {0.1, -0.2}}));
-  EXPECT_EQ(message.rotate, (std::array<PicturePoint, 2>{{{0, 0}, {0.1, 0.2}}}));
-  EXPECT_EQ(message.pan, (PicturePoint{0.3, 0.4}));
+  EXPECT_EQ(message.rotate, (std::array<ImagePoint, 2>{{{0, 0}, {0.1, 0.2}}}));
+  EXPECT_EQ(message.pan, (ImagePoint{0.3, 0.4}));
   ASSERT_TRUE(message.zoom);
   EXPECT_EQ(message.zoom->by, 2);
-  EXPECT_EQ(message.zoom->at, (PicturePoint{0.5, 0.6}));
+  EXPECT_EQ(message.zoom->at, (ImagePoint{0.5, 0.6}));
   ASSERT_TRUE(message.table);
-  EXPECT_EQ(message.table->knots.at(1).opacity, 0.5);
+  EXPECT_EQ(message.table->control_points.at(1).opacity, 0.5);
   EXPECT_EQ(message.shows_volume, false);
   ASSERT_TRUE(message.surfaces);
   EXPECT_EQ(message.surfaces->at(0).at, 0.4);
@@ -79,10 +79,10 @@ TEST(ViewMessage, WhatCannotBeBelievedIsRefusedByItsKey) {
   EXPECT_THAT(refusal(R"({"surfaces": [{"at": 2, "colour": [0, 0, 0], "opacity": 1}]})"),
               HasSubstr("'surfaces'"));
   EXPECT_THAT(refusal(R"({"run": "rm -rf /"})"), HasSubstr("no page sends"));
-  std::string knots = R"({"table": {"knots": [)";
+  std::string control_points = R"({"table": {"knots": [)";
   for (int i = 0; i < 257; ++i)
-    knots += std::string(i > 0 ? "," : "") + R"({"at":0.5,"colour":[0,0,0],"opacity":0})";
-  EXPECT_THAT(refusal(knots + "]}}"), HasSubstr("more than 256 knots"));
+    control_points += std::string(i > 0 ? "," : "") + R"({"at":0.5,"colour":[0,0,0],"opacity":0})";
+  EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 256 knots"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes + 1, ' ')), HasSubstr("over the limit"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes, '[')), HasSubstr("no JSON object"));
 }
@@ -118,7 +118,7 @@ TEST(ViewMessage, DamagedMessagesAreRefusedOrCanBeDrawn) {
   EXPECT_GT(believed, 100);
 }
 
-TEST(ViewState, PicturesThatMoveAreAsLargeAsTheirTimeAllows) {
+TEST(ViewState, ImagesThatMoveAreAsLargeAsTheirTimeAllows) {
   ViewState state(some_scene());
   ViewMessage moving;
   moving.still = false;
@@ -139,7 +139,7 @@ TEST(ViewState, PicturesThatMoveAreAsLargeAsTheirTimeAllows) {
     state.apply(moving);
   }
   EXPECT_EQ(state.size(), (std::array{1000, 800}));
-  // It gets very slow, and still there is a picture.
+  // It gets very slow, and still there is an image.
   for (int i = 0; i < 30; ++i) {
     state.took(state.size(), 1e6);
     moving.took_ms = 1e6;
@@ -150,7 +150,7 @@ TEST(ViewState, PicturesThatMoveAreAsLargeAsTheirTimeAllows) {
   EXPECT_EQ(state.size(), (std::array{1000, 800})) << "at rest all of it";
 }
 
-TEST(ViewState, TheMarginIsWideEnoughForWhateverMayBeAsked) {
+TEST(ViewState, TheGhostLayerIsWideEnoughForWhateverMayBeAsked) {
   const FileScene scene = some_scene();
   volume::TexelFigures values;
   values.low = 0;

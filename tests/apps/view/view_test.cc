@@ -1,4 +1,4 @@
-// `understudy view` as a whole: its pictures are those of `understudy render`, whatever viewers and nodes do.
+// `understudy view` as a whole: its images are those of `understudy render`, whatever viewers and nodes do.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,18 +25,18 @@ const std::string volume_name = "synthetic:40x36x32:u8:lobes";
 
 class View : public Render {
  protected:
-  Picture decoded(const std::string& png) const {
+  Image decoded(const std::string& png) const {
     const std::string path = folder_.write("shown.png", std::as_bytes(std::span(png)));
-    return read_picture(path);
+    return read_image(path);
   }
-  Picture rendered(const std::string& arguments) const {
+  Image rendered(const std::string& arguments) const {
     const Result result = render(arguments);
     EXPECT_EQ(result.status, 0) << arguments << ": " << result.output;
-    return read_picture(folder_.file("p.png"));
+    return read_image(folder_.file("p.png"));
   }
 };
 
-double greatest_difference(const Picture& a, const Picture& b) {
+double greatest_difference(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) return 1e300;
   double greatest = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i)
@@ -44,14 +44,14 @@ double greatest_difference(const Picture& a, const Picture& b) {
   return greatest;
 }
 
-double brightest(const Picture& picture) {
+double brightest(const Image& image) {
   double most = 0;
-  for (std::size_t i = 0; i < picture.rgba.size(); ++i)
-    if (i % 4 != 3) most = std::max(most, double(picture.rgba[i]));
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i % 4 != 3) most = std::max(most, double(image.rgba[i]));
   return most;
 }
 
-/// Ready to be asked for pictures.
+/// Ready to be asked for images.
 Json greeted(WebClient& client, const ViewProcess& process) {
   client.greet(process.secret());
   return client.wait_for("volume").json;
@@ -59,30 +59,30 @@ Json greeted(WebClient& client, const ViewProcess& process) {
 
 const Json some_camera{{"azimuth", -50}, {"elevation", 35}, {"distance", 3}, {"roll", 12}, {"shift", {0, 0}}};
 
-TEST_F(View, AtRestABrowserHasThePictureOfRender) {
+TEST_F(View, AtRestABrowserHasTheImageOfRender) {
   const ViewProcess process({volume_name, "--table", "rainbow", "--size", "200x150"});
   WebClient client(process.port());
   const Json volume = greeted(client, process);
   EXPECT_EQ(volume.at("nodes"), 0);
-  const WebClient::Message first = client.picture({});
+  const WebClient::Message first = client.image({});
   EXPECT_EQ(first.json.at("format"), "png");
-  const Picture shown = decoded(first.picture);
+  const Image shown = decoded(first.image);
   EXPECT_GT(brightest(shown), 0.2);
   const std::string common = volume_name + " --size 200x150 ";
   EXPECT_EQ(greatest_difference(shown, rendered(common + "--table rainbow")), 0);
-  EXPECT_EQ(greatest_difference(decoded(client.picture({{"camera", some_camera}}).picture),
+  EXPECT_EQ(greatest_difference(decoded(client.image({{"camera", some_camera}}).image),
                                 rendered(common + "--table rainbow --camera=-50,35,3,12")),
             0);
   // A table from the page, light, a surface and another step.
   const Json table{{"knots", volume.at("tables").at("engine")}};
   EXPECT_EQ(
-      greatest_difference(decoded(client.picture({{"table", table}, {"light", true}, {"step", 0.5}}).picture),
+      greatest_difference(decoded(client.image({{"table", table}, {"light", true}, {"step", 0.5}}).image),
                           rendered(common + "--table engine --camera=-50,35,3,12 --light all --step 0.5")),
       0);
   const Json surface{{"at", 0.5}, {"colour", {1, 128 / 255.0, 0}}, {"opacity", 1}};
   const Json surface_alone{{"surfaces", Json::array({surface})}, {"volume", false}, {"step", 1}};
   EXPECT_EQ(greatest_difference(
-                decoded(client.picture(surface_alone).picture),
+                decoded(client.image(surface_alone).image),
                 rendered(common + "--surface 50%,#ff8000 --no-volume --camera=-50,35,3,12 --light all")),
             0);
 }
@@ -99,7 +99,7 @@ TEST_F(View, TheVolumeSaysItsValuesAndEveryTexelOnce) {
   EXPECT_GT(counts.front(), 0U);
   EXPECT_GT(counts.back(), 0U);
 
-  const Json head = client.picture({{"size", {128, 96}}}).json;
+  const Json head = client.image({{"size", {128, 96}}}).json;
   Json figures = client.wait_for("figures").json;
   EXPECT_FALSE(figures.contains("error")) << "the error follows";
   while (figures.value("rays", 0) < 20) figures = client.wait_for("figures").json;
@@ -127,20 +127,20 @@ TEST_F(View, WhileItMovesTheNewestCameraWinsAndNothingQueuesUp) {
   constexpr int requests = 200;
   for (int i = 1; i <= requests; ++i)
     client.send({{"sequence", i}, {"still", i == requests}, {"rotate", {{0, 0}, {0.01, 0.003}}}});
-  int pictures = 0;
+  int images = 0;
   std::string last;
   for (int sequence = 0; sequence < requests;) {
-    const WebClient::Message message = client.wait_for("picture");
+    const WebClient::Message message = client.wait_for("image");
     EXPECT_GT(message.json.at("sequence"), sequence) << "never an older one";
     sequence = message.json.at("sequence");
     EXPECT_EQ(message.json.at("format"), sequence == requests ? "png" : "jpeg");
-    last = message.picture;
-    ++pictures;
+    last = message.image;
+    ++images;
   }
-  std::printf("%d pictures for %d requests\n", pictures, requests);
-  EXPECT_LT(pictures, requests);
+  std::printf("%d images for %d requests\n", images, requests);
+  EXPECT_LT(images, requests);
   // All that the hand did counts nevertheless.
-  const Json camera = client.picture({}).json.at("camera");
+  const Json camera = client.image({}).json.at("camera");
   EXPECT_EQ(
       greatest_difference(decoded(last),
                           rendered(volume_name + " --size 400x400 --camera=" +
@@ -156,18 +156,18 @@ TEST_F(View, BrowsersHaveCamerasOfTheirOwnAndMayComeAndGoAtAnyTime) {
   WebClient first(process.port()), second(process.port());
   greeted(first, process);
   greeted(second, process);
-  const std::string before = first.picture({}).picture;
-  EXPECT_NE(second.picture({{"camera", some_camera}}).picture, before);
-  EXPECT_EQ(first.picture({}).picture, before);
+  const std::string before = first.image({}).image;
+  EXPECT_NE(second.image({{"camera", some_camera}}).image, before);
+  EXPECT_EQ(first.image({}).image, before);
   const std::size_t descriptors = process.descriptors();
-  // Pages that are loaded again and again, while their pictures are made or on their way.
+  // Pages that are loaded again and again, while their images are made or on their way.
   for (int i = 0; i < 40; ++i) {
     WebClient client(process.port());
     greeted(client, process);
     client.send({{"sequence", 1}, {"size", {1500, 1500}}});
     if (i % 2 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(i));
   }
-  EXPECT_EQ(first.picture({}).picture, before);
+  EXPECT_EQ(first.image({}).image, before);
   const auto end = std::chrono::steady_clock::now() + 30s;
   while (process.descriptors() > descriptors && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(10ms);
@@ -182,7 +182,7 @@ TEST_F(View, NonsenseIsRefusedByName) {
   EXPECT_THAT(client.wait_for("impossible").json.at("text"), HasSubstr("no JSON"));
   client.send({{"step", 1e9}});
   EXPECT_THAT(client.wait_for("impossible").json.at("text"), HasSubstr("'step'"));
-  EXPECT_EQ(client.picture({}).json.at("width"), 64);
+  EXPECT_EQ(client.image({}).json.at("width"), 64);
 }
 
 std::vector<pid_t> nodes_of(pid_t launcher) {
@@ -208,12 +208,12 @@ TEST_F(View, NodesThatDieAreSaidAndReplaced) {
   const ViewProcess process({volume_name, "-n", "2", "--size", "200x150"});
   WebClient client(process.port());
   greeted(client, process);
-  const Picture before = decoded(client.picture({{"camera", some_camera}}).picture);
+  const Image before = decoded(client.image({{"camera", some_camera}}).image);
   EXPECT_GT(brightest(before), 0.1);
   const std::vector<pid_t> nodes = nodes_of(process.id());
   ASSERT_EQ(nodes.size(), 2U);
   kill(nodes.back(), SIGKILL);
-  // It is noticed when a picture is wanted.
+  // It is noticed when an image is wanted.
   client.send({{"sequence", 100}});
   const Json lost = client.wait_for("status").json;
   EXPECT_EQ(lost.at("state"), "lost");
@@ -221,12 +221,12 @@ TEST_F(View, NodesThatDieAreSaidAndReplaced) {
   std::string state;
   while (state != "ready") state = client.wait_for("status").json.at("state");
   client.wait_for("volume");
-  const WebClient::Message again = client.wait_for("picture");
-  EXPECT_LE(greatest_difference(decoded(again.picture), before), 1.01 / 255)
+  const WebClient::Message again = client.wait_for("image");
+  EXPECT_LE(greatest_difference(decoded(again.image), before), 1.01 / 255)
       << "what was asked for is answered after all";
 }
 
-TEST_F(View, AWindowSavesThePictureOfRender) {
+TEST_F(View, AWindowSavesTheImageOfRender) {
   const auto display = viewer_test::VirtualDisplay::start();
   if (!display) GTEST_SKIP() << "Xvfb is not installed";
   for (const char* nodes : {"", "-n 2 "}) {
@@ -235,7 +235,7 @@ TEST_F(View, AWindowSavesThePictureOfRender) {
               " --table rainbow --size 220x160 --frames 3 --orbit 25 --save " + folder_.file("w.png"));
     ASSERT_EQ(result.status, 0) << result.output;
     EXPECT_LE(
-        greatest_difference(read_picture(folder_.file("w.png")),
+        greatest_difference(read_image(folder_.file("w.png")),
                             rendered(nodes + volume_name + " --table rainbow --size 220x160 --camera 80,20,4")),
         *nodes == '\0' ? 0 : 1.01 / 255);
   }

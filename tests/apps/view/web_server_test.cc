@@ -42,7 +42,7 @@ class WebServerTest : public ::testing::Test {
                               const std::lock_guard lock(mutex_);
                               said_ += text;
                             },
-                            [this](WebServer::Viewer) { ++pictures_; }, [this](WebServer::Viewer) { ++left_; }},
+                            [this](WebServer::Viewer) { ++images_; }, [this](WebServer::Viewer) { ++left_; }},
         limits);
   }
   template <class Condition>
@@ -71,7 +71,7 @@ class WebServerTest : public ::testing::Test {
   }
 
   boost::asio::io_context io_;
-  std::atomic<int> joined_ = 0, left_ = 0, pictures_ = 0;
+  std::atomic<int> joined_ = 0, left_ = 0, images_ = 0;
   std::mutex mutex_;
   std::string said_;
   std::unique_ptr<WebServer> server_;
@@ -171,7 +171,7 @@ TEST_F(WebServerTest, AViewersMessagesAreBounded) {
   EXPECT_TRUE(comes_true([&] { return left_ == 1; }));
 }
 
-TEST_F(WebServerTest, SilentAndSlowStrangersAreShownTheDoor) {
+TEST_F(WebServerTest, SilentAndSlowClientsAreClosed) {
   WebLimits limits;
   limits.greeting = 300ms;
   start(limits);
@@ -202,14 +202,14 @@ TEST_F(WebServerTest, AViewerThatDoesNotReadIsDropped) {
   client.greet(secret);
   ASSERT_TRUE(comes_true([&] { return joined_ == 1; }));
   // More than sockets buffer: it cannot leave.
-  server_->send_picture(1, std::vector<std::byte>(std::size_t(64) << 20U));
+  server_->send_image(1, std::vector<std::byte>(std::size_t(64) << 20U));
   EXPECT_TRUE(comes_true([&] { return left_ == 1; }));
-  EXPECT_EQ(pictures_, 0);
+  EXPECT_EQ(images_, 0);
 
   WebClient second(server_->port());
   second.greet(secret);
   ASSERT_TRUE(comes_true([&] { return joined_ == 2; }));
-  for (int i = 0; i < 20; ++i) server_->send_picture(2, std::vector<std::byte>(std::size_t(8) << 20U));
+  for (int i = 0; i < 20; ++i) server_->send_image(2, std::vector<std::byte>(std::size_t(8) << 20U));
   EXPECT_TRUE(comes_true([&] { return left_ == 2; }));
 }
 
@@ -236,7 +236,7 @@ void raise_descriptor_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-TEST_F(WebServerTest, AFloodOfStrangersTakesNobodysPlaceAndLeavesNothing) {
+TEST_F(WebServerTest, AFloodOfUnauthenticatedClientsTakesNobodysPlaceAndLeavesNothing) {
   raise_descriptor_limit();
   start();
   WebClient viewer(server_->port());
@@ -246,16 +246,16 @@ TEST_F(WebServerTest, AFloodOfStrangersTakesNobodysPlaceAndLeavesNothing) {
   const int before = own_descriptors();
   int most = 0;
   {
-    std::deque<tcp::socket> strangers;
+    std::deque<tcp::socket> pending_clients;
     for (int i = 0; i < 1000; ++i) {
-      strangers.push_back(connected());
+      pending_clients.push_back(connected());
       if (i % 50 == 49) {
         std::this_thread::sleep_for(5ms);
         // Both ends are this process's.
-        most = std::max(most, own_descriptors() - before - int(strangers.size()));
+        most = std::max(most, own_descriptors() - before - int(pending_clients.size()));
       }
     }
-    std::printf("1000 strangers: at most %d descriptors of the server's\n", most);
+    std::printf("1000 pending clients: at most %d descriptors of the server's\n", most);
     EXPECT_LE(most, int(WebLimits().connections) + 50) << "and those that wait to be let in";
     WebClient newcomer(server_->port());
     newcomer.greet(secret);

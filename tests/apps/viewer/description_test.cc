@@ -1,4 +1,4 @@
-// What the viewer writes with --describe is enough to recompute its picture without OpenGL: an emulation in
+// What the viewer writes with --describe is enough to recompute its image without OpenGL: an emulation in
 // double precision that knows nothing but the description and the volume file agrees with it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -62,13 +62,13 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 
 class Description : public testing::TestWithParam<Case> {};
 
-TEST_P(Description, IsEnoughToRecomputeThePicture) {
+TEST_P(Description, IsEnoughToRecomputeTheImage) {
   const auto& [mode, type, orthographic] = GetParam();
   const TemporaryFolder folder;
   const std::string file = type == "u8"    ? write_volume<std::uint8_t>(folder, type, 255, 0)
                            : type == "i16" ? write_volume<std::int16_t>(folder, type, 4000, -1000)
                                            : write_volume<float>(folder, type, 7.5, 2);
-  const std::string png = folder.file("picture.png"), json = folder.file("picture.json");
+  const std::string png = folder.file("image.png"), json = folder.file("image.json");
   std::vector<std::string> arguments = {file,           "--mode",      mode,         "--preset",
                                         "engine",       "--offscreen", "--no-frame", "--window-size",
                                         "64",           "64",          "--azimuth",  "35",
@@ -91,8 +91,8 @@ TEST_P(Description, IsEnoughToRecomputeThePicture) {
     for (const Json& vertex : slices.at("polygons_texture")[i])
       EXPECT_NEAR(dot(normal, vertex.get<Vec3>()), slices.at("offsets")[i].get<double>(), 1e-6);
 
-  const Picture picture = read_png(png);
-  const std::vector<double> drawn(picture.rgb.begin(), picture.rgb.end());
+  const Image image = read_png(png);
+  const std::vector<double> drawn(image.rgb.begin(), image.rgb.end());
   const Difference d = difference(drawn, emulation::emulate(description));
   const double spread = *std::max_element(drawn.begin(), drawn.end());
   fmt::print("{} {} {}: {} slices, RMS {:.3f}, max {:.2f} of 255\n", mode, type,

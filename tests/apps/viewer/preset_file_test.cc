@@ -11,7 +11,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-TEST(PresetFile, HoldsItsKnots) {
+TEST(PresetFile, HoldsItsControlPoints) {
   const viewer_test::TemporaryFolder folder;
   const PresetFile file(folder.write("t.json", R"({"knots": [
       {"at": 0.25, "colour": [1, 0.5, 0], "opacity": 0}, {"at": 0.75, "colour": [0, 0.5, 1], "opacity": 1}]})"));
@@ -28,21 +28,23 @@ TEST(PresetFile, SaysWhatIsWrong) {
     try {
       const PresetFile file(folder.write("t.json", text));
     } catch (const Error& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr("t.json"), HasSubstr("write {\"knots\""))) << text;
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("t.json"), HasSubstr("write {\"control points\""))) << text;
       return error.what();
     }
     return "nothing";
   };
-  const std::string knot = R"({"at": 0.5, "colour": [1, 1, 1], "opacity": 0})";
+  const std::string point = R"({"at": 0.5, "colour": [1, 1, 1], "opacity": 0})";
   EXPECT_THAT(trouble("{"), HasSubstr("no transfer function"));
   EXPECT_THAT(trouble("{}"), HasSubstr("no transfer function"));
-  EXPECT_THAT(trouble("{\"knots\": [" + knot + "]}"), HasSubstr("1 knots are too few"));
-  EXPECT_THAT(trouble("{\"knots\": [" + knot + R"(, {"at": 0, "colour": [1, 1, 1], "opacity": 0}]})"),
-              HasSubstr("knot 2 lies before"));
-  EXPECT_THAT(trouble("{\"knots\": [" + knot + R"(, {"at": 1, "colour": [1, 1, 1], "opacity": -1}]})"),
-              HasSubstr("knot 2 holds -1"));
-  EXPECT_THAT(trouble("{\"knots\": [" + knot + R"(, {"at": 1, "colour": [1, null, 1], "opacity": 1}]})"),
-              HasSubstr("no transfer function"));
+  EXPECT_THAT(trouble("{\"control points\": [" + point + "]}"), HasSubstr("1 control points are too few"));
+  EXPECT_THAT(trouble("{\"control points\": [" + point + R"(, {"at": 0, "colour": [1, 1, 1], "opacity": 0}]})"),
+              HasSubstr("control point 2 lies before"));
+  EXPECT_THAT(
+      trouble("{\"control points\": [" + point + R"(, {"at": 1, "colour": [1, 1, 1], "opacity": -1}]})"),
+      HasSubstr("control point 2 holds -1"));
+  EXPECT_THAT(
+      trouble("{\"control points\": [" + point + R"(, {"at": 1, "colour": [1, null, 1], "opacity": 1}]})"),
+      HasSubstr("no transfer function"));
   EXPECT_THROW(PresetFile(folder.file("nothing")), Error);
 }
 

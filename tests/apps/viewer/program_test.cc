@@ -51,13 +51,12 @@ struct Statistics {
   std::size_t colours = 0;
 };
 
-Statistics statistics(const Picture& picture) {
+Statistics statistics(const Image& image) {
   Statistics result;
   std::set<std::array<std::uint8_t, 3>> colours;
-  const std::size_t pixels = picture.rgb.size() / 3;
+  const std::size_t pixels = image.rgb.size() / 3;
   for (std::size_t i = 0; i < pixels; ++i) {
-    const std::array<std::uint8_t, 3> colour = {picture.rgb[3 * i], picture.rgb[3 * i + 1],
-                                                picture.rgb[3 * i + 2]};
+    const std::array<std::uint8_t, 3> colour = {image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]};
     colours.insert(colour);
     result.lit += (colour[0] | colour[1] | colour[2]) != 0;
     result.mean += (colour[0] + colour[1] + colour[2]) / 3.0;
@@ -68,8 +67,8 @@ Statistics statistics(const Picture& picture) {
   return result;
 }
 
-Picture picture_of(const TemporaryFolder& folder, std::vector<std::string> arguments) {
-  const std::string png = folder.file("picture.png");
+Image image_of(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  const std::string png = folder.file("image.png");
   std::filesystem::remove(png);
   arguments.insert(arguments.end(), {"--offscreen", "--window-size", "128", "128", "--screenshot", png});
   const Outcome outcome = run_viewer(arguments);
@@ -80,21 +79,21 @@ Picture picture_of(const TemporaryFolder& folder, std::vector<std::string> argum
 TEST(Program, EveryModeDrawsTheBallAndTheModesAgree) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  std::vector<Picture> pictures;
+  std::vector<Image> images;
   for (const char* mode : {"rgba", "table", "core"}) {
     SCOPED_TRACE(mode);
-    pictures.push_back(picture_of(folder, {file, "--mode", mode}));
-    const Picture& picture = pictures.back();
-    ASSERT_EQ(picture.width, 128);
-    ASSERT_EQ(picture.height, 128);
-    const Statistics s = statistics(picture);
+    images.push_back(image_of(folder, {file, "--mode", mode}));
+    const Image& image = images.back();
+    ASSERT_EQ(image.width, 128);
+    ASSERT_EQ(image.height, 128);
+    const Statistics s = statistics(image);
     std::printf("%s: %.3f of the pixels lit, mean %.1f, %zu colours\n", mode, s.lit, s.mean, s.colours);
     EXPECT_GT(s.lit, 0.15);
     EXPECT_LT(s.lit, 0.7);
     EXPECT_GT(s.colours, 300U);
   }
-  const Difference classification = difference(pictures[0], pictures[1]);
-  const Difference profile = difference(pictures[1], pictures[2]);
+  const Difference classification = difference(images[0], images[1]);
+  const Difference profile = difference(images[1], images[2]);
   std::printf("rgba against table: PSNR %.2f dB; table against core: PSNR %.2f dB\n", classification.psnr,
               profile.psnr);
   // The order of interpolation and classification is the only difference between rgba and table, and there is
@@ -106,17 +105,17 @@ TEST(Program, EveryModeDrawsTheBallAndTheModesAgree) {
 TEST(Program, EveryOtherModeShowsTheSameBall) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  const Picture table = picture_of(folder, {file});
+  const Image table = image_of(folder, {file});
   // Bricks differ by rounding, pre-integration and stacks by what lies between samples, light by shades.
   for (const auto& [mode, likeness] :
        {std::pair{"time", 50.0}, {"bricks", 45.0}, {"preint", 30.0}, {"stacks", 24.0}, {"lit", 20.0}}) {
-    const Difference d = difference(table, picture_of(folder, {file, "--mode", mode}));
+    const Difference d = difference(table, image_of(folder, {file, "--mode", mode}));
     std::printf("table against %s: PSNR %.2f dB\n", mode, d.psnr);
     EXPECT_GT(d.psnr, likeness) << mode;
   }
-  const Picture first = picture_of(folder, {file, "--mode", "time"});
-  EXPECT_NE(first.rgb, picture_of(folder, {file, "--mode", "time", "--frames", "5"}).rgb) << "time goes on";
-  EXPECT_NE(table.rgb, picture_of(folder, {file, "--mode", "lit"}).rgb) << "there is light";
+  const Image first = image_of(folder, {file, "--mode", "time"});
+  EXPECT_NE(first.rgb, image_of(folder, {file, "--mode", "time", "--frames", "5"}).rgb) << "time goes on";
+  EXPECT_NE(table.rgb, image_of(folder, {file, "--mode", "lit"}).rgb) << "there is light";
 }
 
 TEST(Program, BricksOfALargeVolumeShowNoSeams) {
@@ -134,7 +133,7 @@ TEST(Program, BricksOfALargeVolumeShowNoSeams) {
     whole.insert(whole.end(), camera.begin(), camera.end());
     std::vector<std::string> bricks = whole;
     bricks.insert(bricks.end(), {"--mode", "bricks"});
-    const Difference d = difference(picture_of(folder, whole), picture_of(folder, bricks));
+    const Difference d = difference(image_of(folder, whole), image_of(folder, bricks));
     std::printf("whole against bricks: PSNR %.2f dB\n", d.psnr);
     EXPECT_GT(d.psnr, 45);
   }
@@ -148,33 +147,33 @@ TEST(Program, UnderShowsWhatOverShows) {
                                            "0.5", "0.2",    "--opaque", "--second"};
     std::vector<std::string> under = over;
     under.insert(under.end(), {"--operator", "under"});
-    const Difference d = difference(picture_of(folder, over), picture_of(folder, under));
+    const Difference d = difference(image_of(folder, over), image_of(folder, under));
     std::printf("%s, over against under: PSNR %.2f dB\n", mode, d.psnr);
     EXPECT_GT(d.psnr, 33) << mode;
   }
 }
 
-TEST(Program, OperatorsAndGeometryChangeThePicture) {
+TEST(Program, OperatorsAndGeometryChangeTheImage) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  std::set<std::vector<std::uint8_t>> pictures;
+  std::set<std::vector<std::uint8_t>> images;
   const std::vector<std::vector<std::string>> changes = {
       {},           {"--operator", "max"}, {"--operator", "min"},   {"--operator", "add"},
       {"--opaque"}, {"--second"},          {"--second", "--opaque"}};
   for (const std::vector<std::string>& change : changes) {
     std::vector<std::string> arguments = {file, "--background", "0.5", "0.5", "0.5"};
     arguments.insert(arguments.end(), change.begin(), change.end());
-    pictures.insert(picture_of(folder, arguments).rgb);
+    images.insert(image_of(folder, arguments).rgb);
   }
-  EXPECT_EQ(pictures.size(), changes.size());
+  EXPECT_EQ(images.size(), changes.size());
 }
 
 TEST(Program, FrameAndAxesAreOutsideTheVolumeAndCanBeSwitchedOff) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  const Picture with = picture_of(folder, {file}), without = picture_of(folder, {file, "--no-frame"});
+  const Image with = image_of(folder, {file}), without = image_of(folder, {file, "--no-frame"});
   EXPECT_GT(statistics(with).lit, statistics(without).lit + 0.01);
-  const auto pure_red = [](const Picture& p) {
+  const auto pure_red = [](const Image& p) {
     for (std::size_t i = 0; i < p.rgb.size(); i += 3)
       if (p.rgb[i] > 80 && p.rgb[i + 1] < p.rgb[i] / 4 && p.rgb[i + 2] < p.rgb[i] / 4) return true;
     return false;
@@ -190,7 +189,7 @@ TEST(Program, SolidFrameHidesAndIsHiddenByTheVolume) {
   const std::vector<std::string> arguments = {file, "--preset", "step"};
   std::vector<std::string> bare = arguments;
   bare.emplace_back("--no-frame");
-  const Picture with = picture_of(folder, arguments), without = picture_of(folder, bare);
+  const Image with = image_of(folder, arguments), without = image_of(folder, bare);
   std::size_t block = 0, front_lines = 0;
   for (std::size_t i = 0; i < with.rgb.size(); i += 3) {
     if (without.rgb[i] == 0) continue;
@@ -202,19 +201,19 @@ TEST(Program, SolidFrameHidesAndIsHiddenByTheVolume) {
   EXPECT_LT(front_lines, block / 10) << "lines behind are not";
 }
 
-TEST(Program, TheSameOptionsGiveTheSamePictureOnBothKindsOfSurface) {
+TEST(Program, TheSameOptionsGiveTheSameImageOnBothKindsOfSurface) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  const Picture first = picture_of(folder, {file, "--mode", "core"});
-  EXPECT_EQ(first.rgb, picture_of(folder, {file, "--mode", "core"}).rgb);
-  const Picture pbuffer = picture_of(folder, {file, "--offscreen-surface", "pbuffer", "--no-frame"});
-  const Picture framebuffer = picture_of(folder, {file, "--offscreen-surface", "framebuffer", "--no-frame"});
+  const Image first = image_of(folder, {file, "--mode", "core"});
+  EXPECT_EQ(first.rgb, image_of(folder, {file, "--mode", "core"}).rgb);
+  const Image pbuffer = image_of(folder, {file, "--offscreen-surface", "pbuffer", "--no-frame"});
+  const Image framebuffer = image_of(folder, {file, "--offscreen-surface", "framebuffer", "--no-frame"});
   const Difference d = difference(pbuffer, framebuffer);
   std::printf("pbuffer against framebuffer object: PSNR %.2f dB\n", d.psnr);
   EXPECT_GT(d.psnr, 50);
 }
 
-TEST(Program, AWindowShowsTheSamePicture) {
+TEST(Program, AWindowShowsTheSameImage) {
   const std::optional<VirtualDisplay> display = VirtualDisplay::start();
   if (!display) GTEST_SKIP() << "Xvfb is not installed";
   const TemporaryFolder folder;
@@ -227,7 +226,7 @@ TEST(Program, AWindowShowsTheSamePicture) {
                                        display->name());
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("median: "));
-    const Difference d = difference(read_png(png), picture_of(folder, {file, "--mode", mode}));
+    const Difference d = difference(read_png(png), image_of(folder, {file, "--mode", mode}));
     std::printf("%s: window against off screen: PSNR %.2f dB\n", mode, d.psnr);
     EXPECT_GT(d.psnr, 50);
   }
@@ -236,16 +235,16 @@ TEST(Program, AWindowShowsTheSamePicture) {
 TEST(Program, OrbitTurnsTheLastFrameToWhereTheCameraWouldBe) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  const Picture orbited = picture_of(folder, {file, "--azimuth", "10", "--frames", "3", "--orbit", "15"});
-  const Picture placed = picture_of(folder, {file, "--azimuth", "40"});
+  const Image orbited = image_of(folder, {file, "--azimuth", "10", "--frames", "3", "--orbit", "15"});
+  const Image placed = image_of(folder, {file, "--azimuth", "40"});
   EXPECT_EQ(orbited.rgb, placed.rgb);
-  EXPECT_NE(orbited.rgb, picture_of(folder, {file, "--azimuth", "10"}).rgb);
+  EXPECT_NE(orbited.rgb, image_of(folder, {file, "--azimuth", "10"}).rgb);
 }
 
-TEST(Program, OptionsChangeThePicture) {
+TEST(Program, OptionsChangeTheImage) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
-  const Picture usual = picture_of(folder, {file});
+  const Image usual = image_of(folder, {file});
   for (const std::vector<std::string>& change :
        std::vector<std::vector<std::string>>{{"--preset", "3"},
                                              {"--ortho"},
@@ -256,15 +255,15 @@ TEST(Program, OptionsChangeThePicture) {
                                              {"--background", "0", "0", "1"}}) {
     std::vector<std::string> arguments = {file};
     arguments.insert(arguments.end(), change.begin(), change.end());
-    EXPECT_NE(picture_of(folder, arguments).rgb, usual.rgb) << change.front();
+    EXPECT_NE(image_of(folder, arguments).rgb, usual.rgb) << change.front();
   }
 }
 
-TEST(Program, OpacityCorrectionKeepsThePictureOverTheNumberOfSlices) {
+TEST(Program, OpacityCorrectionKeepsTheImageOverTheNumberOfSlices) {
   const TemporaryFolder folder;
   const std::string file = ball_file(folder);
   const Difference corrected =
-      difference(picture_of(folder, {file, "--slices", "70"}), picture_of(folder, {file, "--slices", "140"}));
+      difference(image_of(folder, {file, "--slices", "70"}), image_of(folder, {file, "--slices", "140"}));
   std::printf("70 against 140 slices: PSNR %.2f dB\n", corrected.psnr);
   EXPECT_GT(corrected.psnr, 40) << "uncorrected it would be 26 dB";
 }
@@ -279,9 +278,9 @@ TEST(Program, EveryFrameIsTimedAndWrittenWhenAsked) {
     EXPECT_THAT(outcome.out, HasSubstr(line));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("frame 2: [0-9]+\\.[0-9][0-9] ms\n"));
   for (const char* name : {"frames/frame_0000.png", "frames/frame_0001.png", "frames/frame_0002.png"}) {
-    const Picture picture = read_png(folder.file(name));
-    EXPECT_EQ(picture.width, 32);
-    EXPECT_EQ(picture.height, 24);
+    const Image image = read_png(folder.file(name));
+    EXPECT_EQ(image.width, 32);
+    EXPECT_EQ(image.height, 24);
   }
   EXPECT_NE(read_png(folder.file("frames/frame_0000.png")).rgb,
             read_png(folder.file("frames/frame_0001.png")).rgb);

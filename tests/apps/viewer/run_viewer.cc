@@ -75,21 +75,21 @@ Outcome run_viewer(const std::vector<std::string>& arguments, const std::string&
   return run_program(command, display);
 }
 
-Picture read_png(const std::string& path) {
+Image read_png(const std::string& path) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_file(&image, path.c_str()))
     throw std::runtime_error(path + ": " + std::string(image.message));
   image.format = PNG_FORMAT_RGB;
-  Picture picture{static_cast<int>(image.width), static_cast<int>(image.height), {}};
-  picture.rgb.resize(PNG_IMAGE_SIZE(image));
-  if (!png_image_finish_read(&image, nullptr, picture.rgb.data(), 0, nullptr))
+  Image image{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(image));
+  if (!png_image_finish_read(&image, nullptr, image.rgb.data(), 0, nullptr))
     throw std::runtime_error(path + ": " + std::string(image.message));
-  return picture;
+  return image;
 }
 
 Difference difference(const std::vector<double>& a, const std::vector<double>& b) {
-  if (a.size() != b.size() || a.empty()) throw std::runtime_error("pictures of different sizes");
+  if (a.size() != b.size() || a.empty()) throw std::runtime_error("images of different sizes");
   Difference result;
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -102,7 +102,7 @@ Difference difference(const std::vector<double>& a, const std::vector<double>& b
   return result;
 }
 
-Difference difference(const Picture& a, const Picture& b) {
+Difference difference(const Image& a, const Image& b) {
   return difference(std::vector<double>(a.rgb.begin(), a.rgb.end()),
                     std::vector<double>(b.rgb.begin(), b.rgb.end()));
 }

@@ -19,13 +19,13 @@ Outcome run_viewer(const std::vector<std::string>& arguments, const std::string&
 /// The same for any program found on PATH.
 Outcome run_program(const std::vector<std::string>& command, const std::string& display = "");
 
-struct Picture {
+struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;  ///< top row first
 };
 
-Picture read_png(const std::string& path);
+Image read_png(const std::string& path);
 
 struct Difference {
   double max = 0;   ///< of a channel, 0 to 255
@@ -33,8 +33,8 @@ struct Difference {
   double psnr = 0;  ///< dB; infinite when equal
 };
 
-/// `a` and `b` are channel values from 0 to 255 of pictures of one size.
+/// `a` and `b` are channel values from 0 to 255 of images of one size.
 Difference difference(const std::vector<double>& a, const std::vector<double>& b);
-Difference difference(const Picture& a, const Picture& b);
+Difference difference(const Image& a, const Image& b);
 
 }  // namespace viewer_test

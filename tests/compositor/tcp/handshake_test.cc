@@ -33,27 +33,28 @@ std::string failure(const std::function<void()>& step) {
   return {};
 }
 
-const LinkWishes some_wishes = {LinkedTo::stage, Layout::rgba8, 75, true};
+const ConnectionRequest some_wishes = {Destination::gl_server, Layout::rgba8, 75, true};
 
 TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
   ServerHandshake server(secret);
-  ASSERT_EQ(server.wants(), link_hello_bytes);
+  ASSERT_EQ(server.wants(), hello_bytes);
   const auto challenge = server.answer(client.hello());
-  ASSERT_EQ(server.wants(), link_proof_bytes);
+  ASSERT_EQ(server.wants(), proof_bytes);
   EXPECT_FALSE(server.proved());
   EXPECT_TRUE(server.answer(client.answer(challenge)).empty());
   EXPECT_TRUE(server.proved());
   EXPECT_EQ(server.wants(), 0U);
-  EXPECT_EQ(server.wishes().to, LinkedTo::stage);
-  EXPECT_EQ(server.wishes().pixels, Layout::rgba8);
-  EXPECT_EQ(server.wishes().jpeg_quality, 75);
-  EXPECT_TRUE(server.wishes().only_asks);
-  EXPECT_NO_THROW(client.finish(server.verdict(LinkVerdict::welcome)));
-  EXPECT_THAT(failure([&] { client.finish(server.verdict(LinkVerdict::too_many)); }),
+  EXPECT_EQ(server.connection_request().to, Destination::gl_server);
+  EXPECT_EQ(server.connection_request().pixels, Layout::rgba8);
+  EXPECT_EQ(server.connection_request().jpeg_quality, 75);
+  EXPECT_TRUE(server.connection_request().only_asks);
+  EXPECT_NO_THROW(client.finish(server.verdict(AdmissionVerdict::accepted)));
+  EXPECT_THAT(failure([&] { client.finish(server.verdict(AdmissionVerdict::too_many)); }),
               HasSubstr("try again later"));
-  EXPECT_THAT(failure([&] { client.finish(server.verdict(LinkVerdict::not_offered)); }), HasSubstr("--stage"));
+  EXPECT_THAT(failure([&] { client.finish(server.verdict(AdmissionVerdict::not_offered)); }),
+              HasSubstr("--gl-server"));
 }
 
 TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
@@ -65,7 +66,7 @@ TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
   EXPECT_THAT(failure([&] { server.answer(proof); }), HasSubstr("--secret-file"));
   EXPECT_FALSE(server.proved());
   const std::vector<std::byte> words(server.last_words().begin(), server.last_words().end());
-  ASSERT_EQ(words.size(), link_verdict_bytes);
+  ASSERT_EQ(words.size(), verdict_bytes);
   // No byte of what only a holder of the secret could say.
   EXPECT_TRUE(std::all_of(words.begin() + 8, words.end(), [](std::byte byte) { return byte == std::byte(0); }));
   EXPECT_THAT(failure([&] { client.finish(words); }), HasSubstr("copy its --secret-file"));
@@ -77,7 +78,7 @@ TEST(Handshake, AServerWithoutTheSecretIsNotTrusted) {
   ClientHandshake client(ours, {});
   ServerHandshake impostor(theirs);
   client.answer(impostor.answer(client.hello()));
-  EXPECT_THAT(failure([&] { client.finish(impostor.verdict(LinkVerdict::welcome)); }),
+  EXPECT_THAT(failure([&] { client.finish(impostor.verdict(AdmissionVerdict::accepted)); }),
               HasSubstr("do not trust it"));
 }
 
@@ -92,7 +93,7 @@ TEST(Handshake, ProofsServeOnce) {
   second.answer(client.hello());
   EXPECT_THROW(second.answer(proof), HandshakeFailed);
   // And the server's own words, sent back to it.
-  const std::vector<std::byte> verdict = first.verdict(LinkVerdict::welcome);
+  const std::vector<std::byte> verdict = first.verdict(AdmissionVerdict::accepted);
   ServerHandshake third(secret);
   third.answer(client.hello());
   EXPECT_THROW(third.answer(std::span(verdict).subspan(8)), HandshakeFailed);
@@ -101,7 +102,7 @@ TEST(Handshake, ProofsServeOnce) {
 TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
-  for (std::size_t at = 0; at < link_hello_bytes; ++at) {
+  for (std::size_t at = 0; at < hello_bytes; ++at) {
     std::vector<std::byte> changed = client.hello();
     changed[at] ^= std::byte(1);
     EXPECT_THROW(
@@ -116,10 +117,10 @@ TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
 
 TEST(Handshake, OtherVersionsAreToldOnBothSides) {
   const Secret secret = secret_of("sixteen bytes or more");
-  ClientHandshake newer(secret, {}, link_version + 1);
+  ClientHandshake newer(secret, {}, tcp_protocol_version + 1);
   ServerHandshake server(secret);
   EXPECT_THAT(failure([&] { server.answer(newer.hello()); }), HasSubstr("one version of Understudy"));
-  ASSERT_EQ(server.last_words().size(), link_challenge_bytes);
+  ASSERT_EQ(server.last_words().size(), challenge_bytes);
   EXPECT_THAT(failure([&] { newer.answer(server.last_words()); }), HasSubstr("one version of Understudy"));
 }
 
@@ -133,14 +134,14 @@ TEST(Handshake, GarbageIsNeverBelieved) {
   };
   for (int round = 0; round < 200; ++round) {
     ServerHandshake strict(secret);
-    EXPECT_THROW(strict.answer(garbage(link_hello_bytes)), HandshakeFailed);
+    EXPECT_THROW(strict.answer(garbage(hello_bytes)), HandshakeFailed);
     EXPECT_THROW(strict.answer(garbage(round)), HandshakeFailed);
     ClientHandshake client(secret, {});
     ServerHandshake server(secret);
     server.answer(client.hello());
-    EXPECT_THROW(server.answer(garbage(link_proof_bytes)), HandshakeFailed);
-    EXPECT_THROW(client.answer(garbage(link_challenge_bytes)), HandshakeFailed);
-    EXPECT_THROW(client.finish(garbage(link_verdict_bytes)), HandshakeFailed);
+    EXPECT_THROW(server.answer(garbage(proof_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.answer(garbage(challenge_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.finish(garbage(verdict_bytes)), HandshakeFailed);
   }
 }
 

@@ -7,7 +7,7 @@
 
 #define DRIVER_FUNCTION extern "C" __attribute__((visibility("default")))
 
-/// One write a line, so that the lines of the driver, the body and the application come in their true order.
+/// One write a line, so that the lines of the driver, the core and the application come in their true order.
 __attribute__((format(printf, 1, 2))) inline void say(const char* format, ...) {
   char line[256];
   va_list arguments;

@@ -122,7 +122,7 @@ TEST_F(Damage, UnknownIdsAreNamed) {
 }
 
 TEST_F(Damage, PixelsThatAreNotThereAreRefused) {
-  // A picture of 2^15 cubed texels with three bytes behind it.
+  // An image of 2^15 cubed texels with three bytes behind it.
   Records records;
   records.begin(stable_id(CallId::TexImage3D));
   for (const std::uint64_t word :

@@ -28,9 +28,9 @@ std::vector<std::byte> read(CallId call, std::size_t p, const std::uint64_t* wor
   if (words[p] == 0 || !parameter.input) return bytes;
   switch (parameter.rule) {
     case ExtentRule::image: {
-      const PictureShape picture = picture_shape(call, words);
+      const ImageShape image = image_shape(call, words);
       const PixelStore store = pixel_store(driver->table(), unpack_names);
-      return picture_extent(picture, store) ? tight_picture(picture, store, address(words[p])) : bytes;
+      return image_extent(image, store) ? tight_image(image, store, address(words[p])) : bytes;
     }
     case ExtentRule::texts:
     case ExtentRule::index_lists: {

@@ -13,7 +13,7 @@
 
 namespace understudy::spu::testing {
 
-/// A call as OpenGL would have seen it. Of pointers to input the bytes, pixels as tight_picture() lays them; of
+/// A call as OpenGL would have seen it. Of pointers to input the bytes, pixels as tight_image() lays them; of
 /// offsets and outputs nothing.
 struct SeenCall {
   CallId call;

@@ -35,10 +35,11 @@ void expect_holds(const std::string& name, const Bytes& scalars, ScalarType type
     copy_texels(box, bytes_per_scalar(type), whole(*file), scalars, box, expected);
     EXPECT_EQ(read_box(*file, box), expected);
   }
-  Bytes slabs;
+  Bytes slice_ranges;
   for (int z = 0; z < size[2]; z += 2)
-    slabs = joined(slabs, read_box(*file, {{0, 0, z}, {size[0], size[1], std::min(z + 2, size[2])}}));
-  EXPECT_EQ(slabs, scalars);
+    slice_ranges =
+        joined(slice_ranges, read_box(*file, {{0, 0, z}, {size[0], size[1], std::min(z + 2, size[2])}}));
+  EXPECT_EQ(slice_ranges, scalars);
 }
 
 TEST(RawFile, EveryTypeAndByteOrderByNameOrByHint) {

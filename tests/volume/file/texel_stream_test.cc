@@ -33,10 +33,10 @@ Result streamed(const std::string& name, const TexelChoice& choice = {}, std::si
   Result result;
   int z = 0;
   while (!stream.done()) {
-    const TexelStream::Slab slab = stream.next(at_once);
-    EXPECT_EQ(slab.box.low[2], z);
-    z = slab.box.high[2];
-    result.texels.insert(result.texels.end(), slab.texels.begin(), slab.texels.end());
+    const TexelStream::SliceSegment slice_range = stream.next(at_once);
+    EXPECT_EQ(slice_range.box.low[2], z);
+    z = slice_range.box.high[2];
+    result.texels.insert(result.texels.end(), slice_range.texels.begin(), slice_range.texels.end());
     EXPECT_EQ(stream.texels_done() * bytes_per_texel(stream.mapping().type), result.texels.size());
   }
   EXPECT_EQ(z, box.high[2]);

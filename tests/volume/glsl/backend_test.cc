@@ -44,7 +44,7 @@ class Told : public ::testing::Test {
         store_(filled(texture_)),
         request_(request_for(texture_, usual_camera(edge, edge), edge, edge, 60)) {}
 
-  /// The largest difference from the CPU's picture in so many frames.
+  /// The largest difference from the CPU's image in so many frames.
   double draw(BackendChooser& chooser, int frames) {
     Image expected(request_.window);
     FrameCounts counts;

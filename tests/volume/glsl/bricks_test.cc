@@ -43,19 +43,19 @@ class GlslBricksOn : public ::testing::TestWithParam<Platform> {
   }
   void leave_all() { taken_.reset(); }
 
-  static Picture draw(GlslRayCaster& caster, const RenderRequest& request) {
-    Picture picture{Image(request.window), {}};
-    caster.render(request, picture.image, picture.counts);
-    return picture;
+  static GlImage draw(GlslRayCaster& caster, const RenderRequest& request) {
+    GlImage image{Image(request.window), {}};
+    caster.render(request, image.image, image.counts);
+    return image;
   }
   /// From one texture.
-  Picture whole(const Texture& texture, const RenderRequest& request) {
+  GlImage whole(const Texture& texture, const RenderRequest& request) {
     leave_all();
     const BrickStore store = filled(texture);
     GlslRayCaster caster(store, device());
-    Picture picture = draw(caster, request);
+    GlImage image = draw(caster, request);
     EXPECT_EQ(caster.brick_figures().bricks, 0U);
-    return picture;
+    return image;
   }
 
  private:
@@ -69,7 +69,7 @@ TEST_P(GlslBricksOn, ShowWhatOneTextureShowsUnderAnyBudget) {
   for (Scene scene : scenes()) {
     // Where bricks end, rays may end too.
     if (scene.request.termination > 0) scene.request.termination = 1e-6F;
-    const Picture one = whole(scene.texture, scene.request);
+    const GlImage one = whole(scene.texture, scene.request);
     const BrickStore store = filled(scene.texture);
     const int cells = scene.texture.description.size[0] < 32 ? 8 : 16;
     const std::uint64_t brick =
@@ -77,7 +77,7 @@ TEST_P(GlslBricksOn, ShowWhatOneTextureShowsUnderAnyBudget) {
     for (const std::uint64_t bricks : {1, 2, 6}) {
       leave(bricks * brick);
       GlslRayCaster caster(store, device(), cells);
-      const Picture parts = draw(caster, scene.request);
+      const GlImage parts = draw(caster, scene.request);
       const BrickFigures figures = caster.brick_figures();
       const Difference d = difference(parts.image, one.image);
       worst = std::max(worst, d.max);
@@ -106,7 +106,7 @@ TEST_P(GlslBricksOn, TakeEverySmallSize) {
       const Texture texture =
           noise(describe({size, 34 - size, (size + 4) % 33 + 1}, TexelType::u8, wrap), unsigned(size));
       const RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 40);
-      const Picture one = whole(texture, request);
+      const GlImage one = whole(texture, request);
       leave(brick_bytes(8, 2));
       const BrickStore store = filled(texture);
       GlslRayCaster caster(store, device(), 8);
@@ -151,9 +151,9 @@ TEST_P(GlslBricksOn, AreThoseThatTheTableShows) {
   const BrickStore store = filled(texture);
   const TransferFunction low = showing(0, 16), high = showing(48, 64);
   request.classification = low;
-  const Picture left = whole(texture, request);
+  const GlImage left = whole(texture, request);
   request.classification = high;
-  const Picture right = whole(texture, request);
+  const GlImage right = whole(texture, request);
   leave(4 * brick_bytes(16, 2));
   GlslRayCaster caster(store, device(), 16);
   request.classification = low;
@@ -172,7 +172,7 @@ TEST_P(GlslBricksOn, BehindWhatIsOpaqueNeverCome) {
   RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 100);
   request.classification = TransferFunction{0, 1, {{0.5F, 0.5F, 0.5F, 0.9F}, {0.9F, 0.9F, 0.9F, 0.9F}}};
   request.termination = 1e-6F;
-  const Picture one = whole(texture, request);
+  const GlImage one = whole(texture, request);
   const BrickStore store = filled(texture);
   leave(brick_bytes(8, 2));
   GlslRayCaster caster(store, device(), 8);
@@ -187,7 +187,7 @@ TEST_P(GlslBricksOn, FollowTexelsThatChange) {
                 after = sampled(description, sphere_field(0.4));
   RenderRequest request = request_for(before, usual_camera(width, height), width, height, 50);
   request.classification = sparse_table();
-  const Picture expected = whole(after, request);
+  const GlImage expected = whole(after, request);
   EXPECT_GT(difference(whole(before, request).image, expected.image).max, 0.1);
   for (const std::uint64_t bricks : {1, 8, 12}) {
     leave(bricks * brick_bytes(16, 2));
@@ -208,7 +208,7 @@ TEST_P(GlslBricksOn, TakeVolumesLongerThanTextures) {
   const RenderRequest request = request_for(texture, usual_camera(width, height), width, height, 70);
   const BrickStore store = filled(texture);
   GlslRayCaster caster(store, device());
-  const Picture gl = draw(caster, request);
+  const GlImage gl = draw(caster, request);
   EXPECT_EQ(caster.brick_figures().passes, 1);
   EXPECT_GT(caster.brick_figures().bricks, 30U);
   EXPECT_LE(difference(gl.image, on_cpu({"", texture, request}).image).max, 1e-4);

@@ -100,15 +100,15 @@ inline std::vector<Scene> scenes() {
   return all;
 }
 
-struct Picture {
+struct GlImage {
   Image image;
   FrameCounts counts;
 };
 
-inline Picture on_cpu(const Scene& scene) {
-  Picture picture{Image(scene.request.window), {}};
-  raycast(filled(scene.texture), scene.request, picture.image, picture.counts);
-  return picture;
+inline GlImage on_cpu(const Scene& scene) {
+  GlImage image{Image(scene.request.window), {}};
+  raycast(filled(scene.texture), scene.request, image.image, image.counts);
+  return image;
 }
 
 }  // namespace understudy::volume::glsl::testing

@@ -29,14 +29,14 @@ class GlslRayCasterOn : public ::testing::TestWithParam<Platform> {
 
   Device& device() { return *device_; }
 
-  Picture on_gl(const Texture& texture, const TexelBox& cells, const RenderRequest& request, const Rect& rect) {
+  GlImage on_gl(const Texture& texture, const TexelBox& cells, const RenderRequest& request, const Rect& rect) {
     const BrickStore store = filled(texture, cells);
     GlslRayCaster caster(store, device());
-    Picture picture{Image(rect), {}};
-    caster.render(request, picture.image, picture.counts);
-    return picture;
+    GlImage image{Image(rect), {}};
+    caster.render(request, image.image, image.counts);
+    return image;
   }
-  Picture on_gl(const Scene& scene) {
+  GlImage on_gl(const Scene& scene) {
     return on_gl(scene.texture, cell_lattice(scene.texture.description).box(), scene.request,
                  scene.request.window);
   }
@@ -45,10 +45,10 @@ class GlslRayCasterOn : public ::testing::TestWithParam<Platform> {
   std::optional<Device> device_;
 };
 
-TEST_P(GlslRayCasterOn, GivesThePictureOfTheReferenceAndOfTheCpu) {
+TEST_P(GlslRayCasterOn, GivesTheImageOfTheReferenceAndOfTheCpu) {
   std::printf("%s\n", device().description().c_str());
   for (const Scene& scene : scenes()) {
-    const Picture gl = on_gl(scene), cpu = on_cpu(scene);
+    const GlImage gl = on_gl(scene), cpu = on_cpu(scene);
     const Field field = texture_field(scene.texture.description, scene.request.filter, scene.texture.texels);
     const ReferenceImage exact = slice_sum(field, scene.request, scene.request.window);
     const Difference d = difference(gl.image, exact), own = difference(cpu.image, exact),
@@ -62,7 +62,7 @@ TEST_P(GlslRayCasterOn, GivesThePictureOfTheReferenceAndOfTheCpu) {
     EXPECT_GT(gl.counts.samples_taken, 0U) << scene.name;
     EXPECT_EQ(gl.counts.blocks_empty, cpu.counts.blocks_empty) << scene.name;
 
-    // Samples elsewhere give another picture: the comparison can fail.
+    // Samples elsewhere give another image: the comparison can fail.
     RenderRequest other = scene.request;
     if (other.steps) other.steps->first += 0.5;
     other.planes.first += 0.5 * other.planes.spacing;
@@ -73,7 +73,7 @@ TEST_P(GlslRayCasterOn, GivesThePictureOfTheReferenceAndOfTheCpu) {
 TEST_P(GlslRayCasterOn, LeavesOutWhatIsEmptyOrHidden) {
   for (const Scene& scene : scenes())
     if (scene.request.termination > 0) {
-      const Picture gl = on_gl(scene);
+      const GlImage gl = on_gl(scene);
       std::printf("%s: %llu of %llu samples taken, %llu of %llu rays terminated\n", scene.name,
                   static_cast<unsigned long long>(gl.counts.samples_taken),
                   static_cast<unsigned long long>(gl.counts.samples),
@@ -93,19 +93,19 @@ void compose(Operator op, float* front, const float* back) {
                                                                  : std::min(front[k], back[k]);
 }
 
-TEST_P(GlslRayCasterOn, GivesTheSamePictureForAnyPartition) {
+TEST_P(GlslRayCasterOn, GivesTheSameImageForAnyPartition) {
   double worst = 0;
   for (const int ranks : {2, 4, 7})
     for (const Scene& scene : scenes()) {
       if (scene.request.termination > 0) continue;
-      const Picture one = on_gl(scene);
+      const GlImage one = on_gl(scene);
       Image many(scene.request.window);
       std::fill(many.rgba.begin(), many.rgba.end(), neutral_value(scene.request.op));
       std::uint64_t samples = 0;
       const KdTree tree(scene.texture.description, ranks);
       for (const int rank : tree.visibility_order(scene.request)) {
         const Rect rect = footprint(scene.request, scene.texture.description, tree.box(rank));
-        const Picture part = on_gl(scene.texture, tree.box(rank), scene.request, rect);
+        const GlImage part = on_gl(scene.texture, tree.box(rank), scene.request, rect);
         samples += part.counts.samples;
         for (int y = rect.y; y < rect.y + rect.height; ++y)
           for (int x = rect.x; x < rect.x + rect.width; ++x)
@@ -193,7 +193,7 @@ TEST_P(GlslRayCasterOn, LeavesOutWhatTheCpuLeavesOut) {
   const Drawn to_the_end = draw(request, true);
   EXPECT_EQ(to_the_end.counts.samples_hidden, 0U);
   EXPECT_LE(difference(usual.image, to_the_end.image).max, 5e-6);
-  request.leave_out.empty_blocks = false;
+  request.optimizations.empty_bricks = false;
   const Drawn all = draw(request, true);
   EXPECT_EQ(all.counts.samples_taken, all.counts.samples);
   EXPECT_EQ(all.counts.blocks_empty, 0U);

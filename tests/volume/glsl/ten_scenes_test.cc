@@ -23,7 +23,7 @@ using namespace volume::testing;
 namespace fs = std::filesystem;
 
 constexpr int edge = 64;
-/// Quadrature of every segment takes its time: so many pixels a side, in the middle of the picture.
+/// Quadrature of every segment takes its time: so many pixels a side, in the middle of the image.
 constexpr int quadrature_edge = 20;
 
 struct Scene {
@@ -59,8 +59,9 @@ LoadedVolume loaded(const std::string& name) {
   TexelStream stream(std::move(file), {}, {{0, 0, 0}, size});
   LoadedVolume volume{{describe(size, stream.mapping().type), {}}, stream.mapping(), {}};
   while (!stream.done()) {
-    const TexelStream::Slab slab = stream.next(1U << 24U);
-    volume.texture.texels.insert(volume.texture.texels.end(), slab.texels.begin(), slab.texels.end());
+    const TexelStream::SliceSegment slice_segment = stream.next(1U << 24U);
+    volume.texture.texels.insert(volume.texture.texels.end(), slice_segment.texels.begin(),
+                                 slice_segment.texels.end());
   }
   volume.values = stream.figures();
   return volume;
@@ -113,7 +114,7 @@ TEST_P(TenScenes, AreWhatDoublePrecisionSays) {
   segments.method = Method::pre_integrated;
   segments.window = {(edge - quadrature_edge) / 2, (edge - quadrature_edge) / 2, quadrature_edge,
                      quadrature_edge};
-  texture.description.margin = margin_needed(texture.description, segments);
+  texture.description.ghost_layer = ghost_layer_needed(texture.description, segments);
   const BrickStore store = filled(texture);
   const Field field = texture_field(texture.description, Filter::linear, texture.texels);
 
@@ -147,7 +148,7 @@ TEST_P(TenScenes, AreWhatDoublePrecisionSays) {
   }
   std::printf("%-20s %s\n", scene.name, line.c_str());
 
-  // Samples elsewhere give another picture: the comparison can fail.
+  // Samples elsewhere give another image: the comparison can fail.
   RenderRequest shifted = request;
   shifted.steps->first += 0.5;
   EXPECT_GT(difference(on_cpu(store, shifted), exact).rms, 2e-4);

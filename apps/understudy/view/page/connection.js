@@ -20,7 +20,7 @@ async function proofOf(secret, challenge) {
 }
 
 export class Connection {
-  // on: {message(json), picture(head, bytes), closed(), askForSecret(reason)}
+  // on: {message(json), image(head, bytes), closed(), askForSecret(reason)}
   constructor(on) {
     this.on = on;
     this.socket = null;
@@ -46,7 +46,7 @@ export class Connection {
       if (typeof event.data !== 'string') {
         const length = new DataView(event.data).getUint32(0, true);
         const head = JSON.parse(new TextDecoder().decode(new Uint8Array(event.data, 4, length)));
-        this.on.picture(head, new Uint8Array(event.data, 4 + length));
+        this.on.image(head, new Uint8Array(event.data, 4 + length));
         return;
       }
       const message = JSON.parse(event.data);

@@ -69,7 +69,7 @@ export class TransferEditor {
     this.on.changed();
   }
 
-  // Knots at the rim keep clear of it.
+  // Control points at the rim keep clear of it.
   get frame() {
     const {width, height} = this.canvas.getBoundingClientRect();
     return {left: radius + 2, top: radius + 2, width: width - 2 * radius - 4, height: height - 2 * radius - 4};

@@ -1,4 +1,4 @@
-// The boxes of the ranks, drawn over the picture with the camera that it was taken with.
+// The boxes of the ranks, drawn over the image with the camera that it was taken with.
 
 export function colourOf(rank) {
   return `hsl(${(28 + rank * 137.508) % 360} 75% 60%)`;  // by the golden angle: neighbours differ

@@ -3,12 +3,12 @@ import {Connection} from '/connection.js';
 import {TransferEditor, colourIn, hexOf} from '/editor.js';
 import {colourOf, drawBoxes} from '/overlay.js';
 
-const rest_ms = 150;       // after the last move the picture at rest is asked for
-const most_side = 4096;    // of a picture, as the program has it
+const rest_ms = 150;       // after the last move the image at rest is asked for
+const most_side = 4096;    // of an image, as the program has it
 const wheel_step = 1.0015; // for one unit of a wheel's way
 
 const element = id => document.getElementById(id);
-const stage = element('stage'), picture = element('picture'), boxes = element('boxes');
+const server = element('server'), image = element('image'), boxes = element('boxes');
 
 let volume = null;         // what there is to be seen
 let asked = {};            // since the last request
@@ -18,7 +18,7 @@ let moving = false, rest_timer = 0;
 let took_ms = null;
 let sequence = 0;
 let shown = null, ranks = [];
-const rate = [];           // when the last pictures came
+const rate = [];           // when the last images came
 
 // ---- requests
 
@@ -63,11 +63,11 @@ function send() {
 
 async function show(head, bytes) {
   const bitmap = await createImageBitmap(new Blob([bytes], {type: 'image/' + head.format}));
-  if (picture.width !== bitmap.width || picture.height !== bitmap.height) {
-    picture.width = bitmap.width;
-    picture.height = bitmap.height;
+  if (image.width !== bitmap.width || image.height !== bitmap.height) {
+    image.width = bitmap.width;
+    image.height = bitmap.height;
   }
-  picture.getContext('2d').drawImage(bitmap, 0, 0);
+  image.getContext('2d').drawImage(bitmap, 0, 0);
   bitmap.close();
   shown = head;
   remember({camera: head.camera});
@@ -147,7 +147,7 @@ function begin(message) {
   element('step').value = before.step ?? message.step;
   element('lossless').checked = before.lossless ?? false;
   tellControls();
-  ask({...before, size: sizeOf(stage)}, false);
+  ask({...before, size: sizeOf(server)}, false);
 }
 
 function banner(text, part) {
@@ -188,13 +188,13 @@ function showRanks() {
 }
 
 function overlay() {
-  const {width, height} = stage.getBoundingClientRect();
+  const {width, height} = server.getBoundingClientRect();
   boxes.width = width * window.devicePixelRatio;
   boxes.height = height * window.devicePixelRatio;
   drawBoxes(boxes, element('shows-boxes').checked ? shown?.matrix : null, ranks);
 }
 
-// ---- the hand on the picture
+// ---- the hand on the image
 
 function sizeOf(of) {
   const {width, height} = of.getBoundingClientRect();
@@ -204,19 +204,19 @@ function sizeOf(of) {
 
 // In halves of the shorter side, right and up from the middle.
 function pointAt(x, y) {
-  const {left, top, width, height} = stage.getBoundingClientRect(), half = Math.min(width, height) / 2;
+  const {left, top, width, height} = server.getBoundingClientRect(), half = Math.min(width, height) / 2;
   return [(x - left - width / 2) / half, (height / 2 - (y - top)) / half];
 }
 
 const held = new Map();  // pointers that are down: where they were last
-picture.addEventListener('contextmenu', event => event.preventDefault());
-picture.addEventListener('pointerdown', event => {
-  picture.setPointerCapture(event.pointerId);
+image.addEventListener('contextmenu', event => event.preventDefault());
+image.addEventListener('pointerdown', event => {
+  image.setPointerCapture(event.pointerId);
   held.set(event.pointerId, [event.clientX, event.clientY]);
 });
 for (const end of ['pointerup', 'pointercancel'])
-  picture.addEventListener(end, event => held.delete(event.pointerId));
-picture.addEventListener('pointermove', event => {
+  image.addEventListener(end, event => held.delete(event.pointerId));
+image.addEventListener('pointermove', event => {
   const before = held.get(event.pointerId);
   if (!before) return;
   const now = [event.clientX, event.clientY];
@@ -234,20 +234,20 @@ picture.addEventListener('pointermove', event => {
   ask({zoom: {by: Math.min(10, Math.max(0.1, apart(now) / Math.max(1, apart(before)))), at: to},
        pan: [to[0] - from[0], to[1] - from[1]]}, true);
 });
-picture.addEventListener('wheel', event => {
+image.addEventListener('wheel', event => {
   event.preventDefault();
   const way = event.deltaY * (event.deltaMode === 1 ? 20 : event.deltaMode === 2 ? 300 : 1);
   const by = Math.min(10, Math.max(0.1, wheel_step ** -way));
   ask({zoom: {by, at: pointAt(event.clientX, event.clientY)}}, true);
 }, {passive: false});
-picture.addEventListener('keydown', event => {
+image.addEventListener('keydown', event => {
   const turns = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1]};
   if (turns[event.key]) ask({rotate: [[0, 0], turns[event.key]]}, true);
   else if (event.key === '+' || event.key === '-') ask({zoom: {by: event.key === '+' ? 1.15 : 1 / 1.15, at: [0, 0]}}, true);
   else return;
   event.preventDefault();
 });
-new ResizeObserver(() => { if (volume) ask({size: sizeOf(stage)}, true); }).observe(stage);
+new ResizeObserver(() => { if (volume) ask({size: sizeOf(server)}, true); }).observe(server);
 
 // ---- the controls
 
@@ -288,7 +288,7 @@ for (const id of ['surface-at', 'surface-colour', 'surface-opacity'])
 element('light').addEventListener('change', event => ask({light: event.target.checked}, false));
 element('step').addEventListener('input', event => { tellControls(); ask({step: Number(event.target.value)}, true); });
 element('lossless').addEventListener('change', event => ask({lossless: event.target.checked}, false));
-element('home').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
+element('gather').addEventListener('click', () => { if (volume) ask({camera: volume.camera}, false); });
 element('shows-boxes').addEventListener('change', overlay);
 
 // ---- the conversation
@@ -300,7 +300,7 @@ element('ask').addEventListener('submit', event => {
 });
 const connection = new Connection({
   message: hear,
-  picture: (head, bytes) => show(head, bytes).catch(error => { element('exactness').textContent = String(error); answered(head.sequence); }),
+  image: (head, bytes) => show(head, bytes).catch(error => { element('exactness').textContent = String(error); answered(head.sequence); }),
   closed: () => {
     on_its_way = null;
     volume = null;

@@ -1,0 +1,15 @@
+// Ranks as threads of one process: what the tests use to run whole node groups without MPI.
+#pragma once
+
+#include <functional>
+
+#include "compositor/exchange/communicator.h"
+
+namespace understudy::compositor {
+
+/// Runs `body` once per rank, each on a thread of its own, and returns when all have ended. Rethrows the first
+/// exception of any rank; the other ranks then get RankLost instead of waiting for ever. With `share_memory`
+/// they see each other's segments, as ranks of one machine do.
+void run_ranks(int ranks, const std::function<void(Communicator&)>& body, bool share_memory = true);
+
+}  // namespace understudy::compositor

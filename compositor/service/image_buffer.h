@@ -1,0 +1,41 @@
+// The memory in which a node group leaves its image for the application: an anonymous file that the
+// application makes and passes along its connection. It is sealed against shrinking, so that neither side can
+// pull it away under the other (which would end in SIGBUS); a larger image needs a new one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "compositor/service/file_descriptor.h"
+
+namespace understudy::compositor {
+
+class ImageBuffer {
+ public:
+  ImageBuffer() = default;
+  ImageBuffer(ImageBuffer&& other) noexcept { *this = std::move(other); }
+  ImageBuffer& operator=(ImageBuffer&& other) noexcept;
+  ~ImageBuffer();
+
+  /// The application's side: `bytes` of memory that are really there. Throws std::runtime_error.
+  static ImageBuffer create(std::uint64_t bytes);
+  /// The node's side: believes the descriptor only when it is sealed and as large as promised. Throws
+  /// std::runtime_error.
+  static ImageBuffer map(FileDescriptor memory, std::uint64_t bytes);
+
+  std::span<float> floats() const { return {data_, bytes_ / sizeof(float)}; }
+  std::size_t bytes() const { return bytes_; }
+  int fd() const { return memory_.get(); }
+  /// The mapping stays.
+  void close_descriptor() { memory_.reset(); }
+
+ private:
+  ImageBuffer(FileDescriptor memory, std::uint64_t bytes);
+
+  FileDescriptor memory_;
+  float* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace understudy::compositor

@@ -1,0 +1,293 @@
+// The core: one SPU chain for every desktop OpenGL context of the application.
+#include "interceptor/core.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "interceptor/core/redraw_request.h"
+#include "spu/assemble.h"
+#include "spu/chain.h"
+#include "spu/options.h"
+#include "spu/remote/front_end.h"
+#include "spu/remote/remote.h"
+#include "spu/remote/server_connection.h"
+#include "spu/report/counters.h"
+#include "spu/report/report.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/render_session.h"
+
+namespace understudy::interceptor {
+namespace {
+
+/// The entry library's own window system, where a GL server makes the calls.
+class EntryFrontEnd final : public spu::FrontEnd {
+ public:
+  explicit EntryFrontEnd(const EntryServices& entry) : entry_(entry) {}
+
+  spu::RecordedContext context() override {
+    RemoteContextFormat format;
+    entry_.remote_context_format(&format);
+    return {.version = format.version,
+            .profile = format.profile,
+            .alpha = format.alpha,
+            .depth = format.depth,
+            .stencil = format.stencil,
+            .samples = format.samples,
+            .double_buffered = format.double_buffered != 0};
+  }
+  spu::FrontDrawable drawable() override {
+    RemoteDrawable drawable;
+    entry_.remote_drawable(&drawable);
+    return {drawable.number, {drawable.width, drawable.height}, drawable.display};
+  }
+  void show(const spu::FrontDrawable& drawable, spu::Extent2D extent,
+            std::span<const std::uint8_t> pixels) override {
+    const RemoteDrawable where{drawable.number, drawable.extent.width, drawable.extent.height, drawable.screen};
+    const RemoteImage image{extent.width, extent.height, pixels.data()};
+    entry_.remote_show(&where, &image);
+  }
+
+ private:
+  const EntryServices entry_;
+};
+
+class Core {
+ public:
+  Core(const EntryServices& entry, spu::Options options)
+      : entry_(entry),
+        options_(options),
+        front_(entry),
+        session_(std::make_shared<spu::RenderSession>(std::move(options))) {
+    if (!options_.remote.empty()) server_ = std::make_unique<spu::ServerConnection>(options_.remote, front_);
+    if (options_.frame_latency > 0)
+      redraw_.emplace([] { spu::process_counters().windows_asked.fetch_add(1, std::memory_order_relaxed); });
+  }
+
+  const EntryServices& entry() const { return entry_; }
+
+  RemoteVersions remote_versions() const {
+    if (!server_) return {};
+    return {server_->versions().core, server_->versions().compatibility};
+  }
+
+  void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
+                       std::uintptr_t drawable) {
+    ThreadState& thread = *entry_.thread_state();
+    thread.calls = spu::thread_call_counter();
+    // OSMesa draws into memory of this process, which no GL server could reach.
+    if (!desktop_gl || (server_ && system == WindowSystem::osmesa)) {
+      thread.table = thread.driver;
+      return;
+    }
+    Member& member = member_of(context, share, server_ ? spu::link_driver() : *thread.driver);
+    member.window = system == WindowSystem::glx ? drawable : 0;
+    spu::Chain& chain = member.chain;
+    chain.make_current();
+    // Contexts that share objects with it may have brought volumes since its last frame.
+    chain.frame_ended(spu::FrameEnd::make_current);
+  }
+
+  void context_destroyed(std::uintptr_t context) {
+    std::unique_ptr<Member> gone;
+    {
+      const std::scoped_lock lock(mutex_);
+      const auto found = contexts_.find(context);
+      if (found == contexts_.end()) return;
+      gone = std::move(found->second);
+      contexts_.erase(found);
+    }
+    gone->chain.abandon();
+  }
+
+  void frame_ended(spu::FrameEnd kind) {
+    if (spu::Chain* chain = spu::Chain::current()) {
+      chain->frame_ended(kind);
+      if (redraw_ && kind == spu::FrameEnd::swap) window_shown(window_of(*chain));
+    }
+    if (reports_itself()) spu::write_report_when_due(options_.report);
+  }
+
+  /// Another thread may be in a context's chain, or holds the lock for ever: then its figures stay as last
+  /// written.
+  void process_ends() {
+    if (reports_itself()) spu::write_report_now(options_.report);
+    // A child after fork() has its parent's contexts in memory, and its parent's files are not its own.
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock || getpid() != process_) return;
+    for (const auto& [context, member] : contexts_) {
+      if (member) member->chain.process_ends();
+    }
+  }
+
+  void program_ends() {
+    session_->end();
+    // The parent's link is none of a forked child's to shut.
+    if (server_ && getpid() == process_) server_->end();
+  }
+
+  /// Without a launcher nobody else writes the report. A child after fork has none of its own, and its parent's
+  /// is not its to write.
+  bool reports_itself() const {
+    return !options_.report.empty() && options_.run_dir.empty() && getpid() == process_;
+  }
+
+ private:
+  struct Member {
+    std::shared_ptr<spu::ShareGroup> group;
+    spu::Chain chain;
+    std::atomic<std::uintptr_t> window = 0;  ///< that it draws into: an X window's number, or 0
+  };
+
+  Member& member_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
+    const std::scoped_lock lock(mutex_);
+    auto& member = contexts_[context];
+    if (!member) {
+      const auto relative = contexts_.find(share);
+      auto group = relative != contexts_.end() && relative->second ? relative->second->group
+                                                                   : std::make_shared<spu::ShareGroup>();
+      member.reset(new Member{group, spu::Chain(driver, group, &install, {context, share, server_.get()})});
+      if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
+        fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
+      }
+    }
+    return *member;
+  }
+
+  std::uintptr_t window_of(const spu::Chain& chain) {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [context, member] : contexts_)
+      if (member && &member->chain == &chain) return member->window;
+    return 0;
+  }
+
+  void window_shown(std::uintptr_t window) {
+    if (getpid() != process_) return session_->window_can_be_asked(false);
+    session_->window_can_be_asked(redraw_->can_ask(window));
+    redraw_->frame_shown(window, session_->take_behind());
+  }
+
+  static void install(const spu::DispatchTable* table);
+
+  const EntryServices entry_;
+  const spu::Options options_;
+  const pid_t process_ = getpid();
+  EntryFrontEnd front_;
+  std::unique_ptr<spu::ServerConnection> server_;
+  std::shared_ptr<spu::RenderSession> session_;
+  std::mutex mutex_;
+  std::map<std::uintptr_t, std::unique_ptr<Member>> contexts_;
+  std::optional<RedrawRequest> redraw_;  ///< where images may be behind
+};
+
+/// The per-process core. Never destroyed: the application may call OpenGL until its very last instruction.
+constinit Core* core = nullptr;
+
+void Core::install(const spu::DispatchTable* table) {
+  core->entry_.thread_state()->table = table;
+}
+
+/// Nothing thrown may cross into the application.
+template <class Action>
+void guarded(Action action) noexcept {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
+    if (core != nullptr) {
+      ThreadState& thread = *core->entry().thread_state();
+      thread.table = thread.driver;
+    }
+  }
+}
+
+void context_current(std::uintptr_t context, std::uintptr_t share, WindowSystem system, bool desktop_gl,
+                     std::uintptr_t drawable) {
+  guarded([&] { core->context_current(context, share, system, desktop_gl, drawable); });
+}
+
+RemoteVersions remote_versions() {
+  RemoteVersions versions;
+  guarded([&] { versions = core->remote_versions(); });
+  return versions;
+}
+
+void context_leaving() {
+  guarded([] {
+    if (spu::Chain* chain = spu::Chain::current()) {
+      chain->settle();
+      chain->frame_ended(spu::FrameEnd::make_current);
+    }
+    spu::Chain::release_current();
+  });
+}
+
+void context_destroyed(std::uintptr_t context) {
+  guarded([&] { core->context_destroyed(context); });
+}
+
+void before_frame_end(FrameEnd) {
+  guarded([] {
+    if (spu::Chain* chain = spu::Chain::current()) chain->settle();
+  });
+}
+
+spu::FrameEnd frame_end(FrameEnd kind) {
+  switch (kind) {
+    case FrameEnd::swap:
+      return spu::FrameEnd::swap;
+    case FrameEnd::finish:
+      return spu::FrameEnd::finish;
+    default:
+      return spu::FrameEnd::wait;
+  }
+}
+
+void after_frame_end(FrameEnd kind) {
+  guarded([&] { core->frame_ended(frame_end(kind)); });
+}
+
+constinit CoreServices services;
+
+/// Runs before the libraries that the core needs take themselves apart; the application may draw on after that.
+void at_program_end() {
+  if (core != nullptr) core->program_ends();
+}
+
+/// A courtesy: a program that ends in order leaves its last half second in the report and in units' files too.
+[[gnu::destructor]] void at_library_end() {
+  if (core != nullptr) guarded([] { core->process_ends(); });
+}
+
+}  // namespace
+}  // namespace understudy::interceptor
+
+extern "C" [[gnu::visibility("default")]] const understudy::interceptor::CoreServices* understudy_open_core(
+    const understudy::interceptor::EntryServices* entry) {
+  using namespace understudy::interceptor;
+  if (entry == nullptr || entry->abi != core_abi) return nullptr;
+  try {
+    understudy::spu::Options options = understudy::spu::options_from_environment();
+    if (options.disable) return nullptr;
+    if (core == nullptr) {
+      core = new Core(*entry, std::move(options));
+      std::atexit(at_program_end);
+    }
+  } catch (const std::exception& error) {
+    const char* remote = std::getenv("UNDERSTUDY_REMOTE");
+    const bool has_driver = remote == nullptr || *remote == '\0';
+    fmt::print(stderr, "understudy: {}{}\n", error.what(),
+               has_driver ? "; calls go straight to the driver" : "");
+    return nullptr;
+  }
+  services = {core_abi,         context_current, context_leaving, context_destroyed,
+              before_frame_end, after_frame_end, remote_versions};
+  return &services;
+}

@@ -1,0 +1,49 @@
+// Asks a window to draw itself again: what X sends a window that has been uncovered (Expose), after which its
+// program must draw it. For windows whose latest image is one frame late (spu/volume/frame_latency.h),
+// if no other frame follows by itself.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace understudy::interceptor {
+
+class RedrawRequest {
+ public:
+  /// `asked` is called, on another thread, whenever a window has been asked.
+  explicit RedrawRequest(std::function<void()> asked);
+  ~RedrawRequest();
+  RedrawRequest(const RedrawRequest&) = delete;
+  RedrawRequest& operator=(const RedrawRequest&) = delete;
+
+  /// Whether there is such a window on the display that DISPLAY names, and the program speaks X itself.
+  bool can_ask(std::uintptr_t window);
+  /// The window shows another frame: an older wish is void. Where it is `behind`, the window is asked as soon
+  /// as no other frame has come for a while.
+  void frame_shown(std::uintptr_t window, bool behind);
+
+ private:
+  class Display;
+  struct Due {
+    std::uintptr_t window = 0;
+    std::chrono::steady_clock::time_point at;
+  };
+
+  void ask_when_due();
+
+  const std::function<void()> asked_;
+  std::unique_ptr<Display> display_;
+  std::uintptr_t known_window_ = 0;
+  bool knows_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Due> due_;
+  bool has_thread_ = false;
+};
+
+}  // namespace understudy::interceptor

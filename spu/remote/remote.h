@@ -1,0 +1,93 @@
+// The link unit: what pack has packed is made by a GL server, in another process and perhaps on another
+// machine, and what it answers comes back (Humphreys et al. 2002; Chromium's pack and network units).
+//
+// Its chain stands on link_driver(), by which the encoder's own questions go the same way.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "spu/pack/record_taker.h"
+#include "spu/remote/client_state.h"
+#include "spu/remote/front_buffer.h"
+#include "spu/remote/server_connection.h"
+#include "spu/stream/encode.h"
+#include "spu/trace/mapped_buffers.h"
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+class Pack;
+
+/// For Chain: every command, asked of the current chain's link; nothing happens where there is none.
+const DispatchTable& link_driver();
+
+class Remote final : public Unit, public RecordTaker {
+ public:
+  static constexpr char tag = '~';
+
+  Remote(Chain& chain, ServerConnection& server);
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase, DispatchTable&) override {}
+  void made_current() override;
+  void left() override;
+  void frame_ended(FrameEnd kind) override;
+  void abandon() override;
+
+  std::optional<std::uint64_t> known(CallId call, const std::uint64_t* words) override;
+  void before(CallId call, const std::uint64_t* words, Records& to) override;
+  HandOn when(CallId call, bool inside_begin) override;
+  bool in_this_process() const override { return false; }
+  std::uint64_t take(const Records& records, const PackedCall* last) override;
+
+  /// A question of the encoder.
+  std::uint64_t ask(CallId call, const std::uint64_t* words);
+
+ private:
+  using Value = std::pair<CallId, std::uint64_t>;  ///< a query, and the words that it asks with
+
+  void introduce();
+  void tell_current(Records& to);
+  void note_drawable(Records& to);
+  void show_frame();
+  bool show_front();
+  void show_front_now();
+  bool has_front_to_show();
+  std::optional<std::uint64_t> constant(CallId call, const std::uint64_t* words) const;
+  void fetch_extensions();
+  std::uint64_t apply(const PackedCall& call, const CallAnswer& answer);
+  void write_output(const PackedCall& call, const AnsweredOutput& output);
+  std::uint64_t keep_text(const PackedCall& call, const AnsweredOutput& output);
+  std::uint64_t map(const PackedCall& call, std::uint64_t bytes, const AnsweredOutput& contents);
+  GLuint mapped_buffer(CallId call, const std::uint64_t* words) const;
+  void drop_mappings(CallId call, const std::uint64_t* words);
+
+  Chain& chain_;
+  ServerConnection& server_;
+  Pack& pack_;
+  Records question_records_;
+  Encoder question_encoder_;
+  ClientState state_;
+  FrontBuffer front_;
+  MappedBuffers writes_;
+  std::map<GLuint, std::vector<std::max_align_t>> mappings_;  ///< by buffer: what the application sees of it
+  std::map<Value, std::vector<std::byte>> constants_;
+  std::map<Value, const char*> texts_;
+  RecordedContext context_;
+  FrontDrawable drawable_;
+  std::uint64_t frames_ = 0;
+  bool introduced_ = false;
+  bool extensions_fetched_ = false;
+  bool front_owed_ = false;     ///< the GL server's link may still owe an image of the front buffer
+  bool without_error_ = false;  ///< glGetError said so, and nothing was called since
+};
+
+extern const UnitDescription remote_description;
+
+}  // namespace understudy::spu

@@ -1,0 +1,80 @@
+// The tiles unit, of the process that has the application: every call that reaches it, from the application
+// and from the units above, is also played by tile workers (tile_workers.h), and of a window each process draws
+// the rows of its tile alone (Humphreys et al. 2002, section 5: sort-first with a tile for each server).
+//
+// Framebuffer objects are drawn whole by all, as anybody's texture may be their contents. What is read from a
+// window is put together from the tiles; before pixels of a window are copied, all processes make it whole. An
+// application that does what cannot be put together, or copies all the time, is drawn by this process alone
+// from then on: the window that is current is made whole, another one of the same context when it is drawn
+// again.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "spu/player/window_system.h"
+#include "spu/tiles/tile_scissor.h"
+#include "spu/tiles/tile_workers.h"
+#include "spu/trace/call_recorder.h"
+#include "spu/unit_description.h"
+
+namespace understudy::spu {
+
+/// Whether the window of the current context, which has just been made, can be put together from tiles: one
+/// sample a pixel, 8 bits a channel, and a depth that can be copied.
+bool window_divides(const DispatchTable& gl);
+
+class Tiles final : public Unit {
+ public:
+  static constexpr char tag = '=';
+
+  Tiles(Chain& chain, TileWorkers& tile_workers, int parts);
+
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase phase, DispatchTable& table) override;
+  void left() override;
+  void abandon() override;
+
+  // What whoever plays the stream tells of its contexts, which no call tells.
+
+  /// The words of the `context` event.
+  void introduce(std::span<const std::uint64_t> words);
+  /// The context is current with this drawable. To be called with every change of either.
+  void place(std::uint64_t drawable, Extent2D extent);
+  /// What the window shows, rows from the bottom, RGBA. The context is current.
+  std::vector<std::uint8_t> shown_image();
+
+  std::uint64_t call(CallId call, const std::uint64_t* words);
+
+ private:
+  std::uint64_t make(CallId call, const std::uint64_t* words, bool restricted);
+  std::uint64_t read(CallId call, const std::uint64_t* words);
+  void fetch_rows(CallId call, const std::uint64_t* words);
+  bool copies_window(CallId call, const std::uint64_t* words) const;
+  void make_whole_for_copy();
+  void divide();
+  void make_whole();
+  void stop_dividing();
+  bool is_compiling() const { return scissor_.compiling(); }
+
+  Chain& chain_;
+  TileWorkers& workers_;
+  const int parts_;
+  CallRecorder recorder_;
+  TileScissor scissor_;
+  Records question_;
+  std::uint64_t drawable_ = 0;
+  Extent2D extent_;
+  bool placed_ = false;
+  bool divided_ = false;  ///< every process draws its tile of the window
+  bool has_depth_ = false;
+  bool making_whole_ = false;  ///< the calls of make_whole() are being made
+  bool restricted_ = false;    ///< from glBegin to glEnd
+  int copies_ = 0;
+  std::uint64_t frames_ = 0;
+};
+
+extern const UnitDescription tiles_description;
+
+}  // namespace understudy::spu

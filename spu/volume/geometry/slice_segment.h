@@ -1,0 +1,25 @@
+// Segments, observed: an input of the fragment stage, beside the one that addresses the volume, that may
+// address it a second time, always the same way off.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "spu/volume/geometry/capture.h"
+#include "spu/volume/geometry/slices.h"
+
+namespace understudy::spu {
+
+struct ObservedSegment {
+  std::size_t input = 0;  ///< in the order of ProgramStages::inputs
+  volume::SliceSegment slice_segment;
+};
+
+/// Inputs of `capture` that at all its vertices lie off the coordinate by one vector, or by one number of
+/// planes along the ray; whether colours depend on them is not known yet.
+std::vector<ObservedSegment> find_slice_segments(const Capture& capture,
+                                                 std::span<const ObservedVertex> vertices,
+                                                 const std::vector<StageInput>& inputs, const SliceSet& slices,
+                                                 const CameraFit& camera);
+
+}  // namespace understudy::spu

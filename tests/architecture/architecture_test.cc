@@ -1,0 +1,174 @@
+// The rules of the architecture, read from the source files: who may include whom, and what may lie in the
+// folders.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsEmpty;
+
+/// Lowest first: a module may use itself and those before it.
+constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "spu",
+                                                  "interceptor", "apps",       "tests"};
+
+constexpr std::uintmax_t max_source_bytes = 40'000;
+
+struct SourceFile {
+  std::string path;  ///< from the project's root
+  std::string text;
+};
+
+bool is_code(const SourceFile& file) {
+  return file.path.ends_with(".h") || file.path.ends_with(".cc");
+}
+
+std::string_view module_of(std::string_view path) {
+  return path.substr(0, path.find('/'));
+}
+
+std::size_t height_of(std::string_view module) {
+  return static_cast<std::size_t>(std::find(modules.begin(), modules.end(), module) - modules.begin());
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Everything that belongs to the project: hidden folders, build folders and results do not.
+std::vector<SourceFile> project_files() {
+  const fs::path root = UNDERSTUDY_SOURCE_DIR;
+  std::vector<SourceFile> files;
+  for (fs::recursive_directory_iterator entry(root), end; entry != end; ++entry) {
+    const std::string name = entry->path().filename();
+    if (entry->is_directory()) {
+      const bool results =
+          entry.depth() == 0 && (name.starts_with("build") || name == "out" || name == "shared");
+      if (name.starts_with(".") || name == "__pycache__" || results) entry.disable_recursion_pending();
+    } else if (entry->is_regular_file() && name != ".git") {  // of a git worktree
+      files.push_back({fs::relative(entry->path(), root), contents(entry->path())});
+    }
+  }
+  return files;
+}
+
+const std::vector<SourceFile>& files() {
+  static const std::vector<SourceFile> all = project_files();
+  return all;
+}
+
+/// What stands between the quotes or brackets of the include lines.
+std::vector<std::string> includes_of(const SourceFile& file) {
+  static const std::regex line(R"re((?:^|\n)[ \t]*#[ \t]*include[ \t]*[<"]([^>"\n]+)[>"])re");
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(file.text.begin(), file.text.end(), line), end; match != end; ++match) {
+    found.push_back((*match)[1]);
+  }
+  return found;
+}
+
+/// "path includes header" for every include that `forbidden(file, header)` names.
+template <typename Forbidden>
+std::vector<std::string> includes_where(Forbidden forbidden) {
+  std::vector<std::string> found;
+  for (const SourceFile& file : files()) {
+    if (!is_code(file)) continue;
+    for (const std::string& header : includes_of(file)) {
+      if (forbidden(file, header)) found.push_back(file.path + " includes " + header);
+    }
+  }
+  return found;
+}
+
+TEST(Architecture, HasFilesInEveryModule) {
+  for (const std::string_view module : modules) {
+    EXPECT_TRUE(std::any_of(files().begin(), files().end(), [&](const SourceFile& file) {
+      return is_code(file) && module_of(file.path) == module;
+    })) << module;
+  }
+}
+
+TEST(Architecture, NoModuleIncludesAModuleAboveIt) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                const std::string_view target = module_of(header);
+                return header.find('/') != std::string::npos && height_of(target) < modules.size() &&
+                       height_of(target) > height_of(module_of(file.path));
+              }),
+              IsEmpty());
+}
+
+TEST(Architecture, TheBundledViewerIncludesNothingOfUnderstudy) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return file.path.starts_with("apps/viewer/") && !header.starts_with("apps/viewer/") &&
+                       height_of(module_of(header)) < modules.size();
+              }),
+              IsEmpty());
+}
+
+TEST(Architecture, OnlyTheCompositorTheNodesAndBenchmarksKnowMpi) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return header == "mpi.h" && module_of(file.path) != "compositor" &&
+                       module_of(file.path) != "tests" && !file.path.starts_with("apps/node/") &&
+                       !file.path.starts_with("apps/bench/");
+              }),
+              IsEmpty());
+}
+
+TEST(Architecture, VolumeAndCompositorKnowNoOpenGlStream) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return (module_of(file.path) == "volume" || module_of(file.path) == "compositor") &&
+                       ((header.starts_with("GL/") && !file.path.starts_with("volume/glsl/")) ||
+                        header.starts_with("dispatch/"));
+              }),
+              IsEmpty());
+}
+
+TEST(Architecture, EveryModuleAndEveryProgramSaysWhatItIs) {
+  const fs::path root = UNDERSTUDY_SOURCE_DIR;
+  for (const std::string_view module : modules) EXPECT_TRUE(fs::exists(root / module / "README.md")) << module;
+  for (const auto& entry : fs::directory_iterator(root / "apps")) {
+    if (entry.is_directory() && entry.path().filename() != "__pycache__") {
+      EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path();
+    }
+  }
+}
+
+TEST(Architecture, NoSourceFileIsTooLongToRead) {
+  for (const SourceFile& file : files()) {
+    if (is_code(file) || file.path.ends_with(".py")) {
+      EXPECT_LE(file.text.size(), max_source_bytes) << file.path;
+    }
+  }
+}
+
+// The patterns are put together here so that this file does not contain what it looks for.
+TEST(Architecture, HoldsNoGeneratedFile) {
+  const std::regex mark(
+      std::string("(do not ") + "edit|generated " + "by|@" + "generated|auto-?" + "generated)",
+      std::regex::icase);
+  for (const SourceFile& file : files()) {
+    if (!is_code(file)) continue;
+    const std::string head = file.text.substr(0, 400);
+    EXPECT_FALSE(std::regex_search(head, mark)) << file.path;
+  }
+}
+
+TEST(Architecture, HoldsNoPathOfTheMachineItWasWrittenOn) {
+  const std::regex path(std::string("(/") + "work/|/" + "root/|/" + "home/[a-z])");
+  for (const SourceFile& file : files()) {
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(file.text, found, path)) << file.path << ": " << found.str();
+  }
+}
+
+}  // namespace

@@ -1,0 +1,79 @@
+// What a test of whole programs stands on: a folder of its own, the viewers' commands, the engine's CT, and a
+// look at what is left when all is over.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/apps/viewer/run_viewer.h"
+#include "tests/apps/viewer/temporary_folder.h"
+#include "tests/clients/child.h"
+
+namespace clients {
+
+using Words = std::vector<std::string>;
+
+Words operator+(Words first, const Words& second);
+
+/// Something a test cannot do without, and where it comes from.
+enum class Need { engine, mpi, x_server, osgvolume, imagemagick, apitrace, piglit };
+
+/// What of it this machine lacks, as a sentence for GTEST_SKIP; empty when all is there.
+std::string missing(std::initializer_list<Need> needs);
+
+/// The CT of an engine, 256 x 256 x 110 bytes.
+std::filesystem::path engine_file();
+
+const std::filesystem::path programs = PROGRAMS;
+const std::filesystem::path libraries = LIBRARIES;
+const std::filesystem::path system_libraries = SYSTEM_LIBRARIES;
+
+/// `understudy run OPTIONS -- `, to be put in front of a viewer's command.
+Words under(const Words& options = {});
+
+/// The bundled viewer on the engine, off screen, 256 x 256.
+Words engine_viewer(const std::string& mode, const Words& options);
+
+/// How far two images are apart, printed after `what`.
+viewer_test::Difference told(const std::string& what, const viewer_test::Image& a, const viewer_test::Image& b);
+
+/// Runs of slices that the nodes drew, over all volumes of a report.
+int substituted(const nlohmann::json& report);
+
+class GlServer : public testing::Test {
+ protected:
+  GlServer();
+
+  std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
+
+  /// With runtime files (sockets, folders of runs) in a folder of this test's own.
+  Command on_gl_server(const Words& words, std::map<std::string, std::string> environment = {}) const;
+  Outcome run(const Words& words, const std::map<std::string, std::string>& environment = {}) const;
+  /// The same, and expects status 0.
+  Outcome run_well(const Words& words, const std::map<std::string, std::string>& environment = {}) const;
+
+  nlohmann::json json(const std::string& name) const;
+  viewer_test::Image png(const std::string& name) const { return viewer_test::read_png(file(name).string()); }
+
+  /// Ids of the living processes started from this test, whoever their parents are now, whose program has that
+  /// name; of all of them when it is empty.
+  std::vector<pid_t> processes(const std::string& program = "") const;
+
+  /// Waits for what is on its way out, and then lists processes, sockets, folders and shared memory that are
+  /// left of the programs that were run; empty when there are none.
+  std::string leftovers() const;
+
+  viewer_test::TemporaryFolder folder_;
+  std::filesystem::path runtime_;
+  /// Some other program that was killed may have left them: they are none of this test's.
+  std::set<std::string> abandoned_before_;
+};
+
+}  // namespace clients

@@ -1,0 +1,8 @@
+// What neither an application nor a GL server would say: nothing may crash, hang or take memory without
+// measure.
+#include "tests/fuzz/remote_input.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  understudy::spu::testing::play_gl_server_input(std::as_bytes(std::span(data, size)));
+  return 0;
+}

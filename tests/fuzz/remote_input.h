@@ -1,0 +1,121 @@
+// How the bytes of a fuzzer, or a file of its corpus, come over a link: to both sides of the handshake, as
+// messages over TCP with the images in them, and as what an application and a GL server say to each other.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "compositor/tcp/handshake.h"
+#include "compositor/tcp/render_relay.h"
+#include "compositor/tcp/tcp_message_reader.h"
+#include "spu/remote/gl_server_protocol.h"
+#include "spu/remote/travelling_image.h"
+#include "spu/stream/call_answer.h"
+
+namespace understudy::spu::testing {
+
+/// What cannot be believed says so by an exception; anything else is a fault.
+template <class Step>
+bool may_refuse(Step step) {
+  try {
+    step();
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return true;
+}
+
+inline void shake_hands(std::span<const std::byte> input) {
+  using namespace compositor;
+  const std::array<std::byte, 16> contents{};
+  const Secret secret(contents);
+  const auto part = [&](std::size_t from, std::size_t size) {
+    from = std::min(from, input.size());
+    return input.subspan(from, std::min(size, input.size() - from));
+  };
+  may_refuse([&] {
+    ServerHandshake server(secret);
+    server.answer(part(0, hello_bytes));
+    server.answer(part(hello_bytes, proof_bytes));
+  });
+  may_refuse([&] {
+    ClientHandshake client(secret, {});
+    client.answer(part(0, challenge_bytes));
+    client.finish(part(challenge_bytes, verdict_bytes));
+  });
+}
+
+/// Whether it was believed.
+inline bool take_message(const compositor::Message& message, ChunkReceiver& chunks) {
+  using compositor::MessageType;
+  return may_refuse([&] {
+    switch (message.type) {
+      case MessageType::rendered: {
+        std::vector<float> memory(std::size_t(4) * 256 * 256);
+        compositor::take_image(message.payload, memory);
+        break;
+      }
+      case MessageType::calls:
+        decode_calls(message.payload, chunks);
+        break;
+      case MessageType::answered:
+        decode_answer(message.payload);
+        break;
+      case MessageType::image:
+      case MessageType::refined:
+        decode_image(decode_travelling_image(message.payload));
+        break;
+      case MessageType::accepted:
+        decode_versions(message.payload);
+        break;
+      default:
+        break;
+    }
+  });
+}
+
+/// Bytes as they come out of the socket, in pieces of any size. How many messages were believed.
+inline int play_remote_input(std::span<const std::byte> input) {
+  shake_hands(input);
+  int believed = 0;
+  ChunkReceiver chunks;
+  may_refuse([&] {
+    compositor::TcpMessageReader reader(std::size_t(1) << 22);
+    const std::size_t most = input.empty() ? 1 : 1 + std::to_integer<std::size_t>(input.front());
+    while (!input.empty()) {
+      const std::span<std::byte> room = reader.room();
+      const std::size_t count = std::min({room.size(), most, input.size()});
+      std::ranges::copy(input.first(count), room.begin());
+      input = input.subspan(count);
+      if (const auto message = reader.took(count)) believed += take_message(*message, chunks);
+    }
+  });
+  return believed;
+}
+
+/// Messages of an application and of a GL server, one after the other: type and length as 32-bit words, then
+/// the payload. How many messages were believed.
+inline int play_gl_server_input(std::span<const std::byte> input) {
+  int believed = 0;
+  ChunkReceiver chunks;
+  std::uint32_t head[2];
+  while (input.size() >= sizeof head) {
+    std::memcpy(head, input.data(), sizeof head);
+    input = input.subspan(sizeof head);
+    const auto payload = input.first(std::min<std::size_t>(head[1], input.size()));
+    input = input.subspan(payload.size());
+    believed +=
+        take_message({compositor::MessageType(head[0] % (std::uint32_t(compositor::MessageType::last) + 1)),
+                      0,
+                      {payload.begin(), payload.end()},
+                      {}},
+                     chunks);
+  }
+  return believed;
+}
+
+}  // namespace understudy::spu::testing

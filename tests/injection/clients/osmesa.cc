@@ -1,0 +1,75 @@
+// osmesa FILE: draws images and then a volume through OSMesa, which it is linked with. FILE gets the last
+// image of the volume; a second argument `depth` has it print the depth buffer's bytes too.
+#include <GL/osmesa.h>
+#include <string.h>
+
+#include "image.h"
+
+using namespace client;
+
+static std::vector<unsigned char> array(std::size_t(4) * image_size * image_size);
+
+static void current(OSMesaContext context) {
+  if (!OSMesaMakeCurrent(context, array.data(), GL_UNSIGNED_BYTE, image_size, image_size))
+    puts("OSMesaMakeCurrent fails");
+}
+
+static void show_array(const char* name) {
+  printf("%s: %016lx error %x\n", name, digest(array), glGetError());
+}
+
+int main(int count, char** arguments) {
+  const OSMesaContext first = OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr);
+  const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, 0};
+  const OSMesaContext second = OSMesaCreateContextAttribs(attributes, first);
+  if (first == nullptr || second == nullptr) return 3;
+  current(first);
+  printf("%s\n", glGetString(GL_VERSION));
+  GLint value = 0;
+  OSMesaGetIntegerv(OSMESA_WIDTH, &value);
+  printf("width %d, current %d\n", value, OSMesaGetCurrentContext() == first);
+
+  const GLuint texture = checkerboard(5);
+  draw_image(texture, 5);
+  glFinish();
+  show_array("first");
+  current(second);
+  draw_image(texture, 6);  // shared
+  glFlush();
+  show_array("second, shared texture");
+  OSMesaPixelStore(OSMESA_Y_UP, 0);
+  draw_image(texture, 7);
+  glFinish();
+  show_array("upside down");
+  OSMesaPixelStore(OSMESA_Y_UP, 1);
+  current(first);
+  draw_image(texture, 8);
+  OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
+  printf("released: %016lx, current %d\n", digest(array), OSMesaGetCurrentContext() == nullptr);
+  glClear(GL_COLOR_BUFFER_BIT);  // nobody's
+  OSMesaDestroyContext(second);
+  current(first);
+  show("read back", 9);
+  if (count < 2) return 0;
+
+  const GLuint ball = ball_texture();
+  const bool with_depth = count > 2 && strcmp(arguments[2], "depth") == 0;
+  for (int frame = 0; frame < 4; ++frame) {
+    if (with_depth) {
+      glEnable(GL_DEPTH_TEST);
+      glDepthFunc(GL_LEQUAL);
+    }
+    draw_volume(ball, 10 * frame);
+    glFlush();
+    glFinish();
+    if (!with_depth) continue;
+    GLint width = 0, height = 0, bytes = 0;
+    void* depth = nullptr;
+    if (!OSMesaGetDepthBuffer(first, &width, &height, &bytes, &depth)) return 4;
+    const auto* start = static_cast<const unsigned char*>(depth);
+    printf("depth %d: %dx%dx%d %016lx\n", frame, width, height, bytes,
+           digest({start, start + std::size_t(width) * std::size_t(height) * std::size_t(bytes)}));
+  }
+  write_file(arguments[1], array);
+  OSMesaDestroyContext(first);
+}

@@ -1,0 +1,29 @@
+// Which blocks can be left out, and how far: per block the Chebyshev distance to the next block that shows
+// something, 0 for those that do. From a sample in a block of distance d, all blocks fewer than d steps away
+// are empty. (Cohen, Sheffer 1994, proximity clouds; Deakin, Knackstedt 2020 for Chebyshev distance.)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace understudy::volume {
+
+class OccupancyMap {
+ public:
+  /// `shows` has one value per block of a box of `counts` blocks, x fastest; what lies outside the box is
+  /// empty.
+  OccupancyMap(const std::array<int, 3>& counts, std::vector<bool> shows);
+
+  /// Distances, saturated at 255, and three bytes that may be read after the last.
+  const std::uint8_t* distances() const { return distances_.data(); }
+  std::size_t empty_bricks() const { return empty_bricks_; }
+  bool shows(std::size_t block) const { return distances_[block] == 0; }
+  bool all_empty() const { return empty_bricks_ + 3 == distances_.size(); }
+
+ private:
+  std::vector<std::uint8_t> distances_;
+  std::size_t empty_bricks_ = 0;
+};
+
+}  // namespace understudy::volume

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "interceptor/gl_names.h"
+#include "spu/former_names.h"
 
 using namespace understudy::interceptor;
 
@@ -27,6 +28,7 @@ void set_folder(const char* folder) {
 
 void find_stubs() {
   const char* given = getenv("UNDERSTUDY_ENTRY_DIR");
+  if (given == nullptr) given = getenv(understudy::spu::former_entry_folder_variable);
   char folder[PATH_MAX];
   Dl_info self;
   if (given != nullptr && *given != '\0') {

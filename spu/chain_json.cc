@@ -8,6 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "spu/former_names.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -25,15 +27,15 @@ std::string option_value(const Json& value, const std::string& where) {
 }
 
 UnitSetting unit_setting(const Json& entry, const std::string& where) {
-  if (entry.is_string()) return {entry.get<std::string>(), {}, where};
+  if (entry.is_string()) return {present_unit(entry.get<std::string>()), {}, where};
   if (!entry.is_object() || !entry.contains("unit") || !entry["unit"].is_string()) {
     throw ChainError(where, R"(a unit is "name", or {"unit": "name", "option": value})");
   }
-  UnitSetting unit{entry["unit"].get<std::string>(), {}, where};
+  UnitSetting unit{present_unit(entry["unit"].get<std::string>()), {}, where};
   for (const auto& [name, value] : entry.items()) {
     if (name == "unit") continue;
     const std::string place = where + "." + shown(name);
-    unit.options.push_back({name, option_value(value, place), place});
+    unit.options.push_back({present_unit_option(name), option_value(value, place), place});
   }
   return unit;
 }

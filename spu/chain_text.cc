@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "spu/former_names.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -36,7 +38,7 @@ class Reader {
   UnitSetting unit() {
     UnitSetting unit;
     unit.where = where();
-    unit.name = name("a unit's name");
+    unit.name = present_unit(name("a unit's name"));
     skip_space();
     if (at_end() || peek() != '(') return unit;
     const std::string opened = where();
@@ -61,7 +63,7 @@ class Reader {
   OptionSetting option() {
     OptionSetting option;
     option.where = where();
-    option.name = name("an option's name");
+    option.name = present_unit_option(name("an option's name"));
     skip_space();
     if (at_end() || peek() != '=') {
       option.value = "on";

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "compositor/exchange/settings.h"
+#include "spu/former_names.h"
 
 namespace understudy::spu {
 namespace {
@@ -64,12 +64,6 @@ bool set_disabled_optimizations(Options& options, const std::string& text) {
   return optimizations.has_value();
 }
 
-bool set_polygons(Options& options, const std::string& text) {
-  if (text != "root" && text != "tiles") return false;
-  options.polygons = text;
-  return true;
-}
-
 template <auto member>
 bool set_text(Options& options, const std::string& text) {
   options.*member = text;
@@ -119,18 +113,17 @@ constexpr std::array rows{
          "what travels between nodes: float (exact), half (rounds to 1/2048 of a value), byte (to 1/510)"},
         set_name<&Options::pixels, compositor::set_layout>},
     Row{{"--gather", "UNDERSTUDY_GATHER", "WAY", "direct",
-         "how parts of an image come to the viewer: direct (every node of this machine writes its own into "
-         "the "
-         "viewer's memory) or gathered (by one node)"},
+         "how the parts of an image come to the viewer: direct (every node of this machine writes its part "
+         "into "
+         "the viewer's memory) or root (one node collects them)"},
         set_name<&Options::gather, compositor::set_gather>},
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
          "composite parts of an image while others are drawn: on, off, or auto, where that was faster"},
         set_name<&Options::overlap, compositor::set_overlap>},
-    Row{{"--polygons", "UNDERSTUDY_POLYGONS", "WHO", "root",
-         "with --remote, who draws what is no volume: root (one process), or tiles (as many processes as "
-         "nodes, "
-         "each its own rows of the window)"},
-        set_polygons},
+    Row{{"--tiles", "UNDERSTUDY_TILES", "on|off", "off",
+         "with --remote, draw what is no volume with as many processes as there are nodes, each a tile of the "
+         "window"},
+        set_switch<&Options::tiles>},
     Row{{"--frame-latency", "UNDERSTUDY_FRAME_LATENCY", "FRAMES", "0",
          "1: while the camera moves, show the image of the frame before, so that nodes work while the viewer "
          "does; once it rests, viewers that have a window are asked to draw again"},
@@ -207,10 +200,10 @@ bool set_option(Options& options, std::string_view environment, const std::strin
 Options options_from_environment() {
   Options options;
   for (const Row& row : rows) {
-    const char* text = std::getenv(row.text.environment);
-    if (text == nullptr || row.set(options, text)) continue;
+    const std::optional<std::string> text = environment_value(row.text.environment);
+    if (!text || row.set(options, *text)) continue;
     std::fprintf(stderr, "understudy: %s=%s is not a value this option takes (%s); using %s\n",
-                 row.text.environment, text, row.text.help,
+                 row.text.environment, text->c_str(), row.text.help,
                  *row.text.fallback == '\0' ? "none" : row.text.fallback);
   }
   return options;

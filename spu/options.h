@@ -29,7 +29,7 @@ struct Options {
   std::string pixels = "float";   ///< name of compositor::set_layout
   std::string gather = "direct";  ///< name of compositor::set_gather
   std::string overlap = "auto";   ///< name of compositor::set_overlap
-  std::string polygons = "root";  ///< or "tiles": who draws the windows of a GL server
+  bool tiles = false;             ///< the windows of a GL server are drawn by several processes
   int frame_latency = 0;          ///< frames that images of a moving camera may be behind
   std::string chain = "track volume driver";
   std::string run_dir;                 ///< the launcher's folder for this run (counters); empty: no launcher

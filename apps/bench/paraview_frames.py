@@ -31,7 +31,7 @@ TABLES = {"dense": [(0, (0.1, 0.3, 1), 0.002), (255, (1, 0.8, 0.2), 0.03)],
 
 
 def scene_of(table, mode, folder):
-    """What both programs are told, in a file that `understudy render --table` reads as well."""
+    """What both programs are told, in a file that `understudy render --transfer-function` reads as well."""
     control_points = [{"at": at, "colour": colour, "opacity": opacity} for at, colour, opacity in TABLES[table]]
     path = folder / f"paraview-{table}-{mode}.json"
     path.write_text(json.dumps({"volume": str(cube()), "side": SIDE, "scalars": "unsigned char", "pixels": PIXELS, **CAMERA,
@@ -44,7 +44,7 @@ def ours(scene, image):
     camera = ",".join(str(CAMERA[key]) for key in ("azimuth", "elevation", "distance"))
     report = image.with_suffix(".json")
     subprocess.run([str(viewers.PROGRAMS / "understudy"), "render", str(cube()), "--volume-size", *[str(SIDE)] * 3,
-                    "--type", "u8", "--table", str(scene), "-n", str(RANKS), "--camera", camera, "--size",
+                    "--type", "u8", "--transfer-function", str(scene), "-n", str(RANKS), "--camera", camera, "--size",
                     f"{PIXELS}x{PIXELS}", "--frames", str(SETTLE + FRAMES), "--out", str(image), "--report", str(report)],
                    stdout=subprocess.DEVNULL, check=True, timeout=viewers.RUN_SECONDS)
     return json.loads(report.read_text(encoding="utf-8"))["frames_ms"][SETTLE:]

@@ -38,7 +38,7 @@ def waves():
 
 
 def scene_of(table, folder):
-    """What both programs are told, in a file that `understudy render --table` reads as well."""
+    """What both programs are told, in a file that `understudy render --transfer-function` reads as well."""
     middle, half, opacity = TABLES[table]
     low, high = {"colour": [0.2, 0.4, 1], "opacity": 0}, {"colour": [1, 0.4, 0.2], "opacity": 0}
     control_points = [{"at": 0, **low}, {"at": middle - half, **low}, {"at": middle, "colour": [1, 0.9, 0.5], "opacity": opacity},
@@ -52,7 +52,7 @@ def scene_of(table, folder):
 def ours(scene, method, ranks, image):
     camera = ",".join(str(CAMERA[key]) for key in ("azimuth", "elevation", "distance"))
     exact = image.with_suffix(".pfm")
-    subprocess.run([str(viewers.PROGRAMS / "understudy"), "render", str(waves()), "--table", str(scene), "-n", str(ranks),
+    subprocess.run([str(viewers.PROGRAMS / "understudy"), "render", str(waves()), "--transfer-function", str(scene), "-n", str(ranks),
                     "--method", method, "--camera", camera, "--size", f"{PIXELS}x{PIXELS}", "--out", str(image),
                     "--save-float", str(exact)], stdout=subprocess.DEVNULL, check=True)
     return exact

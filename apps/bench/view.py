@@ -18,7 +18,7 @@ NODES = {"embedded": [], "2 ranks": ["-n", "2"]}
 def rows():
     result = []
     for name, nodes in NODES.items():
-        command = [str(viewers.PROGRAMS / "understudy"), "view", "--web", "0", *nodes, "--table", "engine", "--size", "512x512",
+        command = [str(viewers.PROGRAMS / "understudy"), "view", "--web", "0", *nodes, "--transfer-function", "engine", "--size", "512x512",
                    "--volume-size", "256", "256", "110", "--type", "u8", str(viewers.engine_volume())]
         view = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:

@@ -55,7 +55,7 @@ def options(volume, kind):
         return [word for surface in chosen for word in ("--surface", surface)]
 
     def table(name):
-        return ["--table", str(TABLES / f"{name}.json"), "--method", "pre-integrated"]
+        return ["--transfer-function", str(TABLES / f"{name}.json"), "--method", "pre-integrated"]
 
     return [*volume.view, *{
         "iso": ["--no-volume", *surfaces(volume.iso), "--light", "all"],

@@ -70,7 +70,7 @@ Json connection_figures(const std::filesystem::path& folder) {
   return sum;
 }
 
-std::string link_text(const Json& figures) {
+std::string connection_text(const Json& figures) {
   const auto megabytes = [&](const char* way, const char* what) {
     return figures.at(way).at(what).get<double>() / 1e6;
   };

@@ -17,6 +17,6 @@ void write_connection_figures(const std::filesystem::path& folder, const std::st
 nlohmann::ordered_json connection_figures(const std::filesystem::path& folder);
 
 /// In one line.
-std::string link_text(const nlohmann::ordered_json& figures);
+std::string connection_text(const nlohmann::ordered_json& figures);
 
 }  // namespace understudy::launcher

@@ -8,6 +8,17 @@
 
 namespace understudy::launcher {
 
+namespace {
+
+/// Under whatever name: a link to it is the folder, too.
+bool is_entry_folder(const std::filesystem::path& folder, const Installation& installation) {
+  std::error_code unreadable;
+  return folder.lexically_normal() == installation.entry_folder() ||
+         std::filesystem::equivalent(folder, installation.entry_folder(), unreadable);
+}
+
+}  // namespace
+
 Environment current_environment() {
   Environment environment;
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
@@ -44,7 +55,7 @@ Environment node_environment(Environment environment, const Installation& instal
     std::string kept;
     std::istringstream folders(found->second);
     for (std::string folder; std::getline(folders, folder, ':');) {
-      if (std::filesystem::path(folder).lexically_normal() == installation.entry_folder()) continue;
+      if (is_entry_folder(folder, installation)) continue;
       kept += (kept.empty() ? "" : ":") + folder;
     }
     found->second = kept;

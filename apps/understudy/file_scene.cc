@@ -49,7 +49,7 @@ volume::TexelChoice texels_of(const SceneArguments& arguments) {
 
 ImageSettings image_of(const SceneArguments& arguments) {
   ImageSettings image;
-  image.control_points = read_control_points(arguments.table);
+  image.control_points = read_control_points(arguments.transfer_function);
   const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4", 1);
   image.camera = {camera[0], camera[1], camera[2], camera.size() > 3 ? camera[3] : 0};
   const std::vector<double> size = numbers(arguments.size, 'x', 2, "512x512");
@@ -74,7 +74,7 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
       ->required();
   subcommand
       .add_option(
-          "--table", arguments.table,
+          "--transfer-function,--tf", arguments.transfer_function,
           "transfer function: a JSON file of control points, or one of " + volume::built_in_control_points())
       ->capture_default_str();
   add_shading_options(subcommand, arguments.shading);

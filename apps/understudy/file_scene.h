@@ -19,7 +19,7 @@ namespace understudy::launcher {
 struct SceneArguments {
   std::string volume;
   ShadingArguments shading;
-  std::string table = "grey";
+  std::string transfer_function = "grey";
   std::string camera = "30,20,4";
   std::string size = "512x512";
   double step = 1;

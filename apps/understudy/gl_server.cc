@@ -60,7 +60,7 @@ spu::Options options_of_application(const std::string& socket) {
       spu::parse_chain(spu::resolved_chain(options.chain, std::filesystem::current_path()));
   auto tiles = std::find_if(chain.begin(), chain.end(),
                             [](const spu::UnitSetting& unit) { return unit.name == "tiles"; });
-  if (tiles == chain.end() && options.polygons == "tiles") {
+  if (tiles == chain.end() && options.tiles) {
     const int parts = std::min(options.nodes, spu::most_tiles);
     if (parts < 2) {
       fmt::print(stderr, "understudy: --tiles on: there is one node, which draws all; say -n 2, or more\n");
@@ -70,7 +70,7 @@ spu::Options options_of_application(const std::string& socket) {
                          {.name = "tiles", .options = {{"of", std::to_string(parts), {}}}, .where = {}});
   }
   if (tiles == chain.end()) return options;
-  tiles->options.push_back({"stages", socket, {}});
+  tiles->options.push_back({"gl-server", socket, {}});
   options.chain = spu::chain_text(chain);
   return options;
 }

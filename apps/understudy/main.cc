@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "apps/understudy/compare.h"
 #include "apps/understudy/doctor.h"
@@ -19,14 +21,16 @@
 #include "apps/understudy/trim.h"
 #include "apps/understudy/units.h"
 #include "apps/understudy/view_program.h"
+#include "spu/former_names.h"
 
 namespace launcher = understudy::launcher;
 
 int main(int argc, char** argv) try {
   // What follows the first "--" is the viewer's command and is not ours to interpret.
   const launcher::CommandLine line = launcher::split_at_double_dash(argc, argv);
+  understudy::spu::rename_former_variables();
 
-  CLI::App app{"Lets render nodes play the part of a viewer's volume rendering."};
+  CLI::App app{"Renders the volumes of unmodified OpenGL viewers by distributed ray casting.", "understudy"};
   app.require_subcommand(1);
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
@@ -39,13 +43,14 @@ int main(int argc, char** argv) try {
   launcher::add_listener(app, chosen);
   launcher::add_relay(app, chosen);
   launcher::add_render(app, chosen);
-  launcher::add_view_program(app, argv, chosen);
+  launcher::add_view_program(app, line.own, chosen);
   launcher::add_study(app, chosen);
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);
   launcher::add_units(app, chosen);
   try {
-    app.parse(static_cast<int>(line.own.size()), line.own.data());
+    // The library takes them last to first, and without the program's name.
+    app.parse(std::vector<std::string>(line.own.rbegin(), line.own.rend() - 1));
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : launcher::usage_error;
   }

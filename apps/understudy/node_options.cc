@@ -37,8 +37,8 @@ void add_gl_server_option(CLI::App& subcommand, std::string& opengl) {
   add_option_of_the_table(subcommand, "--server-opengl", opengl);
 }
 
-void add_polygons_option(CLI::App& subcommand, std::string& polygons) {
-  add_option_of_the_table(subcommand, "--polygons", polygons);
+void add_tiles_option(CLI::App& subcommand, std::string& tiles) {
+  add_option_of_the_table(subcommand, "--tiles", tiles);
 }
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) {

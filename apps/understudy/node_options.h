@@ -13,8 +13,8 @@ namespace understudy::launcher {
 /// As spu/options.h has them; their variables count too, for viewers that start nodes of their own.
 void add_exchange_options(CLI::App& subcommand, NodeChoices& choices);
 
-/// `--polygons`, of those who start a GL server.
-void add_polygons_option(CLI::App& subcommand, std::string& polygons);
+/// `--tiles`, of those who start a GL server.
+void add_tiles_option(CLI::App& subcommand, std::string& tiles);
 
 /// What a GL server beside the nodes draws with, as spu/options.h has it.
 void add_gl_server_option(CLI::App& subcommand, std::string& opengl);

@@ -34,6 +34,7 @@
 #include "compositor/tcp/address.h"
 #include "spu/assemble.h"
 #include "spu/chain_text.h"
+#include "spu/former_names.h"
 #include "spu/options.h"
 #include "spu/report/keys.h"
 #include "spu/report/report.h"
@@ -44,11 +45,11 @@ namespace {
 constexpr int not_executable = 126;
 constexpr int server_patience_ms = 5000;
 /// Of a viewer whose calls a GL server makes: nothing is recognised in its own process. A chain that is to
-/// stand there ends in connection.
+/// stand there ends in remote.
 constexpr const char* remote_chain = "pack remote";
 
 bool stands_in_viewer(const std::string& chain) {
-  return spu::parse_chain(chain).back().name == "connection";
+  return spu::parse_chain(chain).back().name == "remote";
 }
 
 void say(const std::string& line) {
@@ -119,7 +120,7 @@ void put_on_gl_server_elsewhere(Environment& viewer, const std::filesystem::path
 
 /// How to get at what --connect names, if that is on another machine. Throws std::runtime_error for an address
 /// that is none, and for one without a secret.
-std::optional<ConnectionPlan> link_of(const RunArguments& arguments, const spu::Options& options) {
+std::optional<ConnectionPlan> connection_of(const RunArguments& arguments, const spu::Options& options) {
   if (options.connect.empty() || options.disable) return {};
   const auto address = compositor::tcp_address_of(options.connect);
   if (!address) return {};
@@ -220,7 +221,7 @@ void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
   if (options.explain) {
     std::fputs(spu::explanation_text(processes).c_str(), stderr);
     for (const std::string& choice : backends) say(choice);
-    if (!connection.is_null()) say(link_text(connection));
+    if (!connection.is_null()) say(connection_text(connection));
   }
   std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
   if (options.report.empty()) return;
@@ -260,13 +261,13 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
         "unset one of them");
     return usage_error;
   }
-  if (options.polygons != "root" && !arguments.remote) {
+  if (options.tiles && !arguments.remote) {
     say("--tiles on is for viewers whose windows are drawn elsewhere; add --remote");
     return usage_error;
   }
   std::optional<ConnectionPlan> connection;
   try {
-    connection = link_of(arguments, options);
+    connection = connection_of(arguments, options);
     // The viewer has no other OpenGL, and is better not started than without any.
     if (connection && arguments.remote) try_connection(*connection);
   } catch (const std::runtime_error& error) {
@@ -319,11 +320,8 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
         "--server-opengl {} is for a GL server of this run (--remote); for one elsewhere give it to "
         "understudy serve --gl-server",
         options.server_opengl));
-  if (connection && options.polygons != "root")
-    say(
-        fmt::format("--polygons {} is for a GL server of this run; for one elsewhere give it to understudy "
-                    "serve --gl-server",
-                    options.polygons));
+  if (connection && options.tiles)
+    say("--tiles is for a GL server of this run; for one elsewhere give it to understudy serve --gl-server");
   std::unique_ptr<NodeGroup> nodes = start_nodes(installation, plan);
   std::unique_ptr<ChildProcess> relay;
   const std::filesystem::path connection_socket = folder.path() / "link.sock";
@@ -398,7 +396,8 @@ void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArg
 CommandLine split_at_double_dash(int argc, char** argv) {
   CommandLine line;
   int position = 0;
-  while (position < argc && std::strcmp(argv[position], "--") != 0) line.own.push_back(argv[position++]);
+  while (position < argc && std::strcmp(argv[position], "--") != 0) line.own.emplace_back(argv[position++]);
+  line.own = spu::with_present_options(line.own);
   for (++position; position < argc; ++position) line.viewer.emplace_back(argv[position]);
   return line;
 }

@@ -24,7 +24,7 @@ constexpr int cannot_start_viewer = 127;
 
 /// The arguments of this program, and those of the viewer behind the first "--".
 struct CommandLine {
-  std::vector<char*> own;
+  std::vector<std::string> own;  ///< former options in today's words
   std::vector<std::string> viewer;
 };
 

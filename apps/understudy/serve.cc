@@ -38,7 +38,7 @@ struct ServeArguments {
   std::string listen;       ///< host:port for clients of other machines; empty: none
   std::filesystem::path secret_file;
   bool server = false;
-  std::string polygons = "root";
+  std::string tiles = "off";
   std::string server_opengl = "auto";
 };
 
@@ -56,21 +56,21 @@ struct Frontends {
 std::unique_ptr<ChildProcess> start_gl_server_of_nodes(const Installation& installation,
                                                        const NodeGroupPlan& nodes,
                                                        const std::filesystem::path& socket,
-                                                       const std::string& polygons, const std::string& opengl) {
+                                                       const std::string& tiles, const std::string& opengl) {
   Environment environment = current_environment();
   environment.erase("UNDERSTUDY_REMOTE");
   environment.erase("UNDERSTUDY_RUN_DIR");
   environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
   environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
-  environment["UNDERSTUDY_POLYGONS"] = polygons;
+  environment["UNDERSTUDY_TILES"] = tiles;
   environment["UNDERSTUDY_SERVER_OPENGL"] = opengl;
   return start_gl_server(installation, socket, environment);
 }
 
-Frontends open_entries(const Installation& installation, const ServeArguments& arguments,
-                       const NodeGroupPlan& nodes) {
-  Frontends injection_methods;
-  if (arguments.listen.empty()) return injection_methods;
+Frontends open_frontends(const Installation& installation, const ServeArguments& arguments,
+                         const NodeGroupPlan& nodes) {
+  Frontends frontends;
+  if (arguments.listen.empty()) return frontends;
   const auto address = compositor::tcp_address_of(arguments.listen);
   if (!address)
     throw std::runtime_error(
@@ -89,15 +89,15 @@ Frontends open_entries(const Installation& installation, const ServeArguments& a
                     .folder = nodes.folder};
   if (arguments.server) {
     plan.server = nodes.folder / "gl_server.sock";
-    injection_methods.server =
-        start_gl_server_of_nodes(installation, nodes, plan.server, arguments.polygons, arguments.server_opengl);
+    frontends.server =
+        start_gl_server_of_nodes(installation, nodes, plan.server, arguments.tiles, arguments.server_opengl);
   }
-  injection_methods.listener = start_listener(installation, plan);
-  return injection_methods;
+  frontends.listener = start_listener(installation, plan);
+  return frontends;
 }
 
 /// Said, and done without: clients of this machine are served.
-void look_after(Frontends& injection_methods) {
+void look_after(Frontends& frontends) {
   const auto ended = [](std::unique_ptr<ChildProcess>& process, const char* what) {
     if (!process) return;
     const std::optional<Ending> ending = process->poll_ending();
@@ -105,8 +105,8 @@ void look_after(Frontends& injection_methods) {
     fmt::print(stderr, "understudy: {} {}; start serve again\n", what, ending->text());
     process.reset();
   };
-  ended(injection_methods.server, "the GL server, which draws for viewers of other machines,");
-  ended(injection_methods.listener.process, "the listener, which lets clients of other machines in,");
+  ended(frontends.server, "the GL server, which draws for viewers of other machines,");
+  ended(frontends.listener.process, "the listener, which lets clients of other machines in,");
 }
 
 /// Returns when a signal asks for the end. The nodes and the socket are gone then.
@@ -125,24 +125,24 @@ int serve(const ServeArguments& arguments) {
       arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
   const NodeGroupPlan plan{placement, socket, folder.path(), arguments.choices};
   NodeGroup nodes(installation, plan);
-  Frontends injection_methods = open_entries(installation, arguments, plan);
+  Frontends frontends = open_frontends(installation, arguments, plan);
   bool announced = false;
   while (!is_over(arguments)) {
     while (const std::optional<ReceivedSignal> received = inbox.next()) {
       if (received->number != SIGCHLD) return 0;
       nodes.look_after_children();
-      look_after(injection_methods);
+      look_after(frontends);
     }
     nodes.wait_and_serve(inbox.descriptor());
     if (announced || !nodes.ready()) continue;
     announced = true;
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
                nodes.ranks(), socket.string(), socket.string());
-    if (injection_methods.listener.process)
+    if (frontends.listener.process)
       fmt::print(
           "understudy: and at {0}; use them with: understudy run {1}--connect {0} --secret-file FILE -- viewer "
           "args…\n",
-          injection_methods.listener.address.text(), injection_methods.server ? "[--remote] " : "");
+          frontends.listener.address.text(), frontends.server ? "[--remote] " : "");
     std::fflush(stdout);
   }
   return 0;
@@ -171,7 +171,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   add_exchange_options(*subcommand, arguments->choices);
-  add_polygons_option(*subcommand, arguments->polygons);
+  add_tiles_option(*subcommand, arguments->tiles);
   CLI::Option* secret_file =
       subcommand
           ->add_option("--secret-file", arguments->secret_file,

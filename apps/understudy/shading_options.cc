@@ -126,7 +126,8 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
                   "opacity; as often as wanted")
       ->type_name("VALUE[,COLOUR[,OPACITY]]")
       ->allow_extra_args(false);
-  subcommand.add_flag("--no-volume", arguments.no_volume, "surfaces alone, without what --table shows");
+  subcommand.add_flag("--no-volume", arguments.no_volume,
+                      "surfaces alone, without what --transfer-function shows");
   subcommand
       .add_option("--light", arguments.light,
                   "Blinn and Phong's, on the volume and its surfaces, or on surfaces alone; it shines from the "

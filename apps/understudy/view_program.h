@@ -4,14 +4,16 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace understudy::launcher {
 
 constexpr const char* view_description =
     "a volume in a file to look at, in a browser or a window, without OpenGL";
 
-/// The subcommand, which takes whatever follows. Chosen, it gives this process to understudy-view with the same
-/// `argv`, and throws std::runtime_error where that is not to be had.
-void add_view_program(CLI::App& app, char** argv, std::function<int()>& chosen);
+/// The subcommand, which takes whatever follows. Chosen, it gives this process to understudy-view with these
+/// `arguments`, and throws std::runtime_error where that is not to be had.
+void add_view_program(CLI::App& app, const std::vector<std::string>& arguments, std::function<int()>& chosen);
 
 }  // namespace understudy::launcher

@@ -56,7 +56,7 @@ constexpr UnitOption options[] = {{.name = "of",
                                    .low = 2,
                                    .high = most_tiles,
                                    .help = "tiles of a window, each drawn by a process of its own"},
-                                  {.name = "stages",
+                                  {.name = "gl-server",
                                    .type = OptionType::text,
                                    .fallback = "",
                                    .help = "Unix socket of the GL servers that draw the others"}};
@@ -328,7 +328,7 @@ constinit const UnitDescription tiles_description{
     .help = "has each tile of a window drawn by a process of its own (understudy run --remote --tiles on)",
     .options = options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
-      const std::string& servers = place.options.text("stages");
+      const std::string& servers = place.options.text("gl-server");
       if (servers.empty())
         throw ChainError("tiles",
                          "there are no GL servers to draw them; start the viewer with: understudy run "

@@ -90,24 +90,24 @@ TEST_F(Remote, CoreContextsAndNodes) {
 
 TEST_F(Remote, PolygonsInTilesAreThoseOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
-  const auto frames = [&](const std::string& polygons) {
+  const auto frames = [&](const std::string& tiles) {
     // A solid that reaches into the volume: its depth is read from all tiles.
     const Outcome outcome = run_well(
-        under({"-n", "2", "--remote", "--polygons", polygons, "--report", file("report.json")}) +
+        under({"-n", "2", "--remote", "--tiles", tiles, "--report", file("report.json")}) +
             without_opengl() +
             viewer("table",
-                   {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames", file(polygons)}),
+                   {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames", file("tiles_" + tiles)}),
         on_display());
     EXPECT_EQ(substituted(json("report.json")), 3) << outcome.err;
     return json("report.json").at("tiles");
   };
-  EXPECT_EQ(frames("root"), nullptr);
-  const nlohmann::json tiles = frames("tiles");
+  EXPECT_EQ(frames("off"), nullptr);
+  const nlohmann::json tiles = frames("on");
   EXPECT_EQ(tiles.at("of"), 2);
   EXPECT_EQ(tiles.at("frames"), 3);
   EXPECT_EQ(tiles.at("given_up"), "");
   for (const char* name : {"frame_0000.png", "frame_0001.png", "frame_0002.png"})
-    EXPECT_EQ(png(fmt::format("root/{}", name)).rgb, png(fmt::format("tiles/{}", name)).rgb) << name;
+    EXPECT_EQ(png(fmt::format("tiles_off/{}", name)).rgb, png(fmt::format("tiles_on/{}", name)).rgb) << name;
   EXPECT_EQ(leftovers(), "");
 }
 
@@ -126,8 +126,8 @@ TEST_F(Remote, PerfShowsWhichCallsWaitForTheGlServer) {
   EXPECT_EQ(perf.at("calls").at("glClear").at("round_trips"), 0);
 }
 
-TEST_F(Remote, TilesAreForStages) {
-  const Outcome outcome = run(under({"--polygons", "tiles"}) + Words{"true"});
+TEST_F(Remote, TilesAreForGlServers) {
+  const Outcome outcome = run(under({"--tiles", "on"}) + Words{"true"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("add --remote"), std::string::npos) << outcome.err;
 }

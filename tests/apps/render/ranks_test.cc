@@ -24,8 +24,8 @@ std::string waves(const TemporaryFolder& folder, int side) {
 }
 
 TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
-  const std::string common =
-      waves(folder_, 64) + " --size 256x256 --camera 31,29,2.3 --table " + folder_.write("narrow.json", R"({
+  const std::string common = waves(folder_, 64) + " --size 256x256 --camera 31,29,2.3 --transfer-function " +
+                             folder_.write("narrow.json", R"({
         "positions": "values", "knots": [{"at": 0, "colour": [0.2, 0.4, 1], "opacity": 0},
         {"at": 0.598, "colour": [0.2, 0.4, 1], "opacity": 0}, {"at": 0.6, "colour": [1, 0.9, 0.5], "opacity": 0.9},
         {"at": 0.602, "colour": [1, 0.4, 0.2], "opacity": 0}, {"at": 1, "colour": [1, 0.4, 0.2], "opacity": 0}]})");

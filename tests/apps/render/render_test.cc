@@ -15,7 +15,7 @@ using ::testing::Not;
 
 TEST_F(Render, APictureAndAReportOfAFile) {
   const std::string file = ball(40);
-  const Result result = render(file + " --table vessels --size 120x90 --frames 3 --report " +
+  const Result result = render(file + " --transfer-function vessels --size 120x90 --frames 3 --report " +
                                folder_.file("r.json") + " --save-float " + folder_.file("f.pfm"));
   ASSERT_EQ(result.status, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 40 x 40 of f64, in this process"), HasSubstr("3 frames"),
@@ -55,10 +55,10 @@ TEST_F(Render, SmallerStepsComeNearerToOneImage) {
   const std::string file = ball(32);
   std::vector<Image> images;
   for (const char* step : {"2", "1", "0.5", "0.125"}) {
-    ASSERT_EQ(
-        render(file + " --table rainbow --size 60x60 --step " + step + " --save-float " + folder_.file("f.pfm"))
-            .status,
-        0);
+    ASSERT_EQ(render(file + " --transfer-function rainbow --size 60x60 --step " + step + " --save-float " +
+                     folder_.file("f.pfm"))
+                  .status,
+              0);
     images.push_back(read_image(folder_.file("f.pfm")));
   }
   double before = 1;
@@ -80,10 +80,10 @@ TEST_F(Render, TheWaysToSayTheSameGiveTheSameImage) {
       folder_.write("grey.json", std::string(R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
                                              {"at": 1, "colour": [1, 1, 1], "opacity": 0.1}]})"));
   std::filesystem::copy(file, folder_.file("plain"));
-  ASSERT_EQ(
-      render(folder_.file("plain") + " --volume-size 24 24 24 --type f64 --table " + control_points + common)
-          .status,
-      0);
+  ASSERT_EQ(render(folder_.file("plain") + " --volume-size 24 24 24 --type f64 --transfer-function " +
+                   control_points + common)
+                .status,
+            0);
   EXPECT_EQ(difference(read_image(folder_.file("f.pfm")), expected).max, 0);
   // Sixteen bits over the values' range are nearly floats.
   ASSERT_EQ(render(file + " --texels u16 --range=-0.34,1.67" + common).status, 0);
@@ -117,11 +117,11 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
     return result.output;
   };
   const auto table = [&](const std::string& control_points) {
-    return file + " --table " + folder_.write("t.json", control_points);
+    return file + " --transfer-function " + folder_.write("t.json", control_points);
   };
   EXPECT_THAT(trouble(folder_.file("nothing_8x8x8.raw")), HasSubstr("check the path"));
   EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
-  EXPECT_THAT(trouble(file + " --table nothing"), HasSubstr("grey, engine, ct"));
+  EXPECT_THAT(trouble(file + " --transfer-function nothing"), HasSubstr("grey, engine, ct"));
   EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
   EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'control points'"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
@@ -147,7 +147,7 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
 #ifdef UNDERSTUDY_HAS_NODES
 
 TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
-  const std::string file = ball(48), common = file + " --table rainbow --size 90x80 --save-float " +
+  const std::string file = ball(48), common = file + " --transfer-function rainbow --size 90x80 --save-float " +
                                               folder_.file("f.pfm") + " --report " + folder_.file("r.json");
   ASSERT_EQ(render(common).status, 0);
   const Image expected = read_image(folder_.file("f.pfm"));

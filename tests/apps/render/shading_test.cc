@@ -70,7 +70,7 @@ TEST_F(Render, LightFallsOnWhatItIsMeantFor) {
   // The same on both sides: a surface is lit from behind as well.
   EXPECT_NEAR(from_the_right.pixel(48, 40)[0], from_the_right.pixel(31, 40)[0], 0.02);
 
-  const std::string both = cone(folder_, 40) + " --table grey --surface 45000" + view;
+  const std::string both = cone(folder_, 40) + " --transfer-function grey --surface 45000" + view;
   const Image dark = image(both), surfaces = image(both + " --light surfaces"),
               all = image(both + " --light all");
   const auto apart = [](const Image& a, const Image& b, int x) {
@@ -87,7 +87,7 @@ TEST_F(Render, SegmentsNeedFewerStepsThanSamples) {
           {"at": 0.32, "colour": [1, 0.5, 0], "opacity": 0.6}, {"at": 0.34, "colour": [1, 0, 0], "opacity": 0},
           {"at": 0.60, "colour": [0, 0, 1], "opacity": 0}, {"at": 0.62, "colour": [0, 0.5, 1], "opacity": 0.6},
           {"at": 0.64, "colour": [0, 0, 1], "opacity": 0}, {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
-  const std::string common = cone(folder_, 32) + " --table " + control_points + view;
+  const std::string common = cone(folder_, 32) + " --transfer-function " + control_points + view;
   const Image fine = image(common + " --step 0.02"), samples = image(common + " --step 1"),
               segments = image(common + " --step 1 --method pre-integrated");
   const double by_samples = difference(samples, fine).rms, by_segments = difference(segments, fine).rms;
@@ -99,7 +99,7 @@ TEST_F(Render, SegmentsLeaveATableThatDoesNotSpanTheVolume) {
   const std::string control_points = folder_.write("narrow.json", std::string(R"({"positions": "values",
                                      "knots": [{"at": 30000, "colour": [1, 0.5, 0], "opacity": 0},
                                                {"at": 31000, "colour": [1, 1, 0.5], "opacity": 0.5}]})"));
-  const std::string common = cone(folder_, 32) + " --table " + control_points + view;
+  const std::string common = cone(folder_, 32) + " --transfer-function " + control_points + view;
   const Image fine = image(common + " --step 0.02");
   const double by_samples = difference(image(common + " --step 1"), fine).rms,
                by_segments = difference(image(common + " --step 1 --method pre-integrated"), fine).rms;
@@ -113,8 +113,8 @@ TEST_F(Render, AdaptiveStepsAreNearerThanSamplesAsMany) {
           {"at": 0, "colour": [1, 0, 0], "opacity": 0}, {"at": 0.60, "colour": [1, 0, 0], "opacity": 0},
           {"at": 0.62, "colour": [1, 0.5, 0], "opacity": 0.6}, {"at": 0.64, "colour": [1, 0, 0], "opacity": 0},
           {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
-  const std::string common =
-      cone(folder_, 64) + " --table " + control_points + view + " --report " + folder_.file("r.json");
+  const std::string common = cone(folder_, 64) + " --transfer-function " + control_points + view +
+                             " --report " + folder_.file("r.json");
   const Image fine = image(common + " --step 0.02");
   const Image adaptive = image(common + " --step 1 --method adaptive --tolerance 0.01");
   EXPECT_EQ(report()["image"]["method"], "adaptive");
@@ -131,7 +131,7 @@ TEST_F(Render, AFirstHitIsOpaqueAndInTheTablesColour) {
   const std::string control_points = folder_.write("red.json", std::string(R"({"knots": [
           {"at": 0, "colour": [1, 0.5, 0], "opacity": 0}, {"at": 0.5, "colour": [1, 0.5, 0], "opacity": 0},
           {"at": 1, "colour": [1, 0.5, 0], "opacity": 0.01}]})"));
-  const std::string common = cone(folder_, 40) + " --table " + control_points + view;
+  const std::string common = cone(folder_, 40) + " --transfer-function " + control_points + view;
   for (const char* const ranks : {"", " -n 4"}) {
     const Image hit = image(common + " --operator first-hit" + ranks);
     EXPECT_NEAR(hit.pixel(40, 40)[0], 1, 1e-4);
@@ -181,7 +181,8 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
 }
 
 TEST_F(Render, CutsSegmentsAtBricksWhereAskedTo) {
-  const std::string common = ball(48) + " --table rainbow --method pre-integrated --size 90x80 --step 2";
+  const std::string common =
+      ball(48) + " --transfer-function rainbow --method pre-integrated --size 90x80 --step 2";
   const Image seamless = image(common);
   EXPECT_EQ(difference(image(common + " --cut-at-bricks 64"), seamless).max, 0) << "it is one brick";
   const double few = difference(image(common + " --cut-at-bricks 24"), seamless).max,
@@ -198,8 +199,9 @@ TEST_F(Render, NodesShowTheSameSurfacesLightAndSegments) {
   const std::string file = ball(48);
   for (const char* shading :
        {" --no-volume --surface 60%,#ffffff,0.7 --light all",
-        " --table rainbow --method pre-integrated --light all --light-from 20,50",
-        " --table vessels --surface 70%,#4060ff,0.4 --surface 20%,#ff8040,0.2 --light surfaces --step 1.7"}) {
+        " --transfer-function rainbow --method pre-integrated --light all --light-from 20,50",
+        " --transfer-function vessels --surface 70%,#4060ff,0.4 --surface 20%,#ff8040,0.2 --light surfaces "
+        "--step 1.7"}) {
     const std::string common = file + shading + " --size 90x80";
     const Image expected = image(common);
     for (const char* nodes : {" -n 2", " -n 3 --exchange binary-swap"}) {

@@ -172,7 +172,7 @@ def main():
             print(f"skipped: {program} is missing; apt install chromium chromium-driver")
             return 77
     OUT.mkdir(parents=True, exist_ok=True)
-    volume = ["--volume-size", "256", "256", "110", "--type", "u8", "--table", "engine", str(ENGINE)] if ENGINE.exists() else [VOLUME]
+    volume = ["--volume-size", "256", "256", "110", "--type", "u8", "--transfer-function", "engine", str(ENGINE)] if ENGINE.exists() else [VOLUME]
     view = subprocess.Popen([str(PROGRAMS / "understudy"), "view", "--web", "0", "-n", "2", *volume], stdout=subprocess.PIPE,
                             text=True)
     try:

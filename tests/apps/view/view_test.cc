@@ -60,7 +60,7 @@ Json greeted(WebClient& client, const ViewProcess& process) {
 const Json some_camera{{"azimuth", -50}, {"elevation", 35}, {"distance", 3}, {"roll", 12}, {"shift", {0, 0}}};
 
 TEST_F(View, AtRestABrowserHasTheImageOfRender) {
-  const ViewProcess process({volume_name, "--table", "rainbow", "--size", "200x150"});
+  const ViewProcess process({volume_name, "--transfer-function", "rainbow", "--size", "200x150"});
   WebClient client(process.port());
   const Json volume = greeted(client, process);
   EXPECT_EQ(volume.at("nodes"), 0);
@@ -69,16 +69,16 @@ TEST_F(View, AtRestABrowserHasTheImageOfRender) {
   const Image shown = decoded(first.image);
   EXPECT_GT(brightest(shown), 0.2);
   const std::string common = volume_name + " --size 200x150 ";
-  EXPECT_EQ(greatest_difference(shown, rendered(common + "--table rainbow")), 0);
+  EXPECT_EQ(greatest_difference(shown, rendered(common + "--transfer-function rainbow")), 0);
   EXPECT_EQ(greatest_difference(decoded(client.image({{"camera", some_camera}}).image),
-                                rendered(common + "--table rainbow --camera=-50,35,3,12")),
+                                rendered(common + "--transfer-function rainbow --camera=-50,35,3,12")),
             0);
   // A table from the page, light, a surface and another step.
   const Json table{{"knots", volume.at("tables").at("engine")}};
-  EXPECT_EQ(
-      greatest_difference(decoded(client.image({{"table", table}, {"light", true}, {"step", 0.5}}).image),
-                          rendered(common + "--table engine --camera=-50,35,3,12 --light all --step 0.5")),
-      0);
+  EXPECT_EQ(greatest_difference(
+                decoded(client.image({{"table", table}, {"light", true}, {"step", 0.5}}).image),
+                rendered(common + "--transfer-function engine --camera=-50,35,3,12 --light all --step 0.5")),
+            0);
   const Json surface{{"at", 0.5}, {"colour", {1, 128 / 255.0, 0}}, {"opacity", 1}};
   const Json surface_alone{{"surfaces", Json::array({surface})}, {"volume", false}, {"step", 1}};
   EXPECT_EQ(greatest_difference(
@@ -230,14 +230,14 @@ TEST_F(View, AWindowSavesTheImageOfRender) {
   const auto display = viewer_test::VirtualDisplay::start();
   if (!display) GTEST_SKIP() << "Xvfb is not installed";
   for (const char* nodes : {"", "-n 2 "}) {
-    const Result result =
-        shell("DISPLAY=" + display->name() + " " + UNDERSTUDY_PROGRAM + " view " + nodes + volume_name +
-              " --table rainbow --size 220x160 --frames 3 --orbit 25 --save " + folder_.file("w.png"));
+    const Result result = shell(
+        "DISPLAY=" + display->name() + " " + UNDERSTUDY_PROGRAM + " view " + nodes + volume_name +
+        " --transfer-function rainbow --size 220x160 --frames 3 --orbit 25 --save " + folder_.file("w.png"));
     ASSERT_EQ(result.status, 0) << result.output;
-    EXPECT_LE(
-        greatest_difference(read_image(folder_.file("w.png")),
-                            rendered(nodes + volume_name + " --table rainbow --size 220x160 --camera 80,20,4")),
-        *nodes == '\0' ? 0 : 1.01 / 255);
+    EXPECT_LE(greatest_difference(read_image(folder_.file("w.png")),
+                                  rendered(nodes + volume_name +
+                                           " --transfer-function rainbow --size 220x160 --camera 80,20,4")),
+              *nodes == '\0' ? 0 : 1.01 / 255);
   }
 }
 
@@ -252,7 +252,8 @@ TEST_F(View, IsACommandLikeTheOthers) {
   const std::string command = std::string(UNDERSTUDY_PROGRAM) + " view ";
   const Result help = shell(command + "--help");
   EXPECT_EQ(help.status, 0);
-  EXPECT_THAT(help.output, AllOf(HasSubstr("understudy view"), HasSubstr("--web"), HasSubstr("--table")));
+  EXPECT_THAT(help.output,
+              AllOf(HasSubstr("understudy view"), HasSubstr("--web"), HasSubstr("--transfer-function")));
   const Result wrong = shell(command + volume_name + " --no-such-option");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.output, HasSubstr("--no-such-option"));

@@ -1,0 +1,41 @@
+// What a fragment stage that marches through a volume shows besides its samples.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spu/volume/program/influences.h"
+
+namespace understudy::spu::program {
+
+/// What a ray caster is allowed: colours from the volume's texels by way of tables, a loop that ends by where
+/// the ray is, how long it is, and what it has gathered. All else is listed.
+struct RayFinding {
+  std::optional<std::size_t> loop;   ///< the outermost in which the volume is fetched; null: there is none
+  std::vector<std::size_t> samples;  ///< fetches in the loop, one for every texel that differs in one iteration
+  std::vector<std::size_t> outside;  ///< fetches of the volume outside it that reach anything
+  std::vector<Influence> data;  ///< of colours and depth, other than texels and uniforms: position, time, ...
+  std::vector<Influence> branches;  ///< what decides between colours, texels of the volume among it
+  std::vector<Influence> discards;
+  std::vector<Influence> loop_ends;    ///< of the loop, whatever it is
+  std::vector<Influence> coordinates;  ///< of the volume's coordinate, other than uniforms
+  std::vector<UniformUse> uniforms;
+  std::vector<std::string> tables;  ///< samplers, other than the volume's, whose texels reach anything
+  bool writes_depth = false;
+  bool side_effects = false;
+
+  /// Each iteration shows a function of one texel of the volume, no branch or discard hangs on anything else.
+  bool of_one_texel_each() const {
+    return loop && samples.size() == 1 && outside.empty() && data.empty() && branches.empty() &&
+           discards.empty() && !side_effects;
+  }
+
+  std::vector<std::string> reasons;  ///< why of_one_texel_each() does not hold, one for each thing
+};
+
+/// `volumes` names the samplers that are set to the volume's texture.
+RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes);
+
+}  // namespace understudy::spu::program

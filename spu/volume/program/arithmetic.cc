@@ -8,12 +8,20 @@ namespace understudy::spu::program {
 
 using namespace glslang;
 
+namespace {
+
+bool is_exact(const TType& type) {
+  return type.isIntegerDomain() || type.getBasicType() == EbtBool;
+}
+
+}  // namespace
+
 Value Walk::apply(TOperator op, const TType& type, std::span<const Value> operands,
                   std::span<const TType* const> types) {
   const std::size_t cells = cells_of(type);
   switch (pattern_of(op)) {
     case Pattern::componentwise: {
-      const Value value = values_.componentwise(op, cells, operands, type.isIntegerDomain());
+      const Value value = values_.componentwise(op, cells, operands, is_exact(type));
       return is_derivative(op) || op == EOpInterpolateAtCentroid
                  ? values_.with(value, own_source(SourceKind::derivative, "derivative"))
                  : value;

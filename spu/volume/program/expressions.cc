@@ -110,7 +110,7 @@ Value Walk::evaluate_logical(const TIntermBinary& binary) {
   const std::function<void()> evaluate_right = [&] { right = evaluate(binary.getRight()).at(0); };
   const std::function<void()> nothing = [] {};
   either(left, binary, both ? evaluate_right : nothing, both ? nothing : evaluate_right);
-  return {values_.combine(binary.getOp(), std::array{left, right})};
+  return values_.componentwise(binary.getOp(), 1, std::array{Value{left}, Value{right}}, true);
 }
 
 Value Walk::evaluate_selection(const TIntermSelection& selection) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace understudy::spu::program {
 namespace {
@@ -54,6 +55,43 @@ class Closure {
   std::set<Influence> found_;
 };
 
+/// With % for the subject.
+std::string predicate(const Influence& influence) {
+  switch (influence.target) {
+    case Target::colour:
+      return influence.flow == Flow::branch ? "% decides between colours" : "colours depend on %";
+    case Target::depth:
+      return "depth depends on %";
+    case Target::coverage:
+      return "coverage depends on %";
+    case Target::discard:
+      return "% decides which fragments are discarded";
+    case Target::coordinate:
+      break;
+  }
+  return "the volume's coordinate depends on %";
+}
+
+std::string sentence(std::string predicate, const std::string& subject) {
+  return predicate.replace(predicate.find('%'), 1, subject);
+}
+
+/// `component` of the variable holds a bit for each.
+std::string text_of_components(Source variable) {
+  const unsigned components = unsigned(variable.component);
+  const bool vector = variable.rows == variable.components && variable.components <= 4;
+  variable.component = 0;
+  variable.components = 1;
+  std::string words = text(variable);
+  if (vector && variable.rows > 1) {
+    words += '.';
+    for (unsigned i = 0; i < 4; ++i) {
+      if ((components >> i & 1U) != 0) words += "xyzw"[i];
+    }
+  }
+  return words;
+}
+
 /// The names that the vertex stage gives to a fragment stage's built-in input.
 std::vector<std::string> names_in_vertex_stage(const std::string& varying) {
   if (varying == "gl_Color") return {"gl_FrontColor", "gl_BackColor"};
@@ -98,22 +136,23 @@ std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const
   return uses;
 }
 
-std::string text(const StageFacts& fragment, const Influence& influence) {
-  const std::string source = text(fragment.sources[influence.source]);
-  switch (influence.target) {
-    case Target::colour:
-      return influence.flow == Flow::branch ? source + " decides between colours"
-                                            : "colours depend on " + source;
-    case Target::depth:
-      return "depth depends on " + source;
-    case Target::coverage:
-      return "coverage depends on " + source;
-    case Target::discard:
-      return source + " decides which fragments are discarded";
-    case Target::coordinate:
-      break;
+std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influence> influences) {
+  // By what is said of a variable, its components.
+  std::vector<std::pair<std::string, Source>> said;
+  for (const Influence& influence : influences) {
+    const Source& source = fragment.sources[influence.source];
+    const std::string what = predicate(influence);
+    const auto known = std::ranges::find_if(said, [&](const auto& other) {
+      return other.first == what && other.second.kind == source.kind && other.second.name == source.name;
+    });
+    if (known == said.end())
+      said.emplace_back(what, source).second.component = 1 << source.component;
+    else
+      known->second.component |= 1 << source.component;
   }
-  return "the volume's coordinate depends on " + source;
+  std::vector<std::string> texts;
+  for (const auto& [what, variable] : said) texts.push_back(sentence(what, text_of_components(variable)));
+  return texts;
 }
 
 std::optional<Dependences> written_from(const StageFacts& vertex, const Source& varying) {

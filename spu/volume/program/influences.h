@@ -49,8 +49,8 @@ struct UniformUse {
 
 std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const Influence> influences);
 
-/// "varying texcoord.z decides which fragments are discarded".
-std::string text(const StageFacts& fragment, const Influence& influence);
+/// "varying texcoord.xz decides which fragments are discarded", one for all components of a variable.
+std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influence> influences);
 
 /// What the vertex stage computes the fragment stage's input `varying` from; null when it does not write it.
 std::optional<Dependences> written_from(const StageFacts& vertex, const Source& varying);

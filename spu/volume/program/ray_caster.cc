@@ -15,19 +15,23 @@ std::size_t outermost(const StageFacts& facts, std::size_t loop) {
   return loop;
 }
 
-std::vector<Influence>& list_for(const Influence& influence, RayFinding& finding) {
-  if (influence.target == Target::coordinate) return finding.coordinates;
-  if (influence.flow == Flow::loop) return finding.loop_ends;
-  if (influence.target == Target::discard) return finding.discards;
-  return influence.flow == Flow::branch ? finding.branches : finding.data;
+bool of_samples(SourceKind kind) {
+  return kind == SourceKind::texel || kind == SourceKind::iteration;
 }
 
-/// Texels are what is shown; that they decide something has to be known.
-bool counts(const StageFacts& facts, const Influence& influence) {
-  const Source& source = facts.sources[influence.source];
-  if (is_fixed(source.kind)) return false;
-  const bool of_samples = source.kind == SourceKind::texel || source.kind == SourceKind::iteration;
-  return !of_samples || influence.flow != Flow::data || influence.target == Target::coordinate;
+std::vector<Influence>& list_for(const Influence& influence, SourceKind kind, RayFinding& finding) {
+  if (influence.target == Target::coordinate) return finding.coordinates;
+  if (influence.target == Target::discard) return finding.discards;
+  if (influence.flow == Flow::loop) return finding.loop_ends;
+  if (influence.flow == Flow::data) return finding.data;
+  return of_samples(kind) ? finding.guards : finding.branches;
+}
+
+/// Texels as data are what is shown.
+bool counts(SourceKind kind, const Influence& influence) {
+  if (is_fixed(kind)) return false;
+  const bool shown = influence.target == Target::colour && influence.flow == Flow::data;
+  return !(shown && of_samples(kind));
 }
 
 void sort_fetches(const StageFacts& facts, const std::vector<std::size_t>& fetches, RayFinding& finding) {
@@ -55,8 +59,8 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const RayFinding& f
   if (!finding.outside.empty())
     add_once(reasons, "colours depend on a texel of '" + facts.fetches[finding.outside[0]].sampler +
                           "' that is fetched outside the loop");
-  for (const auto* list : {&finding.data, &finding.branches, &finding.discards}) {
-    for (const Influence& influence : *list) add_once(reasons, text(facts, influence));
+  for (const auto* list : {&finding.data, &finding.branches}) {
+    for (std::string& reason : texts(facts, *list)) add_once(reasons, std::move(reason));
   }
   return reasons;
 }
@@ -73,7 +77,7 @@ RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> 
     const bool of_volume = std::ranges::find(volumes, source.name) != volumes.end();
     if (source.kind == SourceKind::texel && !of_volume) tables.insert(source.name);
     finding.writes_depth |= influence.target == Target::depth;
-    if (counts(fragment, influence)) list_for(influence, finding).push_back(influence);
+    if (counts(source.kind, influence)) list_for(influence, source.kind, finding).push_back(influence);
   }
   finding.uniforms = uniform_uses(fragment, all);
   finding.side_effects = !fragment.side_effects.empty();

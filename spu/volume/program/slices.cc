@@ -76,10 +76,7 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const SliceFinding&
         text_of_second(facts, facts.fetches[finding.texels[0]], facts.fetches[finding.texels[i]]));
   if (finding.texels_vary_in_loop) reasons.emplace_back("colours depend on several texels, fetched in a loop");
   for (const auto* list : {&finding.others, &finding.coordinate_others}) {
-    for (const Influence& influence : *list) {
-      std::string reason = text(facts, influence);
-      if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
-    }
+    for (std::string& reason : texts(facts, *list)) reasons.push_back(std::move(reason));
   }
   return reasons;
 }

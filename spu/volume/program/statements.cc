@@ -107,8 +107,9 @@ void Walk::end_way(Target& target) {
 
 void Walk::leave_target(const TIntermBranch& branch, Target& target) {
   const Set decided_by = conditions_in_loop();
-  target.ends_by = values_.sets.join(target.ends_by, values_.sets.by(Flow::loop, decided_by));
-  add_exit(target.left, state_, decided_by, point(branch, at_break));
+  const Set ends_by = values_.sets.by(Flow::loop, decided_by);
+  target.ends_by = values_.sets.join(target.ends_by, ends_by);
+  add_exit(target.left, state_, target.loop ? ends_by : decided_by, point(branch, at_break));
   end_way(target);
   conditions_.passed = decided_by;
   state_.reachable = false;

@@ -10,10 +10,44 @@ namespace understudy::spu::program {
 namespace {
 
 /// Integers and floats are told apart: 1 / 2 is not 1.0 / 2.0.
-constexpr std::uint32_t of_integers = 1U << 24U;
+constexpr std::uint32_t of_exact = 1U << 24U;
 
 Scalar component_of(const Value& operand, std::size_t i) {
   return operand[operand.size() == 1 ? 0 : std::min(i, operand.size() - 1)];
+}
+
+/// Comparisons and logic decide branches; integers are indices.
+std::optional<double> folded_numbers(std::uint32_t op, double a, double b) {
+  switch (op) {
+    case glslang::EOpNegative:
+      return -a;
+    case glslang::EOpAdd:
+      return a + b;
+    case glslang::EOpSub:
+      return a - b;
+    case glslang::EOpMul:
+      return a * b;
+    case glslang::EOpLogicalNot:
+      return a == 0 ? 1 : 0;
+    case glslang::EOpLogicalAnd:
+      return a != 0 && b != 0 ? 1 : 0;
+    case glslang::EOpLogicalOr:
+      return a != 0 || b != 0 ? 1 : 0;
+    case glslang::EOpEqual:
+      return a == b ? 1 : 0;
+    case glslang::EOpNotEqual:
+      return a != b ? 1 : 0;
+    case glslang::EOpLessThan:
+      return a < b ? 1 : 0;
+    case glslang::EOpGreaterThan:
+      return a > b ? 1 : 0;
+    case glslang::EOpLessThanEqual:
+      return a <= b ? 1 : 0;
+    case glslang::EOpGreaterThanEqual:
+      return a >= b ? 1 : 0;
+    default:
+      return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -44,22 +78,10 @@ std::optional<double> Values::folded(std::uint32_t op, std::span<const Scalar> o
     if (!value) return std::nullopt;
     known[i] = *value;
   }
-  switch (op) {
-    case glslang::EOpNegative:
-      return -known[0];
-    case glslang::EOpAdd:
-      return known[0] + known[1];
-    case glslang::EOpSub:
-      return known[0] - known[1];
-    case glslang::EOpMul:
-      return known[0] * known[1];
-    default:
-      return std::nullopt;
-  }
+  return folded_numbers(op, known[0], known[1]);
 }
 
-Value Values::componentwise(std::uint32_t op, std::size_t cells, std::span<const Value> operands,
-                            bool integers) {
+Value Values::componentwise(std::uint32_t op, std::size_t cells, std::span<const Value> operands, bool exact) {
   Value result;
   result.reserve(cells);
   std::vector<Scalar> components(operands.size());
@@ -67,10 +89,10 @@ Value Values::componentwise(std::uint32_t op, std::size_t cells, std::span<const
     for (std::size_t k = 0; k < operands.size(); ++k) components[k] = component_of(operands[k], i);
     if (const auto same = unchanged(op, components)) {
       result.push_back(*same);
-    } else if (const auto value = integers ? folded(op, components) : std::nullopt) {
+    } else if (const auto value = exact ? folded(op, components) : std::nullopt) {
       result.push_back({union_of(components), numbers.of_constant(*value)});
     } else {
-      result.push_back(combine(integers ? op | of_integers : op, components));
+      result.push_back(combine(exact ? op | of_exact : op, components));
     }
   }
   return result;

@@ -37,8 +37,9 @@ class Values {
 
   /// `op` of all operands.
   Scalar combine(std::uint32_t op, std::span<const Scalar> operands);
-  /// Component i from component i of each operand, or from its only one. `integers`: constants are folded.
-  Value componentwise(std::uint32_t op, std::size_t cells, std::span<const Value> operands, bool integers);
+  /// Component i from component i of each operand, or from its only one. `exact`: of integers or truth values,
+  /// whose constants are folded.
+  Value componentwise(std::uint32_t op, std::size_t cells, std::span<const Value> operands, bool exact);
   /// Every component from all components of all operands.
   Value mixed(std::uint32_t op, std::size_t cells, std::span<const Value> operands);
   /// Matrix times matrix, times vector, and vector times matrix: `left` has `rows` rows, `inner` is what is

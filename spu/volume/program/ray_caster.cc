@@ -6,8 +6,10 @@
 namespace understudy::spu::program {
 namespace {
 
+/// The same for all fragments of a draw, or nothing that a viewer can mean.
 bool is_fixed(SourceKind kind) {
-  return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size;
+  return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
+         kind == SourceKind::undefined;
 }
 
 std::size_t outermost(const StageFacts& facts, std::size_t loop) {

@@ -6,10 +6,10 @@
 namespace understudy::spu::program {
 namespace {
 
-/// The same for all fragments of a draw.
+/// The same for all fragments of a draw, or nothing that a viewer can mean.
 bool is_fixed(SourceKind kind) {
   return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
-         kind == SourceKind::iteration;
+         kind == SourceKind::iteration || kind == SourceKind::undefined;
 }
 
 bool depends_on_iteration(const StageFacts& facts, const Fetch& fetch) {

@@ -8,17 +8,20 @@
 namespace understudy::spu::program {
 namespace {
 
-StageFinding walked(Stage stage, const ParsedStage& parsed) {
+StageFinding walked(Stage stage, const ParsedStage& parsed, std::span<const KnownUniform> known) {
   const Variables variables(stage, parsed.root());
-  return Walk(stage, variables).facts(parsed.root(), parsed.version());
+  Walk walk(stage, variables);
+  for (const KnownUniform& uniform : known) walk.assume(uniform.name, uniform.component, uniform.value);
+  return walk.facts(parsed.root(), parsed.version());
 }
 
 }  // namespace
 
-StageFinding analyse(Stage stage, std::span<const std::string> sources) noexcept try {
+StageFinding analyse(Stage stage, std::span<const std::string> sources,
+                     std::span<const KnownUniform> known) noexcept try {
   const auto parsed = parse(stage, sources);
   if (const auto* failure = std::get_if<Failure>(&parsed)) return *failure;
-  return walked(stage, std::get<ParsedStage>(parsed));
+  return walked(stage, std::get<ParsedStage>(parsed), known);
 } catch (const TooLarge&) {
   return Failure{Failure::Kind::too_large, "the shader is too large to follow"};
 } catch (const NoMain&) {

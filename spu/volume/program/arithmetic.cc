@@ -19,7 +19,8 @@ bool is_exact(const TType& type) {
 Value Walk::apply(TOperator op, const TType& type, std::span<const Value> operands,
                   std::span<const TType* const> types) {
   const std::size_t cells = cells_of(type);
-  switch (pattern_of(op)) {
+  const bool compares_scalars = (op == EOpEqual || op == EOpNotEqual) && operands[0].size() == 1;
+  switch (compares_scalars ? Pattern::componentwise : pattern_of(op)) {
     case Pattern::componentwise: {
       const Value value = values_.componentwise(op, cells, operands, is_exact(type));
       return is_derivative(op) || op == EOpInterpolateAtCentroid

@@ -112,12 +112,15 @@ Value Walk::call_builtin(const TIntermAggregate& node) {
   const TOperator op = node.getOp();
   if (op == EOpFtransform) return transformed_vertex();
   if (op == EOpEmitVertex || op == EOpEmitStreamVertex) emit_vertex(node);
-  const std::vector<Value> arguments = evaluate_all(node.getSequence());
+  std::vector<Value> arguments = evaluate_all(node.getSequence());
   if (op >= EOpAtomicAdd && op <= EOpAtomicStore) return change_buffer_atomically(node, arguments);
   if (op >= EOpAtomicCounterIncrement && op <= EOpAtomicCounterCompSwap)
     return change_atomically(node, arguments, SideEffectKind::atomic_counter, name_of(arguments.at(0).at(0)));
   std::vector<const TType*> types;
-  for (const TIntermNode* argument : node.getSequence()) types.push_back(&argument->getAsTyped()->getType());
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    types.push_back(&node.getSequence()[i]->getAsTyped()->getType());
+    if (writes_parameter(op, i)) arguments[i] = values_.zeros(arguments[i].size());
+  }
   Value value = apply(op, node.getType(), arguments, types);
   if (const auto source = source_of_builtin(op)) value = values_.with(std::move(value), *source);
   for (std::size_t i = 0; i < arguments.size(); ++i) {

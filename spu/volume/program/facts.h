@@ -102,7 +102,7 @@ struct Fetch {
   std::vector<Dependences> coordinate;  ///< by component, that of an array's layer last, after the projection
   std::vector<std::optional<std::uint32_t>> exact;  ///< the source that a component equals
   Dependences modifiers;  ///< of level, bias, gradients, offsets, reference value, and which sampler it is
-  Dependences execution;  ///< of whether, and how often, it is executed
+  Dependences execution;  ///< of whether, and how often, it is executed; discards do not count
   std::optional<std::size_t> loop;  ///< the innermost around it
   std::uint32_t place = 0;  ///< fetches with equal places, outside loops or in one iteration, return one texel
   int line = 0;

@@ -66,6 +66,12 @@ std::string Walk::name_of(const Scalar& opaque) {
   return {};
 }
 
+/// A sampler that is named where it is used is no source; what decides which it is, is.
+Scalar Walk::without_name(Scalar sampler) const {
+  if (values_.numbers.is_leaf(sampler.number)) sampler.on = FlowSets::empty;
+  return sampler;
+}
+
 Walk::FoundFetch& Walk::found_fetch(const TIntermAggregate& node, const Scalar& sampler) {
   const auto [known, is_new] = fetch_by_path_.emplace(point(node, 0), fetches_.size());
   if (!is_new) return fetches_[known->second];
@@ -126,9 +132,7 @@ void Walk::describe_fetch(FoundFetch& found, const TIntermAggregate& node,
     found.coordinate[i] = values_.sets.join(found.coordinate[i], on);
     found.exact[i] = how.proj ? ~0U : coordinate[i].number;
   }
-  Set others = arguments[0][0].on;
-  // The sampler itself is named by the fetch.
-  if (values_.numbers.is_leaf(arguments[0][0].number)) others = FlowSets::empty;
+  Set others = without_name(arguments[0][0]).on;
   for (std::size_t i = components; i < coordinate.size(); ++i)
     others = values_.sets.join(others, coordinate[i].on);
   for (std::size_t i = 2; i < arguments.size(); ++i)
@@ -144,7 +148,9 @@ Value Walk::query_texture(const TIntermOperator& node, const std::vector<Value>&
   Set on = own_source(SourceKind::texture_size, name_of(arguments.at(0).at(0)));
   if (node.getOp() == EOpTextureQueryLod)
     on = values_.sets.join(on, own_source(SourceKind::derivative, "derivative"));
-  return values_.with(values_.mixed(node.getOp(), cells_of(node.getType()), arguments), on);
+  std::vector<Value> operands = arguments;
+  operands[0] = {without_name(arguments[0][0])};
+  return values_.with(values_.mixed(node.getOp(), cells_of(node.getType()), operands), on);
 }
 
 Value Walk::use_image(const TIntermAggregate& node) {

@@ -16,6 +16,18 @@ Walk::Walk(Stage stage, const Variables& variables)
   for (Cell cell = 0; cell < variables.cells(); ++cell) state_.cells.push_back(Values::leaf(cell));
 }
 
+void Walk::assume(std::string_view name, int component, double value) {
+  const std::string_view base = name.substr(0, name.find_first_of(".["));
+  for (const Variable& variable : variables_.list()) {
+    if (variable.storage != EvqUniform || variable.name != base || variable.collapsed) continue;
+    for (Cell cell = variable.first; cell < variable.first + variable.cells; ++cell) {
+      const Source source = named(variable, cell);
+      if (source.name == name && source.component == component)
+        state_.cells[cell].number = values_.numbers.of_constant(value);
+    }
+  }
+}
+
 StageFacts Walk::facts(const TIntermNode& root, int version) {
   const Function* main = variables_.function("main(");
   if (main == nullptr) throw NoMain();

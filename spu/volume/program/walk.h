@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct NoMain {};
 class Walk {
  public:
   Walk(Stage stage, const Variables& variables);
+
+  /// A component of a uniform is this number.
+  void assume(std::string_view name, int component, double value);
 
   /// Follows the whole stage. Throws TooLarge.
   StageFacts facts(const TIntermNode& root, int version);
@@ -192,6 +196,7 @@ class Walk {
   Value change_buffer_atomically(const glslang::TIntermAggregate& node, const std::vector<Value>& arguments);
   /// Of a sampler or an image.
   std::string name_of(const Scalar& opaque);
+  Scalar without_name(Scalar sampler) const;
   void add_side_effect(SideEffectKind kind, std::string name, int line);
 
   // walk.cc

@@ -1,0 +1,31 @@
+// Reads a program's shaders: sources in, facts out (facts.h). Needs no OpenGL context, and knows no driver.
+#pragma once
+
+#include <span>
+#include <string>
+#include <variant>
+
+#include "spu/volume/program/facts.h"
+
+namespace understudy::spu::program {
+
+using StageFinding = std::variant<StageFacts, Failure>;
+
+/// A uniform's number, taken for a constant: branches that it decides are followed on one side. What is found
+/// holds as long as the uniform keeps it.
+struct KnownUniform {
+  std::string name;  ///< as in Source::name
+  int component = 0;
+  double value = 0;
+};
+
+/// GLSL 1.10 to 4.60 and ES 1.00 to 3.20; 1.10 where the text does not say. Several sources are several shader
+/// objects of one stage, linked together. Safe from any thread; the first call of a process initialises the
+/// front end, the first with a version its built-in functions. Throws nothing.
+StageFinding analyse(Stage stage, std::span<const std::string> sources,
+                     std::span<const KnownUniform> known = {}) noexcept;
+
+/// Programs in assembly language: "!!ARBfp1.0" and "!!ARBvp1.0".
+StageFinding analyse_assembly(const std::string& source) noexcept;
+
+}  // namespace understudy::spu::program

@@ -1,0 +1,121 @@
+#include "spu/volume/program/front_end.h"
+
+#include <glslang/MachineIndependent/localintermediate.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace understudy::spu::program {
+namespace {
+
+constexpr std::size_t max_source_bytes = 1'000'000;
+/// The front end calls itself for every level; no shader that was met has more than twenty.
+constexpr int max_nesting = 200;
+constexpr EShMessages messages = EShMessages(EShMsgRelaxedErrors | EShMsgSuppressWarnings);
+
+EShLanguage language_of(Stage stage) {
+  switch (stage) {
+    case Stage::vertex:
+      return EShLangVertex;
+    case Stage::geometry:
+      return EShLangGeometry;
+    case Stage::fragment:
+      break;
+  }
+  return EShLangFragment;
+}
+
+bool initialise() {
+  static const bool done = glslang::InitializeProcess();
+  return done;
+}
+
+int nesting_of(const std::string& source) {
+  int depth = 0;
+  int deepest = 0;
+  for (const char letter : source) {
+    if (letter == '(' || letter == '{' || letter == '[') deepest = std::max(deepest, ++depth);
+    if (letter == ')' || letter == '}' || letter == ']') --depth;
+  }
+  return deepest;
+}
+
+bool is_too_large(std::span<const std::string> sources) {
+  std::size_t bytes = 0;
+  for (const std::string& source : sources) bytes += source.size();
+  return bytes > max_source_bytes || std::ranges::any_of(sources, [](const std::string& source) {
+           return nesting_of(source) > max_nesting;
+         });
+}
+
+/// The front end's first complaint, without its prefix.
+std::string first_error(const std::string& log) {
+  const std::size_t start = log.find("ERROR: ");
+  if (start == std::string::npos) return log.substr(0, log.find('\n'));
+  const std::size_t first = start + 7;
+  return log.substr(first, log.find('\n', first) - first);
+}
+
+}  // namespace
+
+struct ParsedStage::Held {
+  // The program refers to the shaders.
+  std::vector<std::unique_ptr<glslang::TShader>> shaders;
+  std::unique_ptr<glslang::TProgram> program;
+  const glslang::TIntermediate* tree = nullptr;
+
+  /// Returns what is wrong; empty: nothing.
+  std::string add(EShLanguage language, const std::string& source) {
+    const char* text = source.c_str();
+    const int length = int(source.size());
+    auto& shader = shaders.emplace_back(std::make_unique<glslang::TShader>(language));
+    shader->setStringsWithLengths(&text, &length, 1);
+    if (!shader->parse(GetDefaultResources(), 110, false, messages)) return first_error(shader->getInfoLog());
+    tree = shader->getIntermediate();
+    return {};
+  }
+
+  std::string link(EShLanguage language) {
+    if (shaders.size() == 1) return {};
+    program = std::make_unique<glslang::TProgram>();
+    for (const auto& shader : shaders) program->addShader(shader.get());
+    if (!program->link(messages)) return first_error(program->getInfoLog());
+    tree = program->getIntermediate(language);
+    return {};
+  }
+
+  ~Held() { program.reset(); }
+};
+
+ParsedStage::ParsedStage(std::unique_ptr<Held> held) : held_(std::move(held)) {}
+ParsedStage::ParsedStage(ParsedStage&&) noexcept = default;
+ParsedStage& ParsedStage::operator=(ParsedStage&&) noexcept = default;
+ParsedStage::~ParsedStage() = default;
+
+const TIntermNode& ParsedStage::root() const {
+  return *held_->tree->getTreeRoot();
+}
+int ParsedStage::version() const {
+  return held_->tree->getVersion();
+}
+
+std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources) {
+  if (sources.empty()) return Failure{Failure::Kind::parse, "no source is known"};
+  if (is_too_large(sources)) return Failure{Failure::Kind::too_large, "the shader is too large to read"};
+  if (!initialise()) return Failure{Failure::Kind::unsupported, "the GLSL front end does not start"};
+  auto held = std::make_unique<ParsedStage::Held>();
+  const EShLanguage language = language_of(stage);
+  std::string error;
+  for (const std::string& source : sources) {
+    if (error.empty()) error = held->add(language, source);
+  }
+  if (error.empty()) error = held->link(language);
+  if (!error.empty()) return Failure{Failure::Kind::parse, error};
+  if (held->tree == nullptr || held->tree->getTreeRoot() == nullptr)
+    return Failure{Failure::Kind::parse, "the shader is empty"};
+  return ParsedStage(std::move(held));
+}
+
+}  // namespace understudy::spu::program

@@ -1,0 +1,38 @@
+// The GLSL front end: glslang, which the Khronos Group keeps. Its symbols stay inside the library that links
+// this one: applications bring a glslang of their own.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "spu/volume/program/facts.h"
+
+class TIntermNode;
+
+namespace understudy::spu::program {
+
+/// The tree of one stage; lives as long as this.
+class ParsedStage {
+ public:
+  ParsedStage(ParsedStage&&) noexcept;
+  ParsedStage& operator=(ParsedStage&&) noexcept;
+  ~ParsedStage();
+
+  const TIntermNode& root() const;
+  int version() const;
+
+ private:
+  struct Held;
+  explicit ParsedStage(std::unique_ptr<Held> held);
+  std::unique_ptr<Held> held_;
+
+  friend std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources);
+};
+
+/// Initialises glslang in the first call of a process, and never ends it: other threads may be parsing while
+/// the process exits.
+std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources);
+
+}  // namespace understudy::spu::program

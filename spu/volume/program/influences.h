@@ -1,0 +1,61 @@
+// What reaches a fragment's colour, depth and discards in the end, tables followed: a texel of a table is
+// replaced by what its coordinate depends on, a texel of the volume is where the way ends.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spu/volume/program/facts.h"
+
+namespace understudy::spu::program {
+
+enum class Target : std::uint8_t {
+  colour,
+  depth,       ///< gl_FragDepth
+  coverage,    ///< gl_SampleMask and the stencil reference
+  discard,     ///< whether the fragment is discarded
+  coordinate,  ///< of a texel of the volume that reaches one of the above
+};
+
+struct Influence {
+  std::uint32_t source = 0;  ///< place in StageFacts::sources
+  Flow flow = Flow::data;
+  Target target = Target::colour;
+  bool through_table = false;  ///< by the coordinate of another texture
+  auto operator<=>(const Influence&) const = default;
+};
+
+/// In rising order, each once. `volumes` names the samplers whose texels end the way; texels of other samplers
+/// are listed, and followed.
+std::vector<Influence> influences(const StageFacts& fragment, std::span<const std::string> volumes);
+
+/// The fetches of the volume that reach anything, in order.
+std::vector<std::size_t> volume_fetches(const StageFacts& fragment, std::span<const Influence> influences,
+                                        std::span<const std::string> volumes);
+
+/// A scalar of a uniform, and all that a change of it may change.
+struct UniformUse {
+  std::uint32_t source = 0;
+  bool colour = false;
+  bool depth = false;
+  bool discard = false;
+  bool coordinate = false;
+  bool branch = false;    ///< among the flows above
+  bool loop_end = false;  ///< likewise
+};
+
+std::vector<UniformUse> uniform_uses(const StageFacts& fragment, std::span<const Influence> influences);
+
+/// "varying texcoord.xz decides which fragments are discarded", one for all components of a variable.
+std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influence> influences);
+
+/// What the vertex stage computes the fragment stage's input `varying` from; null when it does not write it.
+std::optional<Dependences> written_from(const StageFacts& vertex, const Source& varying);
+
+/// Whether the input is the same for all fragments of a draw: no attribute and no vertex number reaches it.
+bool is_constant_over_draw(const StageFacts& vertex, const Source& varying);
+
+}  // namespace understudy::spu::program

@@ -1,0 +1,31 @@
+// How the components of an operator's result come from those of its operands.
+#pragma once
+
+#include <glslang/Include/intermediate.h>
+
+namespace understudy::spu::program {
+
+enum class Pattern {
+  componentwise,  ///< component i of each operand, or its only one
+  mixed,          ///< every component of every operand
+  matrix_vector,
+  vector_matrix,
+  matrix_matrix,
+  transposed,
+  outer_product,
+  cross_product,
+};
+
+/// `mixed` for all that is not known, which is true of every pure function.
+Pattern pattern_of(glslang::TOperator op);
+
+/// What the compound assignment does before it assigns; EOpNull for plain assignment, and for no assignment.
+glslang::TOperator operator_of_assignment(glslang::TOperator op);
+
+bool is_derivative(glslang::TOperator op);
+bool is_increment(glslang::TOperator op);
+
+/// Whether parameter `i` of a built-in function is written to.
+bool writes_parameter(glslang::TOperator op, std::size_t i);
+
+}  // namespace understudy::spu::program

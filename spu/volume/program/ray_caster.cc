@@ -1,0 +1,91 @@
+#include "spu/volume/program/ray_caster.h"
+
+#include <algorithm>
+#include <set>
+
+namespace understudy::spu::program {
+namespace {
+
+/// The same for all fragments of a draw, or nothing that a viewer can mean.
+bool is_fixed(SourceKind kind) {
+  return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
+         kind == SourceKind::undefined;
+}
+
+std::size_t outermost(const StageFacts& facts, std::size_t loop) {
+  while (facts.loops[loop].outer) loop = *facts.loops[loop].outer;
+  return loop;
+}
+
+bool of_samples(SourceKind kind) {
+  return kind == SourceKind::texel || kind == SourceKind::iteration;
+}
+
+std::vector<Influence>& list_for(const Influence& influence, SourceKind kind, RayFinding& finding) {
+  if (influence.target == Target::coordinate) return finding.coordinates;
+  if (influence.target == Target::discard) return finding.discards;
+  if (influence.flow == Flow::loop) return finding.loop_ends;
+  if (influence.flow == Flow::data) return finding.data;
+  return of_samples(kind) ? finding.guards : finding.branches;
+}
+
+/// Texels as data are what is shown.
+bool counts(SourceKind kind, const Influence& influence) {
+  if (is_fixed(kind)) return false;
+  const bool shown = influence.target == Target::colour && influence.flow == Flow::data;
+  return !(shown && of_samples(kind));
+}
+
+void sort_fetches(const StageFacts& facts, const std::vector<std::size_t>& fetches, RayFinding& finding) {
+  std::set<std::uint32_t> places;
+  for (const std::size_t fetch : fetches) {
+    const Fetch& what = facts.fetches[fetch];
+    if (what.loop && !finding.loop) finding.loop = outermost(facts, *what.loop);
+    if (!places.insert(what.place).second) continue;
+    (what.loop ? finding.samples : finding.outside).push_back(fetch);
+  }
+}
+
+void add_once(std::vector<std::string>& reasons, std::string reason) {
+  if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
+}
+
+std::vector<std::string> reasons_of(const StageFacts& facts, const RayFinding& finding) {
+  std::vector<std::string> reasons;
+  for (const SideEffect& effect : facts.side_effects) add_once(reasons, "it writes to '" + effect.name + "'");
+  for (const std::string& name : facts.not_followed) add_once(reasons, "what " + name + " does is not known");
+  if (!finding.loop) add_once(reasons, "no loop fetches the volume");
+  if (finding.samples.size() > 1)
+    add_once(reasons, std::to_string(finding.samples.size()) + " texels of '" +
+                          facts.fetches[finding.samples[0]].sampler + "' reach one sample");
+  if (!finding.outside.empty())
+    add_once(reasons, "colours depend on a texel of '" + facts.fetches[finding.outside[0]].sampler +
+                          "' that is fetched outside the loop");
+  for (const auto* list : {&finding.data, &finding.branches}) {
+    for (std::string& reason : texts(facts, *list)) add_once(reasons, std::move(reason));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes) {
+  const std::vector<Influence> all = influences(fragment, volumes);
+  RayFinding finding;
+  sort_fetches(fragment, volume_fetches(fragment, all, volumes), finding);
+  std::set<std::string> tables;
+  for (const Influence& influence : all) {
+    const Source& source = fragment.sources[influence.source];
+    const bool of_volume = std::ranges::find(volumes, source.name) != volumes.end();
+    if (source.kind == SourceKind::texel && !of_volume) tables.insert(source.name);
+    finding.writes_depth |= influence.target == Target::depth;
+    if (counts(source.kind, influence)) list_for(influence, source.kind, finding).push_back(influence);
+  }
+  finding.uniforms = uniform_uses(fragment, all);
+  finding.side_effects = !fragment.side_effects.empty();
+  finding.tables.assign(tables.begin(), tables.end());
+  finding.reasons = reasons_of(fragment, finding);
+  return finding;
+}
+
+}  // namespace understudy::spu::program

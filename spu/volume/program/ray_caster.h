@@ -1,0 +1,42 @@
+// What a fragment stage that marches through a volume shows besides its samples.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spu/volume/program/influences.h"
+
+namespace understudy::spu::program {
+
+/// What a ray caster is allowed: colours from the volume's texels by way of tables, a loop that ends by where
+/// the ray is, how long it is, and what it has gathered. All else is listed.
+struct RayFinding {
+  std::optional<std::size_t> loop;   ///< the outermost in which the volume is fetched; null: there is none
+  std::vector<std::size_t> samples;  ///< fetches in the loop, one for every texel that differs in one iteration
+  std::vector<std::size_t> outside;  ///< fetches of the volume outside it that reach anything
+  std::vector<Influence> data;  ///< of colours and depth, other than texels and uniforms: position, time, ...
+  std::vector<Influence> branches;     ///< what decides between colours, other than texels and uniforms
+  std::vector<Influence> guards;       ///< texels that decide between colours, and numbers of iterations
+  std::vector<Influence> discards;     ///< of discards, other than uniforms
+  std::vector<Influence> loop_ends;    ///< of when loops end, other than uniforms
+  std::vector<Influence> coordinates;  ///< of the volume's coordinate, other than uniforms
+  std::vector<UniformUse> uniforms;
+  std::vector<std::string> tables;  ///< samplers, other than the volume's, whose texels reach anything
+  bool writes_depth = false;
+  bool side_effects = false;
+
+  /// Each iteration adds a function of one texel of the volume. What the caller has to measure, or to hold
+  /// fixed, is in `guards`, `discards`, `loop_ends` and `coordinates`.
+  bool of_one_texel_each() const {
+    return loop && samples.size() == 1 && outside.empty() && data.empty() && branches.empty() && !side_effects;
+  }
+
+  std::vector<std::string> reasons;  ///< why of_one_texel_each() does not hold, one for each thing
+};
+
+/// `volumes` names the samplers that are set to the volume's texture.
+RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes);
+
+}  // namespace understudy::spu::program

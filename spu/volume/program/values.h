@@ -1,0 +1,65 @@
+// Values as the analysis knows them, and arithmetic on them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "spu/volume/program/flow_sets.h"
+#include "spu/volume/program/value_numbers.h"
+
+namespace understudy::spu::program {
+
+/// One number: what it can depend on, and a number that it shares with equal ones.
+struct Scalar {
+  FlowSets::Set on = FlowSets::empty;
+  ValueNumbers::Number number = 0;
+  bool operator==(const Scalar&) const = default;
+};
+
+/// Scalars, vectors, matrices (column by column), arrays and structures alike.
+using Value = std::vector<Scalar>;
+
+/// Sets and numbers of one analysis. The first `leaves` of both are what comes from outside.
+class Values {
+ public:
+  using Set = FlowSets::Set;
+  using Number = ValueNumbers::Number;
+
+  explicit Values(std::uint32_t leaves) : sets(leaves), numbers(leaves) {}
+
+  /// The scalar that comes from outside as number `leaf`.
+  static Scalar leaf(std::uint32_t leaf) { return {leaf + 1, leaf}; }
+  Scalar constant(double value) { return {FlowSets::empty, numbers.of_constant(value)}; }
+  /// Constant zeros.
+  Value zeros(std::size_t cells) { return Value(cells, constant(0)); }
+
+  /// `op` of all operands.
+  Scalar combine(std::uint32_t op, std::span<const Scalar> operands);
+  /// Component i from component i of each operand, or from its only one. `exact`: of integers or truth values,
+  /// whose constants are folded.
+  Value componentwise(std::uint32_t op, std::size_t cells, std::span<const Value> operands, bool exact);
+  /// Every component from all components of all operands.
+  Value mixed(std::uint32_t op, std::size_t cells, std::span<const Value> operands);
+  /// Matrix times matrix, times vector, and vector times matrix: `left` has `rows` rows, `inner` is what is
+  /// summed over.
+  Value product(std::uint32_t op, const Value& left, const Value& right, std::size_t rows, std::size_t inner);
+  /// A matrix with so many rows.
+  Value transposed(const Value& matrix, std::size_t rows);
+  Value outer_product(std::uint32_t op, const Value& column, const Value& row);
+  Value cross_product(std::uint32_t op, const Value& left, const Value& right);
+
+  /// The same values, which depend on more.
+  Value with(Value value, Set on);
+  Set union_of(std::span<const Scalar> scalars);
+
+  FlowSets sets;
+  ValueNumbers numbers;
+
+ private:
+  std::optional<Scalar> unchanged(std::uint32_t op, std::span<const Scalar> operands) const;
+  std::optional<double> folded(std::uint32_t op, std::span<const Scalar> operands) const;
+};
+
+}  // namespace understudy::spu::program

@@ -1,0 +1,84 @@
+// Where the variables of a shader lie: every number that one holds is a cell.
+#pragma once
+
+#include <glslang/Include/intermediate.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "spu/volume/program/facts.h"
+
+namespace understudy::spu::program {
+
+using Cell = std::uint32_t;
+
+/// How many numbers a value of this type is.
+std::uint32_t cells_of(const glslang::TType& type);
+/// Of one element of an array.
+std::uint32_t cells_of_element(const glslang::TType& array);
+/// Where a member begins.
+std::uint32_t cells_before_member(const glslang::TType& structure, std::size_t member);
+
+struct Variable {
+  const glslang::TType* type = nullptr;
+  std::string name;
+  glslang::TStorageQualifier storage = glslang::EvqTemporary;
+  Cell first = 0;
+  std::uint32_t cells = 0;
+  std::uint32_t elements = 1;  ///< of an array, its outermost dimension, as far as it is kept apart
+  bool collapsed = false;      ///< all elements share the cells of one
+};
+
+struct Function {
+  const glslang::TIntermAggregate* node = nullptr;
+  std::vector<std::size_t> locals;  ///< variables, with parameters
+  Cell returned = 0;                ///< first cell of the returned value
+  std::uint32_t returned_cells = 0;
+};
+
+void for_each_child(const TIntermNode& node, const std::function<void(const TIntermNode*)>& visit);
+
+class Variables {
+ public:
+  Variables(Stage stage, const TIntermNode& root);
+
+  const Variable& of(const glslang::TIntermSymbol& symbol) const { return list_[by_id_.at(symbol.getId())]; }
+  std::span<const Variable> list() const { return list_; }
+  /// By the front end's name, which holds the parameters' types; null for functions without a core.
+  const Function* function(std::string_view name) const;
+  std::uint32_t cells() const { return cells_; }
+  /// What is in a cell when the shader starts.
+  Source source_of(Cell cell) const;
+
+  /// What ftransform reads.
+  Cell fixed_vertex() const { return fixed_vertex_; }
+  Cell fixed_matrix() const { return fixed_matrix_; }
+
+ private:
+  void visit(const TIntermNode* node, Function* function, int depth);
+  void add(const glslang::TIntermSymbol& symbol, Function* function);
+  void add_function(const glslang::TIntermAggregate& node, int depth);
+  void lay_out();
+  Cell take(std::uint64_t cells);
+
+  Stage stage_;
+  std::vector<Variable> list_;
+  std::unordered_map<long long, std::size_t> by_id_;
+  std::map<std::string, Function, std::less<>> functions_;
+  Cell fixed_vertex_ = 0;
+  Cell fixed_matrix_ = 0;
+  std::uint32_t cells_ = 0;
+};
+
+/// The stage's outputs lie in variables of these qualifiers.
+bool is_output(const Variable& variable);
+/// Of a cell of `variable`: the name of the scalar, vector or matrix that it is in, and its component.
+Source named(const Variable& variable, Cell cell);
+
+}  // namespace understudy::spu::program

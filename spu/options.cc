@@ -129,12 +129,12 @@ constexpr std::array rows{
          "does; once it rests, viewers that have a window are asked to draw again"},
         set_number<&Options::frame_latency, 0, 1>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
-         "compare every K-th frame with the viewer's own drawing (without K: every frame; 0: the first frame "
-         "of "
-         "every volume; -1: never)"},
+         "compare every K-th frame whole with the viewer's own drawing (without K: every frame; 0: when "
+         "something "
+         "changed that could make it wrong; -1: never compare anything)"},
         set_number<&Options::verify, -1, 1'000'000>},
-    Row{{"", "UNDERSTUDY_VERIFY_PSNR", "DB", "30",
-         "a verified frame below this PSNR gives the volume back to the viewer"},
+    Row{{"", "UNDERSTUDY_VERIFY_PSNR", "DB", "0",
+         "a compared image below this PSNR is refused, beside the bound that every tile must keep"},
         set_number<&Options::verify_psnr, 0, 200>},
     Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
         set_text<&Options::report>},

@@ -17,7 +17,7 @@ struct Options {
   std::string
       connect;         ///< Unix socket of a running `understudy serve`, or for launchers host:port; empty: none
   std::string report;  ///< JSON file; empty: none
-  int verify = 0;      ///< every K frames; 0: the first frame of every volume only; -1: never
+  int verify = 0;      ///< every K frames; 0: when something changed that could make an image wrong; -1: never
   bool explain = false;
   OptimizationSet disabled_optimizations;
   bool disable = false;
@@ -34,8 +34,8 @@ struct Options {
   std::string chain = "track volume driver";
   std::string run_dir;                 ///< the launcher's folder for this run (counters); empty: no launcher
   std::string server_opengl = "auto";  ///< what GL servers and replays draw with: auto, egl or osmesa
-  std::string remote;         ///< Unix socket of the GL server that makes the calls; empty: they are made here
-  double verify_psnr = 30.0;  ///< below this the volume goes back to the application
+  std::string remote;      ///< Unix socket of the GL server that makes the calls; empty: they are made here
+  double verify_psnr = 0;  ///< dB; below this a compared image is refused
 
   bool has_budget() const { return error > 0 || time_ms > 0; }
 };

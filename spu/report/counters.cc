@@ -121,6 +121,12 @@ void hand_on(VolumeCounters& volume, VolumeCounters& last) {
   last.verified_frames.fetch_add(volume.verified_frames.exchange(0));
   last.verify_max = std::max(last.verify_max, std::exchange(volume.verify_max, 0));
   add(last.verify_sum_sq, std::exchange(volume.verify_sum_sq, 0));
+  if (const double worst = std::exchange(volume.verify_worst_tile, 0); worst >= last.verify_worst_tile) {
+    last.verify_worst_tile = worst;
+    last.verify_worst_frame = volume.verify_worst_frame;
+  }
+  last.verified_tiles.fetch_add(volume.verified_tiles.exchange(0));
+  last.verify_lost.fetch_add(volume.verify_lost.exchange(0));
   put_text(volume.explanation, "");
   put_text(volume.texture_format, "");
   std::fill(std::begin(volume.size), std::end(volume.size), 0);

@@ -58,9 +58,13 @@ struct VolumeCounters {
   std::atomic<std::uint64_t> texel_bytes_left_out;  ///< of changed textures: what the nodes had already
   ReasonCount left_because[max_counted_reasons];
   std::atomic<std::uint64_t> verified_frames;
-  double verify_max;      ///< worst over the verified frames
-  double verify_sum_sq;   ///< sum over verified frames of the mean squared error: RMS = sqrt(sum / frames)
-  char explanation[512];  ///< what was recognised, in plain words
+  double verify_max;         ///< worst over the verified frames
+  double verify_sum_sq;      ///< sum over verified frames of the mean squared error: RMS = sqrt(sum / frames)
+  double verify_worst_tile;  ///< the largest mean excess of a tile, over whole images and sentinels
+  std::uint64_t verify_worst_frame;           ///< the frame that it was in, from 1
+  std::atomic<std::uint64_t> verified_tiles;  ///< sentinels
+  std::atomic<std::uint64_t> verify_lost;     ///< comparisons beyond the bound
+  char explanation[512];                      ///< what was recognised, in plain words
   BudgetCounters budget;
 };
 

@@ -167,17 +167,26 @@ double verified_rms(const VolumeCounters& volume) {
 
 Json verified(const VolumeCounters& volume) {
   const std::uint64_t frames = volume.verified_frames.load();
-  if (frames == 0) {
-    return {{report_key::frames, 0},
+  const std::uint64_t tiles = volume.verified_tiles.load();
+  Json json{{report_key::frames, frames},
+            {report_key::tiles, tiles},
+            {report_key::lost, volume.verify_lost.load()},
+            {report_key::worst_tile, nullptr},
+            {report_key::worst_frame, nullptr},
             {report_key::max, nullptr},
             {report_key::rms, nullptr},
             {report_key::psnr, nullptr}};
+  if (frames + tiles > 0) {
+    json[report_key::worst_tile] = volume.verify_worst_tile;
+    json[report_key::worst_frame] = volume.verify_worst_frame;
   }
-  const double rms = verified_rms(volume);
-  return {{report_key::frames, frames},
-          {report_key::max, volume.verify_max},
-          {report_key::rms, rms},
-          {report_key::psnr, rms > 0 ? Json(-20 * std::log10(rms)) : Json(nullptr)}};
+  if (frames > 0) {
+    const double rms = verified_rms(volume);
+    json[report_key::max] = volume.verify_max;
+    json[report_key::rms] = rms;
+    if (rms > 0) json[report_key::psnr] = -20 * std::log10(rms);
+  }
+  return json;
 }
 
 bool has_budget(const BudgetCounters& budget) {
@@ -463,8 +472,10 @@ std::string explanation_text(Processes processes) {
         text += fmt::format("understudy:     not substituted {}x: {}\n", count, reason);
       }
       if (const std::uint64_t frames = volume.verified_frames.load(); frames > 0) {
-        text += fmt::format("understudy:     verified on {}: max {:.4g}, RMS {:.4g}\n",
-                            counted(frames, "frame"), volume.verify_max, verified_rms(volume));
+        text += fmt::format(
+            "understudy:     verified on {}: max {:.4g}, RMS {:.4g}, worst tile {:.2g}/255 (frame {})\n",
+            counted(frames, "frame"), volume.verify_max, verified_rms(volume), 255 * volume.verify_worst_tile,
+            volume.verify_worst_frame);
       }
     }
   }

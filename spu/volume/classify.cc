@@ -80,23 +80,38 @@ void VolumeUnit::classify(Substitution& s) {
                          s.pipeline.target.floating ? 1.0F : 0.0F};
   for (const GLint swizzle : known.texture.swizzle) key.push_back(float(swizzle));
   if (!context().core) append_alpha_test(gl, key);
+  for (const float value : key) s.inputs.push_back({value});
   if (s.fragment.record != nullptr) {
+    const ProgramStages& parts = stages(s.pipeline.program, *s.fragment.record);
     key.push_back(float(s.fragment.record->link));
-    const auto values =
-        fragment_uniform_values(context(), s.pipeline.program, stages(s.pipeline.program, *s.fragment.record));
-    key.insert(key.end(), values.begin(), values.end());
+    s.inputs.push_back({key.back(), false});
+    const auto values = fragment_uniform_values(context(), s.pipeline.program, parts);
+    for (const UniformValue& value : values) key.push_back(value.value);
+    const SamplerRoles roles =
+        sampler_roles(gl, s.pipeline, samplers_.of(gl, s.pipeline.program, s.fragment.record->link));
+    const auto says = findings(s.pipeline.program, parts, roles);
+    if (!says) throw Refusal{parts.facts_trouble};
+    if (std::string reason = refusal_of_slices(parts, *says, s.fragment, !s.slice_segments.empty());
+        !reason.empty())
+      throw Refusal{std::move(reason)};
+    for (const auto& input : uniform_inputs(parts, *says, values)) s.inputs.push_back(input);
   } else if (s.pipeline.assembly) {
     key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
   } else {
     append_fixed_function_state(gl, key);
     if (s.pipeline.fog) append_fog_state(gl, key);
   }
+  if (s.fragment.record == nullptr) {
+    for (std::size_t i = s.inputs.size(); i < key.size(); ++i) s.inputs.push_back({key[i]});
+  }
+  const std::size_t without_tables = key.size();
   for (const SampledTexture& table : s.pipeline.others) {
     key.push_back(float(table.texture));
     key.push_back(float(chain_.group().texture_version(table.texture)));
     if (chain_.group().is_rendered_to(table.texture))
       key.push_back(std::nanf(""));  // never equal: probed every time
   }
+  for (std::size_t i = without_tables; i < key.size(); ++i) s.inputs.push_back({key[i]});
   const std::string_view why = why_probed(known, key, s.fragment.range);
   count_probe(why);
   if (!why.empty()) {

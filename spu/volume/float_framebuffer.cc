@@ -1,8 +1,26 @@
 #include "spu/volume/float_framebuffer.h"
 
+#include <algorithm>
+
 #include "spu/volume/saved_state.h"
 
 namespace understudy::spu {
+namespace {
+
+/// Row by row; 1 where `depth` does not reach.
+std::vector<float> depth_in(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth) {
+  std::vector<float> depths(rect.pixels(), 1.0F);
+  if (!depth) return depths;
+  const volume::Rect both = intersection(rect, depth->rect);
+  for (int y = both.y; y < both.y + both.height; ++y) {
+    const auto from =
+        depth->depth.begin() + std::ptrdiff_t(y - depth->rect.y) * depth->rect.width + (both.x - depth->rect.x);
+    std::copy_n(from, both.width, depths.begin() + std::ptrdiff_t(y - rect.y) * rect.width + (both.x - rect.x));
+  }
+  return depths;
+}
+
+}  // namespace
 
 FloatFramebuffer::FloatFramebuffer(const GlContext& context, int width, int height, int samples,
                                    const std::optional<volume::DepthImage>& depth, float background)
@@ -58,6 +76,28 @@ void FloatFramebuffer::blit(GLuint from, GLuint to, GLbitfield what) const {
   gl.BindFramebuffer(GL_READ_FRAMEBUFFER, from);
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
   gl.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, what, GL_NEAREST);
+}
+
+void FloatFramebuffer::clear(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth,
+                             float background) {
+  const DispatchTable& gl = *context_.gl;
+  SavedState saved(context_);
+  saved.borrow_texture(GL_TEXTURE_2D, 0);
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D, textures_[1]);
+  const std::vector<float> depths = depth_in(rect, depth);
+  gl.TexSubImage2D(GL_TEXTURE_2D, 0, rect.x, rect.y, rect.width, rect.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                   depths.data());
+  std::array<GLint, 4> box{};
+  gl.GetIntegerv(GL_SCISSOR_BOX, box.data());
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Scissor(rect.x, rect.y, rect.width, rect.height);
+  if (multisampled_) blit(framebuffers_[0], framebuffers_[1], GL_DEPTH_BUFFER_BIT);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, name());
+  const std::array<float, 4> cleared{background, background, background, background};
+  gl.ClearBufferfv(GL_COLOR, 0, cleared.data());
+  gl.Scissor(box[0], box[1], box[2], box[3]);
+  gl.Disable(GL_SCISSOR_TEST);
 }
 
 std::vector<float> FloatFramebuffer::pixels(const volume::Rect& rect) const {

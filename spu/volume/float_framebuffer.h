@@ -25,6 +25,8 @@ class FloatFramebuffer {
   bool complete() const { return complete_; }
   /// To draw into.
   GLuint name() const { return framebuffers_[multisampled_ ? 1 : 0]; }
+  /// What the constructor does, for the pixels of `rect` alone. Leaves scissor test and bindings as they are.
+  void clear(const volume::Rect& rect, const std::optional<volume::DepthImage>& depth, float background);
   /// RGBA of every pixel of `rect`, the mean of its samples.
   std::vector<float> pixels(const volume::Rect& rect) const;
 

@@ -6,6 +6,9 @@
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <utility>
+
+#include "spu/volume/program/analysis.h"
 
 namespace understudy::spu {
 namespace {
@@ -257,11 +260,21 @@ GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLui
   return 0;
 }
 
+void read_fragment_text(const ProgramRecord& record, ProgramStages& stages) {
+  program::StageFinding finding = program::analyse(program::Stage::fragment, record.fragment_sources);
+  if (auto* facts = std::get_if<program::StageFacts>(&finding)) {
+    stages.facts = std::make_shared<const program::StageFacts>(std::move(*facts));
+  } else {
+    stages.facts_trouble = "the fragment shader is not understood: " + std::get<program::Failure>(finding).what;
+  }
+}
+
 }  // namespace
 
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   ProgramStages stages;
   describe_fragment_stage(context, record, stages);
+  read_fragment_text(record, stages);
   if (!record.vertex_shader) return stages;
 
   std::string trouble;
@@ -353,19 +366,19 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
   }
 }
 
-std::vector<float> fragment_uniform_values(const GlContext& context, GLuint application,
-                                           const ProgramStages& stages) {
+std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
+                                                  const ProgramStages& stages) {
   const DispatchTable& gl = *context.gl;
-  std::vector<float> values;
+  std::vector<UniformValue> values;
   for (const StageUniform& uniform : stages.uniforms) {
     const GLint location = gl.GetUniformLocation(application, uniform.name.c_str());
     const UniformShape shape = shape_of(uniform.type);
     if (location < 0 || shape.components == 0) continue;
     std::array<GLfloat, 16> value{};
     gl.GetUniformfv(application, location, value.data());
-    values.insert(values.end(), value.begin(), value.begin() + shape.components);
+    for (int c = 0; c < shape.components; ++c) values.push_back({uniform.name, c, value[std::size_t(c)]});
   }
-  if (stages.uniform_blocks) values.push_back(std::numeric_limits<float>::quiet_NaN());
+  if (stages.uniform_blocks) values.push_back({{}, 0, std::numeric_limits<float>::quiet_NaN()});
   return values;
 }
 

@@ -2,13 +2,15 @@
 // stage under a vertex stage of ours, to show it chosen samples.
 #pragma once
 
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context.h"
+#include "spu/volume/program/facts.h"
 
 namespace understudy::spu {
 
@@ -35,6 +37,15 @@ struct ProgramStages {
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
                         ///< as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
+  std::shared_ptr<const program::StageFacts> facts;  ///< what the fragment stage's text says; null: nothing
+  std::string facts_trouble;                         ///< why not
+};
+
+/// One number of a uniform.
+struct UniformValue {
+  std::string_view name;  ///< of StageUniform
+  int component = 0;
+  float value = 0;
 };
 
 /// Needs the program's record; `application` is the program itself, for attribute locations.
@@ -52,9 +63,9 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
 /// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
 
-/// What the fragment stage's uniforms hold in `application` now, as numbers to compare. With uniform buffers,
-/// whose contents are not compared, it holds a value that equals nothing.
-std::vector<float> fragment_uniform_values(const GlContext& context, GLuint application,
-                                           const ProgramStages& stages);
+/// What the fragment stage's uniforms hold in `application` now. With uniform buffers, whose contents are not
+/// compared, the last value is one that equals nothing.
+std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
+                                                  const ProgramStages& stages);
 
 }  // namespace understudy::spu

@@ -6,7 +6,7 @@
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/ray_ends.h"
 #include "spu/volume/substitution.h"
-#include "spu/volume/verify.h"
+#include "spu/volume/verification/tile_comparison.h"
 #include "volume/footprint.h"
 #include "volume/raycast/ray_caster.h"
 
@@ -21,15 +21,15 @@ ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
 }
 
 /// Of the image's nine parts the one that shows something in most pixels: enough to tell marches by.
-ApplicationImage fullest_part(const ApplicationImage& whole) {
+NativeImage fullest_part(const NativeImage& whole) {
   const volume::Rect& all = whole.rect;
   const int columns = std::max(1, all.width / 3);
   const int rows = std::max(1, all.height / 3);
-  ApplicationImage fullest;
+  NativeImage fullest;
   std::size_t most = 0;
   for (int y = 0; y + rows <= all.height; y += rows) {
     for (int x = 0; x + columns <= all.width; x += columns) {
-      ApplicationImage part{{all.x + x, all.y + y, columns, rows}, {}};
+      NativeImage part{{all.x + x, all.y + y, columns, rows}, {}};
       part.rgba.reserve(4 * part.rect.pixels());
       std::size_t visible = 0;
       for (int row = y; row < y + rows; ++row) {
@@ -100,6 +100,13 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
 
   const MarchContext measured = context_of();
   MarchInputs inputs = march_inputs(measured, chain_.group());
+  const auto says = findings(
+      s.pipeline.program, parts,
+      sampler_roles(*context().gl, s.pipeline, samplers_.of(*context().gl, s.pipeline.program, record->link)));
+  if (!says) throw Refusal{parts.facts_trouble};
+  if (std::string reason = refusal_of_ray_caster(parts, *says); !reason.empty())
+    throw Refusal{std::move(reason)};
+  for (const float value : inputs.fixed) s.inputs.push_back({value});
   if (known.march && !known.march->from_inside && !box.cuts.empty() &&
       inputs.fixed == known.march_inputs.fixed) {
     // Rays of all directions, which may show that the step was not known in every one.
@@ -169,7 +176,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
   const MarchContext measured{context(),        s.run,          stages(s.pipeline.program, *record),
                               s.volume.texture, s.volume.range, !s.cuts.clipping.empty(),
                               &*s.capture};
-  std::optional<ApplicationImage> looked_at;
+  std::optional<NativeImage> looked_at;
   const March* best = nullptr;
   double least = 0;
   for (const March& march : marches) {
@@ -180,7 +187,7 @@ March VolumeUnit::choose_march(Substitution& s, compositor::RenderService& servi
     compose_request(s);
     hide_behind_geometry(s);
     if (!looked_at) {
-      s.drawn = application_image(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
+      s.drawn = native_image(context(), s.run, s.request, volume::footprint(s.request, s.request.region));
       if (!s.drawn) break;
       looked_at = fullest_part(*s.drawn);
     }

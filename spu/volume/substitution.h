@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "spu/volume/geometry/slice_segment.h"
-#include "spu/volume/verify.h"
+#include "spu/volume/program_check.h"
+#include "spu/volume/verification/native_image.h"
 #include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
@@ -47,7 +48,8 @@ struct VolumeUnit::Substitution {
   std::optional<volume::DepthImage> opaque{};
   std::vector<ObservedSegment> slice_segments{};  ///< what may be the second coordinates of segments
   volume::RenderRequest request{};
-  std::optional<ApplicationImage> drawn{};  ///< the application's own, where that was drawn already
+  VerificationSchedule::Inputs inputs{};  ///< what its image depends on
+  std::optional<NativeImage> drawn{};     ///< the application's own, where that was drawn already
 };
 
 }  // namespace understudy::spu

@@ -17,7 +17,6 @@
 #include "spu/volume/saved_state.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/texel_transfer.h"
-#include "spu/volume/verify.h"
 #include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
@@ -123,10 +122,6 @@ void append_untold_inputs(std::vector<StageInput>& inputs) {
   inputs.push_back({"gl_FrontSecondaryColor", GL_FLOAT_VEC4, 4, false});
   inputs.push_back({"gl_FogFragCoord", GL_FLOAT, 1, false});
 }
-
-/// Rays of all directions begin at the eye: a step that is not quite known shows more than from outside, and in
-/// other views than the one that is compared.
-constexpr double inside_psnr = 40;
 
 }  // namespace
 
@@ -250,7 +245,9 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
     return false;
   }
   try {
-    if (const std::string& reason = known(texture).handed_back; !reason.empty()) throw Refusal{reason};
+    const KnownVolume& volume = known(texture);
+    if (!volume.handed_back.empty()) throw Refusal{volume.handed_back};
+    if (session_->ledger().frames() < volume.next_try) throw Refusal{volume.last_reason};
     substitute(closed);
     return true;
   } catch (const Refusal& refusal) {
@@ -465,45 +462,6 @@ void VolumeUnit::hide_behind_geometry(Substitution& s) {
   if (!absent) count_done(Optimization::absent_depth, "opaque geometry stands in the image");
 }
 
-bool VolumeUnit::to_be_verified(const Substitution& s) const {
-  const Options& options = session_->options();
-  const bool first = s.volume.frames == 0 && options.verify >= 0;
-  const bool due = options.verify > 0 && s.volume.frames % std::uint64_t(options.verify) == 0;
-  const bool first_inside = s.eye_inside && !s.volume.verified_inside && options.verify >= 0;
-  return first || due || first_inside;
-}
-
-void VolumeUnit::verify(Substitution& s, const volume::ImageView& image) {
-  const Options& options = session_->options();
-  if (!to_be_verified(s)) return;
-  const TimedShare timed(clock_, &FrameShares::verification);
-  const auto difference = s.drawn ? std::optional(difference_between(s.pipeline, *s.drawn, image))
-                                  : compare_with_application(context(), s.run, s.request, image);
-  if (!difference) return;
-  if (s.eye_inside && difference->psnr() < std::max(options.verify_psnr, inside_psnr)) {
-    s.volume.left_inside = fmt::format(
-        "seen from inside, its image differs from the application's own by {:.1f} dB", difference->psnr());
-    throw Refusal{s.volume.left_inside};
-  }
-  s.volume.verified_inside = s.eye_inside;
-  judge(s.volume, *difference);
-}
-
-void VolumeUnit::judge(KnownVolume& known, const Difference& difference) {
-  VolumeCounters& counters = *known.counters;
-  counters.verify_max = std::max(counters.verify_max, difference.max);
-  counters.verify_sum_sq += difference.mean_square;
-  counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
-  note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
-  const double tolerance = session_->options().verify_psnr;
-  if (difference.psnr() < tolerance) {
-    known.handed_back =
-        fmt::format("its image differs from the application's own by {:.1f} dB PSNR, tolerance {:.0f}",
-                    difference.psnr(), tolerance);
-    throw Refusal{known.handed_back};
-  }
-}
-
 void VolumeUnit::substitute(std::unique_ptr<Run>& closed) {
   const Run& run = *closed;
   // Frames may end in other contexts than the one that draws.
@@ -537,6 +495,7 @@ void VolumeUnit::substitute(std::unique_ptr<Run>& closed) {
     compose_request(s);
     hide_behind_geometry(s);
   }
+  s.volume.verification.begin(s.inputs, volume::footprint(s.request, s.request.region).pixels());
   const volume::FrameCounts counts =
       show(service, s, [&](const volume::ImageView& image) { verify(s, image); });
   settle_depth(s);

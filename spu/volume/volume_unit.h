@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,10 +30,15 @@
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
 #include "spu/volume/stack_detection.h"
+#include "spu/volume/verification/schedule.h"
 
 namespace understudy::spu {
 
-struct Difference;
+struct ImageDifference;
+struct NativeImage;
+class NativeDrawing;
+struct ProgramFindings;
+struct SamplerRoles;
 struct MergedVolume;
 struct Transferred;
 
@@ -56,6 +62,8 @@ struct KnownVolume {
   int refusals = 0;                 ///< in a row
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
+  VerificationSchedule verification;
+  std::uint64_t next_try = 0;      ///< the frame from which on it is tried again, after a lost comparison
   std::unique_ptr<Budget> budget;  ///< where an error or a time is asked for
   VolumeCounters* counters = nullptr;
 };
@@ -149,7 +157,18 @@ class VolumeUnit final : public Unit {
   bool cast_within_budget(compositor::RenderService& service, Substitution& s, RenderedImage& image);
   bool to_be_verified(const Substitution& s) const;
   void verify(Substitution& s, const volume::ImageView& image);
-  void judge(KnownVolume& known, const Difference& difference);
+  void compare_whole(Substitution& s, const volume::ImageView& image);
+  void compare_sentinels(Substitution& s, const volume::ImageView& image);
+  /// Throws Refusal where the image is beyond the bound.
+  void judge(KnownVolume& known, const ImageDifference& difference, double native_ms);
+  void count_difference(KnownVolume& known, const ImageDifference& difference);
+  /// The application draws this frame, and the volume is measured anew.
+  [[noreturn]] void lose(KnownVolume& known, const ImageDifference& difference);
+  NativeDrawing& sentinel_drawing(const Substitution& s);
+  /// Throws Refusal where the program's text does not allow what was recognised.
+  void check_program(Substitution& s);
+  std::shared_ptr<const ProgramFindings> findings(GLuint program, const ProgramStages& stages,
+                                                  const SamplerRoles& roles);
   void explain(const Substitution& s, std::string_view beginning = {});
   void count_substituted(KnownVolume& known, const volume::FrameCounts& counts);
 
@@ -198,8 +217,12 @@ class VolumeUnit final : public Unit {
   int other_stacks_ = 0;  ///< runs through many 2-D textures that were no volume, since the last that was
   ProgramSamplers samplers_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
-      stages_;                ///< by program, with the link they stem from
-  GLuint depth_watched_ = 0;  ///< the volume whose slices' depth is watched for use; 0: none
+      stages_;  ///< by program, with the link they stem from
+  std::map<GLuint, std::pair<std::uint64_t, std::shared_ptr<const ProgramFindings>>> findings_;  ///< likewise
+  std::unique_ptr<NativeDrawing> sentinel_drawing_;
+  std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
+  std::minstd_rand random_;               ///< where sentinels stand
+  GLuint depth_watched_ = 0;              ///< the volume whose slices' depth is watched for use; 0: none
   std::uint64_t saved_ = 0;
   std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_{};

@@ -274,8 +274,10 @@ bool VolumeUnit::holds(std::unique_ptr<Run>& run, Substitution& s) {
       (merging.held_volume != merged || std::any_of(merging.held.begin(), merging.held.end(), same_texture) ||
        !alike(merging.held.front().s.pipeline, merging.held.front().s.request, s.pipeline, s.request)))
     settle_held();
+  if (merging.held.empty())
+    merged->volume.verification.begin(s.inputs, intersection(s.request.window, s.request.viewport).pixels());
   const int verify = session_->options().verify;
-  const bool verified = (merged->volume.frames == 0 && verify >= 0) ||
+  const bool verified = (merged->volume.verification.whole_due() && verify >= 0) ||
                         (verify > 0 && merged->volume.frames % std::uint64_t(verify) == 0);
   if (verified) {
     const TimedShare timed(clock_, &FrameShares::verification);
@@ -283,7 +285,7 @@ bool VolumeUnit::holds(std::unique_ptr<Run>& run, Substitution& s) {
       volume::RenderRequest request = s.request;
       if (s.pipeline.depth_test)
         request.depth = read_depth(context(), s.pipeline.target, request.window, s.pipeline.depth_or_equal);
-      merging.drawn = std::make_unique<ApplicationDrawing>(context(), s.pipeline, request);
+      merging.drawn = std::make_unique<NativeDrawing>(context(), s.pipeline, request);
     }
     if (merging.drawn) merging.drawn->add(*run);
   }
@@ -322,7 +324,8 @@ bool VolumeUnit::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) 
     const volume::FrameCounts counts = show(service, whole, [&](const volume::ImageView& image) {
       if (!merging_->drawn || !merging_->drawn->complete()) return;
       const TimedShare timed(clock_, &FrameShares::verification);
-      judge(merged.volume, difference_between(whole.pipeline, merging_->drawn->image(image.rect), image));
+      const volume::Rect window = intersection(whole.request.window, whole.request.viewport);
+      judge(merged.volume, difference_between(whole.pipeline, merging_->drawn->image(window), image), 0);
     });
     for (std::size_t k = 0; k < 3; ++k) merged.volume.counters->size[k] = merged.tiling.size[k];
     if (merged.volume.frames == 0 || session_->options().explain)

@@ -45,8 +45,8 @@ struct VolumeUnit::Merging {
   /// What each texture's slices ever read, in its texels.
   std::map<GLuint, volume::TexelBox> shown;
   std::vector<HeldRun> held;
-  MergedVolume* held_volume = nullptr;        ///< of which the held runs are bricks
-  std::unique_ptr<ApplicationDrawing> drawn;  ///< what they draw themselves, in frames that are verified
+  MergedVolume* held_volume = nullptr;   ///< of which the held runs are bricks
+  std::unique_ptr<NativeDrawing> drawn;  ///< what they draw themselves, in frames that are verified
   /// Tilings that hold for one view only are found ever more rarely.
   std::uint64_t next_search = 0;
   std::uint64_t pause = 1;

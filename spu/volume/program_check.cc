@@ -1,0 +1,167 @@
+#include "spu/volume/program_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace understudy::spu {
+namespace {
+
+using program::Influence;
+using program::Source;
+using program::SourceKind;
+using program::StageFacts;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Texels of idle samplers end the way as the volume's do: nothing reaches colours through them.
+std::vector<std::string> ends_of_ways(const SamplerRoles& roles) {
+  std::vector<std::string> names = roles.volume;
+  names.insert(names.end(), roles.idle.begin(), roles.idle.end());
+  return names;
+}
+
+/// Tables whose contents are tracked (spu/track) and can be given to a probe.
+bool is_known_table(const program::SamplerType& type) {
+  using program::TextureShape;
+  return !type.array && !type.shadow && !type.multisample &&
+         (type.shape == TextureShape::line || type.shape == TextureShape::plane ||
+          type.shape == TextureShape::rectangle);
+}
+
+std::string refusal_of_tables(const StageFacts& facts, const std::vector<std::string>& tables,
+                              const SamplerRoles& roles) {
+  for (const program::Fetch& fetch : facts.fetches) {
+    if (!contains(tables, fetch.sampler) || contains(roles.idle, fetch.sampler)) continue;
+    if (!is_known_table(fetch.type))
+      return fmt::format("colours come from '{}', a {}, whose contents are not followed", fetch.sampler,
+                         text(fetch.type));
+  }
+  return {};
+}
+
+std::string refusal_of_side_effects(const StageFacts& facts) {
+  if (!facts.side_effects.empty())
+    return fmt::format("the fragment shader writes to '{}'", facts.side_effects.front().name);
+  return {};
+}
+
+/// Names with and without the array element that queries of OpenGL add.
+bool same_variable(const std::string& a, const std::string& b) {
+  return a == b || a == b + "[0]" || b == a + "[0]";
+}
+
+const StageInput* input_of(const ProgramStages& stages, const std::string& name) {
+  // A shader reads gl_Color where the vertex stage writes gl_FrontColor.
+  const auto found = std::ranges::find_if(stages.inputs, [&](const StageInput& input) {
+    return same_variable(input.name, name) || (name == "gl_Color" && input.name == "gl_FrontColor") ||
+           (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
+  });
+  return found == stages.inputs.end() ? nullptr : &*found;
+}
+
+/// The same for all fragments of the run, or measured as fog.
+bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, const Influence& influence,
+                 const Source& source) {
+  const StageInput* const input = input_of(stages, source.name);
+  if (input == nullptr || input->name == fragment.coordinate) return false;
+  const auto index = std::size_t(input - stages.inputs.data());
+  if (index >= fragment.range.low.size()) return false;
+  const auto component = std::size_t(source.component);
+  if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
+  return influence.target == program::Target::colour && influence.flow == program::Flow::data &&
+         !influence.through_table;
+}
+
+std::string sentence(std::string text) {
+  return "the fragment shader: " + std::move(text);
+}
+
+}  // namespace
+
+SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+                           const std::vector<SamplerUniform>& samplers) {
+  SamplerRoles roles;
+  for (const SamplerUniform& sampler : samplers) {
+    if (sampler.location == pipeline.volume.sampler_location) {
+      roles.volume.push_back(sampler.name);
+      continue;
+    }
+    const auto other = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
+      return sampled.sampler_location == sampler.location;
+    });
+    if (other != pipeline.others.end()) {
+      if (other->texture == 0) roles.idle.push_back(sampler.name);
+      continue;
+    }
+    GLint unit = 0;
+    gl.GetUniformiv(pipeline.program, sampler.location, &unit);
+    if (unit == pipeline.volume.unit) roles.volume.push_back(sampler.name);
+  }
+  return roles;
+}
+
+std::shared_ptr<const ProgramFindings> findings_of(const ProgramStages& stages, const SamplerRoles& roles) {
+  if (!stages.facts) return nullptr;
+  const std::vector<std::string> volumes = ends_of_ways(roles);
+  return std::make_shared<const ProgramFindings>(
+      ProgramFindings{roles, slice_finding(*stages.facts, volumes), ray_finding(*stages.facts, volumes)});
+}
+
+std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
+                              const FragmentInputs& fragment, bool slice_segments) {
+  const StageFacts& facts = *stages.facts;
+  const SamplerRoles& roles = findings.roles;
+  if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
+  const program::SliceFinding& finding = findings.slices;
+  std::vector<std::size_t> texels;
+  std::ranges::copy_if(finding.texels, std::back_inserter(texels),
+                       [&](std::size_t fetch) { return !contains(roles.idle, facts.fetches[fetch].sampler); });
+  if (texels.empty()) return "no colour of the fragment shader depends on the volume's texels";
+  const std::size_t most = slice_segments ? 2 : 1;
+  if ((texels.size() > most || finding.texels_vary_in_loop) && !finding.reasons.empty())
+    return sentence(finding.reasons.front());
+  if (std::string reason = refusal_of_tables(facts, finding.tables, roles); !reason.empty()) return reason;
+  std::vector<Influence> unexplained = finding.coordinate_others;
+  for (const Influence& influence : finding.others) {
+    const Source& source = facts.sources[influence.source];
+    if (source.kind == SourceKind::varying && is_measured(stages, fragment, influence, source)) continue;
+    unexplained.push_back(influence);
+  }
+  if (unexplained.empty()) return {};
+  return sentence(texts(facts, unexplained).front());
+}
+
+std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFindings& findings) {
+  const StageFacts& facts = *stages.facts;
+  if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
+  const program::RayFinding& finding = findings.ray;
+  if (!finding.loop) return "no loop of the fragment shader samples the volume";
+  if (std::string reason = refusal_of_tables(facts, finding.tables, findings.roles); !reason.empty())
+    return reason;
+  std::vector<Influence> unexplained;
+  for (const Influence& influence : finding.data) {
+    if (facts.sources[influence.source].kind != SourceKind::varying) unexplained.push_back(influence);
+  }
+  if (!unexplained.empty()) return sentence(texts(facts, unexplained).front());
+  return {};
+}
+
+VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
+                                            std::span<const UniformValue> values) {
+  const auto is_predicted = [&](const UniformValue& value) {
+    return std::ranges::none_of(findings.slices.uniforms, [&](const program::UniformUse& use) {
+      const Source& source = stages.facts->sources[use.source];
+      return (use.discard || use.branch || use.coordinate) && source.component == value.component &&
+             same_variable(source.name, std::string(value.name));
+    });
+  };
+  VerificationSchedule::Inputs inputs;
+  for (const UniformValue& value : values) inputs.push_back({value.value, is_predicted(value)});
+  return inputs;
+}
+
+}  // namespace understudy::spu

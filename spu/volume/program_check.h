@@ -1,0 +1,52 @@
+// What the text of a program must say for its volume to be substituted. Measuring finds what colours are for
+// the values that were tried; the text says on what else they can depend (spu/volume/program).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spu/volume/classification/probe.h"
+#include "spu/volume/pipeline.h"
+#include "spu/volume/program/ray_caster.h"
+#include "spu/volume/program/slices.h"
+#include "spu/volume/program_stages.h"
+#include "spu/volume/verification/schedule.h"
+
+namespace understudy::spu {
+
+/// The names that the program has for textures.
+struct SamplerRoles {
+  std::vector<std::string> volume;  ///< set to the volume's texture
+  std::vector<std::string> idle;    ///< set to a unit without a texture: they give the same everywhere
+  bool operator==(const SamplerRoles&) const = default;
+};
+
+/// What the text says about the volume, for one choice of roles.
+struct ProgramFindings {
+  SamplerRoles roles;
+  program::SliceFinding slices;
+  program::RayFinding ray;
+};
+
+/// Null where the text is not understood. To be kept: it takes as long as a few draws.
+std::shared_ptr<const ProgramFindings> findings_of(const ProgramStages& stages, const SamplerRoles& roles);
+
+SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+                           const std::vector<SamplerUniform>& samplers);
+
+/// Why slices may not be substituted, with the variable's name; empty: they may. What colours depend on besides
+/// one texel must be one of the things that probing measures: one number that fades colours (fog), or a second
+/// texel that `slice_segments` explain. `coordinate` names the input that addresses the volume.
+std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
+                              const FragmentInputs& fragment, bool slice_segments);
+
+/// Why a ray caster may not be; empty: it may.
+std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFindings& findings);
+
+/// Uniforms as inputs of a comparison: slices' that decide about fragments or move samples are not predicted.
+VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
+                                            std::span<const UniformValue> values);
+
+}  // namespace understudy::spu

@@ -1,0 +1,129 @@
+#include "spu/volume/verification/native_image.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace understudy::spu {
+namespace {
+
+/// The application's blending with an alpha that goes the way of the colour, as the nodes' images have it.
+class ColourBlending {
+ public:
+  ColourBlending(const DispatchTable& gl, const Blending& blending) : gl_(gl) {
+    gl_.GetIntegerv(GL_BLEND_SRC_RGB, &factors_[0]);
+    gl_.GetIntegerv(GL_BLEND_DST_RGB, &factors_[1]);
+    gl_.GetIntegerv(GL_BLEND_SRC_ALPHA, &factors_[2]);
+    gl_.GetIntegerv(GL_BLEND_DST_ALPHA, &factors_[3]);
+    gl_.GetIntegerv(GL_BLEND_EQUATION_RGB, &equations_[0]);
+    gl_.GetIntegerv(GL_BLEND_EQUATION_ALPHA, &equations_[1]);
+    gl_.BlendEquation(GLenum(equations_[0]));
+    if (blending.front_to_back != FrontToBack::no) {
+      gl_.BlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
+    } else {
+      gl_.BlendFuncSeparate(GLenum(factors_[0]), GLenum(factors_[1]), GL_ONE,
+                            blending.op == volume::Operator::add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
+    }
+  }
+  ~ColourBlending() {
+    gl_.BlendEquationSeparate(GLenum(equations_[0]), GLenum(equations_[1]));
+    gl_.BlendFuncSeparate(GLenum(factors_[0]), GLenum(factors_[1]), GLenum(factors_[2]), GLenum(factors_[3]));
+  }
+  ColourBlending(const ColourBlending&) = delete;
+  ColourBlending& operator=(const ColourBlending&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  std::array<GLint, 4> factors_{};
+  std::array<GLint, 2> equations_{};
+};
+
+/// The application's scissor narrowed to `rect` while it lives.
+class NarrowedScissor {
+ public:
+  NarrowedScissor(const DispatchTable& gl, const volume::Rect& rect)
+      : gl_(gl), enabled_(gl.IsEnabled(GL_SCISSOR_TEST)) {
+    gl_.GetIntegerv(GL_SCISSOR_BOX, box_.data());
+    const volume::Rect own{box_[0], box_[1], box_[2], box_[3]};
+    const volume::Rect both = enabled_ ? intersection(own, rect) : rect;
+    gl_.Enable(GL_SCISSOR_TEST);
+    gl_.Scissor(both.x, both.y, both.width, both.height);
+  }
+  ~NarrowedScissor() {
+    if (!enabled_) gl_.Disable(GL_SCISSOR_TEST);
+    gl_.Scissor(box_[0], box_[1], box_[2], box_[3]);
+  }
+  NarrowedScissor(const NarrowedScissor&) = delete;
+  NarrowedScissor& operator=(const NarrowedScissor&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  GLboolean enabled_;
+  std::array<GLint, 4> box_{};
+};
+
+}  // namespace
+
+NativeDrawing::NativeDrawing(const GlContext& context, const Pipeline& pipeline,
+                             const volume::RenderRequest& request)
+    : context_(context), background_(pipeline.blending.op == volume::Operator::min ? 1.0F : 0.0F) {
+  if (request.viewport.x < 0 || request.viewport.y < 0) return;
+  framebuffer_.emplace(context, request.viewport.x + request.viewport.width,
+                       request.viewport.y + request.viewport.height, pipeline.target.samples, request.depth,
+                       background_);
+}
+
+void NativeDrawing::draw(const Run& run) {
+  const DispatchTable& gl = *context_.gl;
+  GLint bound = 0;
+  gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_->name());
+  {
+    const ColourBlending blending(gl, run.pipeline().blending);
+    run.replay(gl);
+  }
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound));
+}
+
+void NativeDrawing::add(const Run& run) {
+  if (complete()) draw(run);
+}
+
+double NativeDrawing::add_timed(const Run& run) {
+  const DispatchTable& gl = *context_.gl;
+  gl.Finish();
+  const auto start = std::chrono::steady_clock::now();
+  add(run);
+  gl.Finish();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void NativeDrawing::redraw(const Run& run, const volume::Rect& rect,
+                           const std::optional<volume::DepthImage>& depth) {
+  if (!complete()) return;
+  framebuffer_->clear(rect, depth, background_);
+  const NarrowedScissor scissor(*context_.gl, rect);
+  draw(run);
+}
+
+NativeImage NativeDrawing::image(const volume::Rect& rect) const {
+  const DispatchTable& gl = *context_.gl;
+  std::array<GLint, 2> bound{};
+  gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound[0]);
+  gl.GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound[1]);
+  NativeImage drawn{rect, framebuffer_->pixels(rect)};
+  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(bound[0]));
+  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound[1]));
+  return drawn;
+}
+
+std::optional<NativeImage> native_image(const GlContext& context, const Run& run,
+                                        const volume::RenderRequest& request, const volume::Rect& rect) {
+  if (rect.empty()) return std::nullopt;
+  NativeDrawing drawing(context, run.pipeline(), request);
+  drawing.add(run);
+  if (!drawing.complete()) return std::nullopt;
+  return drawing.image(rect);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,52 @@
+// What the application itself would draw: its run, repeated off screen into a float framebuffer.
+//
+// An 8-bit framebuffer loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha 2/255), and would hold
+// the application's rounding against an exact image.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "spu/volume/context.h"
+#include "spu/volume/float_framebuffer.h"
+#include "spu/volume/run.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+/// Four floats a pixel of `rect`.
+struct NativeImage {
+  volume::Rect rect;
+  std::vector<float> rgba;
+};
+
+/// What runs of one pipeline draw over transparent black (white for a minimum), one after the other: alpha
+/// going the way of the colour.
+class NativeDrawing {
+ public:
+  NativeDrawing(const GlContext& context, const Pipeline& pipeline, const volume::RenderRequest& request);
+
+  /// False where the driver cannot provide the framebuffer.
+  bool complete() const { return framebuffer_ && framebuffer_->complete(); }
+  /// Draws the run's calls in the state that they were made for.
+  void add(const Run& run);
+  /// The same, to its end on the device. Returns the milliseconds that it took.
+  double add_timed(const Run& run);
+  /// The same within `rect` alone, which is cleared before; `depth` is what opaque geometry left there.
+  void redraw(const Run& run, const volume::Rect& rect, const std::optional<volume::DepthImage>& depth);
+  NativeImage image(const volume::Rect& rect) const;
+
+ private:
+  void draw(const Run& run);
+
+  const GlContext& context_;
+  std::optional<FloatFramebuffer> framebuffer_;
+  float background_ = 0;
+};
+
+/// That of one run. Null when the driver cannot provide the framebuffer.
+std::optional<NativeImage> native_image(const GlContext& context, const Run& run,
+                                        const volume::RenderRequest& request, const volume::Rect& rect);
+
+}  // namespace understudy::spu

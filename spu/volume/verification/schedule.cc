@@ -1,0 +1,97 @@
+#include "spu/volume/verification/schedule.h"
+
+#include <algorithm>
+
+namespace understudy::spu {
+namespace {
+
+/// Of the images between two sentinels; more would come in a burst after a rest.
+constexpr double most_credited_images = 100;
+constexpr int most_sentinels_at_once = 8;
+/// So much more of the window is covered than in any image that was compared.
+constexpr double grown_footprint = 1.5;
+
+std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
+                                 const VerificationSchedule::Inputs& now) {
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    // What is no number differs from itself.
+    if (i >= before.size() || !(before[i].value == now[i].value)) changed.push_back(i);
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool VerificationSchedule::is_trusted(std::size_t index) const {
+  return inputs_[index].predicted &&
+         std::any_of(changing_.begin(), changing_.end(), [&](const ChangingInput& input) {
+           return input.index == index && input.right >= trusted_changes;
+         });
+}
+
+void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
+  if (inputs_.size() != inputs.size()) {
+    inputs_.clear();
+    changing_.clear();
+    now_changed_.clear();
+  }
+  const std::vector<std::size_t> changed = changes(inputs_, inputs);
+  inputs_ = inputs;
+  // An image that was not compared leaves its changes to the next.
+  if (!changed_) now_changed_.clear();
+  for (const std::size_t index : changed) {
+    if (std::find(now_changed_.begin(), now_changed_.end(), index) == now_changed_.end())
+      now_changed_.push_back(index);
+  }
+  changed_ =
+      std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
+  dense_ = !changed.empty();
+  footprint_ = footprint;
+  grown_ = double(footprint) > grown_footprint * double(right_footprint_);
+  if (native_ms_) {
+    const double share = dense_ ? dense_sentinel_share : sentinel_share;
+    credit_ms_ =
+        std::min(credit_ms_ + share * *native_ms_, most_credited_images * sentinel_share * *native_ms_);
+  }
+}
+
+int VerificationSchedule::sentinels() const {
+  return std::clamp(int(credit_ms_ / ms_a_sentinel_), 0, most_sentinels_at_once);
+}
+
+void VerificationSchedule::whole_was_right(bool anything_visible, double native_ms) {
+  native_ms_ = native_ms_ ? 0.5 * (*native_ms_ + native_ms) : native_ms;
+  // An image of nothing proves nothing.
+  if (!anything_visible) return;
+  right_ = true;
+  lost_in_a_row_ = 0;
+  right_footprint_ = std::max(right_footprint_, footprint_);
+  for (const std::size_t index : now_changed_) {
+    const auto known = std::find_if(changing_.begin(), changing_.end(),
+                                    [&](const ChangingInput& input) { return input.index == index; });
+    if (known == changing_.end()) {
+      changing_.push_back({index, 1});
+    } else {
+      ++known->right;
+    }
+  }
+  now_changed_.clear();
+  changed_ = grown_ = false;
+}
+
+void VerificationSchedule::sentinels_took(int count, double ms) {
+  credit_ms_ = std::max(0.0, credit_ms_ - ms);
+  // Smoothed: one tile is no measurement.
+  if (count > 0) ms_a_sentinel_ += 0.2 * (ms / count - ms_a_sentinel_);
+}
+
+void VerificationSchedule::lost() {
+  right_ = false;
+  right_footprint_ = 0;
+  changing_.clear();
+  ++lost_in_a_row_;
+  ++lost_ever_;
+}
+
+}  // namespace understudy::spu

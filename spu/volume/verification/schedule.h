@@ -1,0 +1,86 @@
+// When a substituted volume is compared with what the application itself would draw.
+//
+//   whole image, before it is shown:
+//     until an image that shows something was right; whenever something changed that the model does not
+//     predict; when the volume covers much more of the window than it did; when --verify=K asks for it
+//   sentinels, tiles of 16² pixels at random places of the viewport, in all other frames:
+//     as many as 1 % of the application's own time buys, 10 % while the same input keeps changing
+//
+// An error that covers a share f of the viewport survives n sentinels with the probability (1 - f)^n.
+//
+// A lost comparison is no verdict: the application draws that frame, and the volume is measured anew. After
+// max_lost_comparisons without a right image in between, it is handed back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace understudy::spu {
+
+/// In a row; ParaView's first two frames show a volume that is still being loaded.
+constexpr int max_lost_comparisons = 5;
+/// In all: a volume whose images are wrong again and again is not understood.
+constexpr int max_lost_comparisons_ever = 12;
+/// The same input has changed this often and the image was right each time: sentinels suffice for it.
+constexpr int trusted_changes = 4;
+constexpr double sentinel_share = 0.01;
+constexpr double dense_sentinel_share = 0.10;
+
+class VerificationSchedule {
+ public:
+  /// What an image depends on, input by input: the program, textures and their contents, uniforms. Where the
+  /// number of inputs changes, all have changed.
+  struct Input {
+    float value = 0;  ///< compared; not a number: always another
+    bool predicted =
+        true;  ///< the model follows it once it is known: a table's colours, the step of a ray caster
+  };
+  using Inputs = std::vector<Input>;
+
+  /// The next image is about to be shown. `footprint`: pixels that it covers.
+  void begin(const Inputs& inputs, std::size_t footprint);
+
+  /// Whether it is compared whole; else sentinels() many tiles are.
+  bool whole_due() const { return !right_ || changed_ || grown_; }
+  /// How many tiles are to be compared now.
+  int sentinels() const;
+
+  /// The whole image was compared; `native_ms` is what the application's own took.
+  void whole_was_right(bool anything_visible, double native_ms);
+  void sentinels_took(int count, double ms);
+  void lost();
+
+  bool gives_up() const {
+    return lost_in_a_row_ >= max_lost_comparisons || lost_ever_ >= max_lost_comparisons_ever;
+  }
+  int lost_in_a_row() const { return lost_in_a_row_; }
+  /// Of the application's own drawing; empty: not known yet.
+  std::optional<double> native_ms() const { return native_ms_; }
+
+ private:
+  /// An input that changes again and again.
+  struct ChangingInput {
+    std::size_t index;
+    int right = 0;  ///< comparisons that were right after it had changed
+  };
+  bool is_trusted(std::size_t index) const;
+
+  Inputs inputs_;  ///< of the last image that was begun
+  std::vector<std::size_t> now_changed_;
+  std::vector<ChangingInput> changing_;
+  std::size_t footprint_ = 0;        ///< of the image that is begun
+  std::size_t right_footprint_ = 0;  ///< the largest that was right
+  bool right_ = false;               ///< an image that shows something was right, and none was wrong since
+  bool changed_ = false;
+  bool grown_ = false;
+  bool dense_ = false;
+  int lost_in_a_row_ = 0;
+  int lost_ever_ = 0;
+  std::optional<double> native_ms_;
+  double credit_ms_ = 0;  ///< that sentinels may take
+  double ms_a_sentinel_ = 1;
+};
+
+}  // namespace understudy::spu

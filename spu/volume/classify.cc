@@ -84,7 +84,7 @@ void VolumeUnit::classify(Substitution& s) {
   if (s.fragment.record != nullptr) {
     const ProgramStages& parts = stages(s.pipeline.program, *s.fragment.record);
     key.push_back(float(s.fragment.record->link));
-    s.inputs.push_back({key.back(), false});
+    s.inputs.push_back({key.back(), VerificationSchedule::Effect::unknown});
     const auto values = fragment_uniform_values(context(), s.pipeline.program, parts);
     for (const UniformValue& value : values) key.push_back(value.value);
     const SamplerRoles roles =

@@ -152,15 +152,18 @@ std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFind
 
 VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
                                             std::span<const UniformValue> values) {
-  const auto is_predicted = [&](const UniformValue& value) {
+  const auto only_colours = [&](const UniformValue& value) {
     return std::ranges::none_of(findings.slices.uniforms, [&](const program::UniformUse& use) {
       const Source& source = stages.facts->sources[use.source];
-      return (use.discard || use.branch || use.coordinate) && source.component == value.component &&
-             same_variable(source.name, std::string(value.name));
+      if (!use.discard && !use.branch && !use.coordinate) return false;
+      if (value.name.empty()) return source.kind == SourceKind::uniform_block;
+      return source.component == value.component && same_variable(source.name, std::string(value.name));
     });
   };
+  using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs inputs;
-  for (const UniformValue& value : values) inputs.push_back({value.value, is_predicted(value)});
+  for (const UniformValue& value : values)
+    inputs.push_back({value.value, only_colours(value) ? Effect::measured : Effect::unknown});
   return inputs;
 }
 

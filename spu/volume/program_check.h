@@ -45,7 +45,8 @@ std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings
 /// Why a ray caster may not be; empty: it may.
 std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFindings& findings);
 
-/// Uniforms as inputs of a comparison: slices' that decide about fragments or move samples are not predicted.
+/// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or
+/// move samples is unknown.
 VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
                                             std::span<const UniformValue> values);
 

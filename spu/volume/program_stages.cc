@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -366,6 +368,55 @@ void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
   }
 }
 
+namespace {
+
+/// Larger blocks are not part of what OpenGL guarantees.
+constexpr GLint most_block_bytes = 1 << 16;
+
+/// Of a uniform block of the fragment stage; nothing where the buffer cannot be read.
+std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block) {
+  GLint binding = 0, bytes = 0, buffer = 0, bound = 0, mapped = 0;
+  GLint64 start = 0, room = 0;
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_BINDING, &binding);
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
+  gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, GLuint(binding), &buffer);
+  gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(binding), &start);
+  if (buffer == 0 || bytes <= 0 || bytes > most_block_bytes) return std::nullopt;
+  gl.GetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound);
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(buffer));
+  gl.GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_MAPPED, &mapped);
+  gl.GetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &room);
+  std::optional<std::vector<std::byte>> contents;
+  if (mapped == GL_FALSE && start + bytes <= room) {
+    contents.emplace(std::size_t(bytes));
+    gl.GetBufferSubData(GL_COPY_READ_BUFFER, GLintptr(start), bytes, contents->data());
+  }
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(bound));
+  return contents;
+}
+
+/// Numbers that differ where the blocks' contents do; one that equals nothing where they cannot be read.
+void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<UniformValue>& values) {
+  GLint blocks = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  for (GLuint block = 0; block < GLuint(blocks); ++block) {
+    GLint by_fragments = 0;
+    gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER, &by_fragments);
+    if (by_fragments == GL_FALSE) continue;
+    const auto contents = block_contents(gl, program, block);
+    if (!contents) {
+      values.push_back({{}, 0, std::numeric_limits<float>::quiet_NaN()});
+      continue;
+    }
+    const std::string_view text(reinterpret_cast<const char*>(contents->data()), contents->size());
+    // 64 bits as four numbers that floats hold.
+    for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
+      values.push_back({{}, 0, float(hash & 0xffff)});
+  }
+}
+
+}  // namespace
+
 std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
                                                   const ProgramStages& stages) {
   const DispatchTable& gl = *context.gl;
@@ -378,7 +429,7 @@ std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLui
     gl.GetUniformfv(application, location, value.data());
     for (int c = 0; c < shape.components; ++c) values.push_back({uniform.name, c, value[std::size_t(c)]});
   }
-  if (stages.uniform_blocks) values.push_back({{}, 0, std::numeric_limits<float>::quiet_NaN()});
+  if (stages.uniform_blocks) append_block_contents(gl, application, values);
   return values;
 }
 

@@ -41,9 +41,9 @@ struct ProgramStages {
   std::string facts_trouble;                         ///< why not
 };
 
-/// One number of a uniform.
+/// One number of a uniform, or of what tells the contents of a uniform block.
 struct UniformValue {
-  std::string_view name;  ///< of StageUniform
+  std::string_view name;  ///< of StageUniform; empty: of a block
   int component = 0;
   float value = 0;
 };
@@ -63,8 +63,7 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
 /// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
 void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
 
-/// What the fragment stage's uniforms hold in `application` now. With uniform buffers, whose contents are not
-/// compared, the last value is one that equals nothing.
+/// What the fragment stage's uniforms and uniform blocks hold in `application` now.
 std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
                                                   const ProgramStages& stages);
 

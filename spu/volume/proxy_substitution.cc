@@ -1,5 +1,6 @@
 // The volume unit's way for ray casters: from the draw of a box to a request.
 #include <algorithm>
+#include <cmath>
 
 #include "compositor/blend.h"
 #include "compositor/service/limits.h"
@@ -67,6 +68,16 @@ void ask(volume::RenderRequest& request, const March& march, const ProxyBox& box
   end_rays_at(planes, march.past_planes, request);
 }
 
+/// Vectors and matrices move with the camera where it has `turned`; one that changes alone may cut the volume.
+void append_inputs(VerificationSchedule::Inputs& to, const MarchInputs& inputs, bool turned) {
+  using Effect = VerificationSchedule::Effect;
+  for (const float value : inputs.fixed) to.push_back({value});
+  for (const float value : inputs.varying) {
+    // Not a number: the depth of opaque geometry, which is drawn in every frame.
+    to.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
+  }
+}
+
 }  // namespace
 
 void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderService& service) {
@@ -106,7 +117,8 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
   if (!says) throw Refusal{parts.facts_trouble};
   if (std::string reason = refusal_of_ray_caster(parts, *says); !reason.empty())
     throw Refusal{std::move(reason)};
-  for (const float value : inputs.fixed) s.inputs.push_back({value});
+  append_inputs(s.inputs, inputs, known.camera != box.camera.texture_to_clip);
+  known.camera = box.camera.texture_to_clip;
   if (known.march && !known.march->from_inside && !box.cuts.empty() &&
       inputs.fixed == known.march_inputs.fixed) {
     // Rays of all directions, which may show that the step was not known in every one.

@@ -63,6 +63,7 @@ struct KnownVolume {
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VerificationSchedule verification;
+  volume::Matrix4 camera{};        ///< of the last image of its ray caster, from texture to clip coordinates
   std::uint64_t next_try = 0;      ///< the frame from which on it is tried again, after a lost comparison
   std::unique_ptr<Budget> budget;  ///< where an error or a time is asked for
   VolumeCounters* counters = nullptr;

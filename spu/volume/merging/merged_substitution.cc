@@ -10,6 +10,7 @@
 #include "spu/volume/merging/merging.h"
 #include "spu/volume/saved_state.h"
 #include "spu/volume/texel_transfer.h"
+#include "spu/volume/verification/tile_comparison.h"
 #include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 

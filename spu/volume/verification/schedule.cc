@@ -15,16 +15,24 @@ std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
                                  const VerificationSchedule::Inputs& now) {
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i].effect == VerificationSchedule::Effect::followed && i < before.size()) continue;
     // What is no number differs from itself.
     if (i >= before.size() || !(before[i].value == now[i].value)) changed.push_back(i);
   }
   return changed;
 }
 
+bool any_followed(const VerificationSchedule::Inputs& before, const VerificationSchedule::Inputs& now) {
+  for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
+    if (now[i].effect == VerificationSchedule::Effect::followed && before[i].value != now[i].value) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool VerificationSchedule::is_trusted(std::size_t index) const {
-  return inputs_[index].predicted &&
+  return inputs_[index].effect != Effect::unknown &&
          std::any_of(changing_.begin(), changing_.end(), [&](const ChangingInput& input) {
            return input.index == index && input.right >= trusted_changes;
          });
@@ -36,6 +44,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
     changing_.clear();
     now_changed_.clear();
   }
+  const bool followed = any_followed(inputs_, inputs);
   const std::vector<std::size_t> changed = changes(inputs_, inputs);
   inputs_ = inputs;
   // An image that was not compared leaves its changes to the next.
@@ -46,7 +55,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
   }
   changed_ =
       std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
-  dense_ = !changed.empty();
+  dense_ = !changed.empty() || followed;
   footprint_ = footprint;
   grown_ = double(footprint) > grown_footprint * double(right_footprint_);
   if (native_ms_) {

@@ -30,12 +30,17 @@ constexpr double dense_sentinel_share = 0.10;
 
 class VerificationSchedule {
  public:
+  /// What a change of an input does.
+  enum class Effect : std::uint8_t {
+    unknown,   ///< it may decide about fragments: the next image is compared whole
+    measured,  ///< it is measured anew, as a table's colours: compared whole until that was right a few times
+    followed,  ///< it moves with what is observed in every frame, as the camera: sentinels suffice
+  };
   /// What an image depends on, input by input: the program, textures and their contents, uniforms. Where the
   /// number of inputs changes, all have changed.
   struct Input {
     float value = 0;  ///< compared; not a number: always another
-    bool predicted =
-        true;  ///< the model follows it once it is known: a table's colours, the step of a ray caster
+    Effect effect = Effect::measured;
   };
   using Inputs = std::vector<Input>;
 

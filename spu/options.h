@@ -22,6 +22,7 @@ struct Options {
   OptimizationSet disabled_optimizations;
   bool disable = false;
   bool debug_tint = false;
+  bool speed_guard = true;        ///< the viewer draws where that is faster; never with debug_tint
   double error = 0;               ///< that images may have; 0: samples are the viewer's own
   double time_ms = 0;             ///< that images may take; 0: samples are the viewer's own
   std::string save_frames;        ///< folder for PFM files; empty: none

@@ -281,7 +281,6 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
 PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
                               bool stacks) {
   const DispatchTable& gl = *context.gl;
-  if (!gl.IsEnabled(GL_BLEND)) return NotAVolume{};
   Pipeline pipeline;
   pipeline.program = GLuint(integer(gl, GL_CURRENT_PROGRAM));
   std::optional<std::string> reason;
@@ -291,6 +290,7 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
     reason = read_fixed_function_textures(context, stacks, pipeline);
   }
   if (pipeline.volume.texture == 0) return NotAVolume{};
+  if (!gl.IsEnabled(GL_BLEND)) reason = "blending is disabled: what is drawn replaces what is there";
   if (!reason) reason = read_surroundings(context, pipeline);
   // One textured quad is no sign of a volume: nothing is said of it.
   if (reason && pipeline.stack) return NotAVolume{};

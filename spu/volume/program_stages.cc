@@ -262,9 +262,19 @@ GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLui
   return 0;
 }
 
+std::string interpolation_of(const program::StageFacts& facts, const std::string& name) {
+  for (const program::Input& input : facts.inputs) {
+    if (input.name != name) continue;
+    if (input.interpolation == program::Interpolation::flat) return "flat";
+    if (input.interpolation == program::Interpolation::no_perspective) return "noperspective";
+  }
+  return {};
+}
+
 void read_fragment_text(const ProgramRecord& record, ProgramStages& stages) {
   program::StageFinding finding = program::analyse(program::Stage::fragment, record.fragment_sources);
   if (auto* facts = std::get_if<program::StageFacts>(&finding)) {
+    for (StageInput& input : stages.inputs) input.interpolation = interpolation_of(*facts, input.name);
     stages.facts = std::make_shared<const program::StageFacts>(std::move(*facts));
   } else {
     stages.facts_trouble = "the fragment shader is not understood: " + std::get<program::Failure>(finding).what;
@@ -299,17 +309,23 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
   return stages;
 }
 
-GLuint probe_program(const GlContext& context, const ProgramRecord* record,
-                     const std::vector<StageInput>& inputs, const std::string& coordinate,
-                     std::string& trouble) {
-  const DispatchTable& gl = *context.gl;
+namespace {
+
+/// The vertex stage of a probe. `smooth` stands before inputs that are interpolated smoothly: drivers want it
+/// where the fragment stage says so.
+std::string probe_source(const GlContext& context, const std::vector<StageInput>& inputs,
+                         const std::string& coordinate, const char* smooth) {
   std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
   std::string body;
   int others = 0;
   for (const StageInput& input : inputs) {
     const std::string type = glsl_type(input);
     if (!input.name.starts_with("gl_"))
-      declarations += (input.integer ? "flat out " : "out ") + type + " " + input.name + ";\n";
+      declarations += fmt::format("{} out {} {};\n",
+                                  input.integer                  ? "flat"
+                                  : !input.interpolation.empty() ? input.interpolation.c_str()
+                                                                 : smooth,
+                                  type, input.name);
     if (input.name == coordinate) {
       body += "  " + input.name +
               (input.components == 2   ? " = unit;\n"
@@ -330,19 +346,29 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
     for (const char* name : {"value", "across", "up"})
       declarations += fmt::format("uniform vec4 understudy_{}[{}];\n", name, others);
   }
-  const std::string source =
-      declarations +
-      "void main() {\n"
-      "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
-      "  vec2 unit = 0.5 * corner + 0.5;\n"
-      "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
-      body + "}\n";
-  const GLuint program = gl.CreateProgram();
-  compile(gl, GL_VERTEX_SHADER, {source}, program);
-  if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
-  if (linked(gl, program)) return program;
-  trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
-  gl.DeleteProgram(program);
+  return declarations +
+         "void main() {\n"
+         "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+         "  vec2 unit = 0.5 * corner + 0.5;\n"
+         "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
+         body + "}\n";
+}
+
+}  // namespace
+
+GLuint probe_program(const GlContext& context, const ProgramRecord* record,
+                     const std::vector<StageInput>& inputs, const std::string& coordinate,
+                     std::string& trouble) {
+  const DispatchTable& gl = *context.gl;
+  for (const char* smooth : {"", "smooth"}) {
+    const std::string source = probe_source(context, inputs, coordinate, smooth);
+    const GLuint program = gl.CreateProgram();
+    compile(gl, GL_VERTEX_SHADER, {source}, program);
+    if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
+    if (linked(gl, program)) return program;
+    trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
+    gl.DeleteProgram(program);
+  }
   return 0;
 }
 

@@ -20,7 +20,8 @@ struct StageInput {
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
-  bool written = true;  ///< false: the vertex stage declares it at most, and no colour can depend on it
+  std::string interpolation{};  ///< "flat", "noperspective"; empty: smooth
+  bool written = true;          ///< false: the vertex stage declares it at most, and no colour can depend on it
 };
 
 /// A uniform by name; array elements stand alone.

@@ -181,6 +181,23 @@ void VolumeUnit::leave(GLuint texture, const std::string& reason, bool say) {
   }
 }
 
+std::string VolumeUnit::why_left(GLuint texture) {
+  const KnownVolume& volume = known(texture);
+  if (!volume.handed_back.empty()) return volume.handed_back;
+  if (session_->ledger().frames() < volume.next_try) return volume.last_reason;
+  return volume.speed.reason(Clock::now());
+}
+
+void VolumeUnit::count_speed(GLuint texture, const FrameShares& spent) {
+  const Options& options = session_->options();
+  KnownVolume& volume = known(texture);
+  const auto native_ms = volume.verification.native_ms();
+  if (!options.speed_guard || options.debug_tint || !native_ms) return;
+  // Waiting for what was drawn before, and comparing, are not what the volume costs.
+  const double ours_ms = spent.recognition + spent.upload + spent.render + spent.presentation + spent.budget;
+  volume.speed.substituted(ours_ms, *native_ms, Clock::now());
+}
+
 bool VolumeUnit::opens_run() {
   if (begins_run()) return true;
   // Whatever else is drawn now goes on top of what waits.
@@ -201,7 +218,7 @@ bool VolumeUnit::begins_run() {
     if (conditional_render) return false;
   } else {
     texture = std::get<Pipeline>(finding).volume.texture;
-    reason = known(texture).handed_back;
+    reason = why_left(texture);
     if (conditional_render) reason = "the slices are rendered conditionally";
     if (reason.empty() && chain_.group().is_rendered_to(texture))
       reason = "the volume texture is rendered into, or another texture shares its texels";
@@ -222,8 +239,11 @@ void VolumeUnit::close_run() {
   if (!run_) return;
   std::unique_ptr<Run> run = std::move(run_);
   chain_.set_phase(resting_phase());
+  const GLuint texture = run->volume_texture();
   const bool shown = shows(run);
-  note([spent = clock_.take()](FrameRecord& frame) { frame.spent_ms += spent; });
+  const FrameShares spent = clock_.take();
+  note([&](FrameRecord& frame) { frame.spent_ms += spent; });
+  if (shown) count_speed(texture, spent);
   if (!shown) {
     settle_held();
     run->replay(*context().gl);
@@ -245,9 +265,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
     return false;
   }
   try {
-    const KnownVolume& volume = known(texture);
-    if (!volume.handed_back.empty()) throw Refusal{volume.handed_back};
-    if (session_->ledger().frames() < volume.next_try) throw Refusal{volume.last_reason};
+    if (std::string reason = why_left(texture); !reason.empty()) throw Refusal{std::move(reason)};
     substitute(closed);
     return true;
   } catch (const Refusal& refusal) {

@@ -29,6 +29,7 @@
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/render_session.h"
 #include "spu/volume/run.h"
+#include "spu/volume/speed_guard.h"
 #include "spu/volume/stack_detection.h"
 #include "spu/volume/verification/schedule.h"
 
@@ -63,6 +64,7 @@ struct KnownVolume {
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VerificationSchedule verification;
+  SpeedGuard speed;
   volume::Matrix4 camera{};        ///< of the last image of its ray caster, from texture to clip coordinates
   std::uint64_t next_try = 0;      ///< the frame from which on it is tried again, after a lost comparison
   std::unique_ptr<Budget> budget;  ///< where an error or a time is asked for
@@ -194,6 +196,9 @@ class VolumeUnit final : public Unit {
   Phase resting_phase() const;
   void settle_depth(const Substitution& s);
   void leave(GLuint texture, const std::string& reason, bool say = true);
+  /// Why the application draws the volume now, before anything is known of the draw; empty: there is no reason.
+  std::string why_left(GLuint texture);
+  void count_speed(GLuint texture, const FrameShares& spent);
   void forget_deleted_volumes();
   /// To what this context did since the last frame end, `change` is made.
   template <class Change>

@@ -142,11 +142,12 @@ std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFind
   if (!finding.loop) return "no loop of the fragment shader samples the volume";
   if (std::string reason = refusal_of_tables(facts, finding.tables, findings.roles); !reason.empty())
     return reason;
-  std::vector<Influence> unexplained;
-  for (const Influence& influence : finding.data) {
-    if (facts.sources[influence.source].kind != SourceKind::varying) unexplained.push_back(influence);
-  }
-  if (!unexplained.empty()) return sentence(texts(facts, unexplained).front());
+  // Light and gradients take several samples to colour one.
+  const auto others = std::ranges::count_if(finding.samples, [&](std::size_t fetch) {
+    return !contains(findings.roles.idle, facts.fetches[fetch].sampler);
+  });
+  if (others > 1) return "the fragment shader: a sample's colour depends on several texels of the volume";
+  if (!finding.data.empty()) return sentence(texts(facts, finding.data).front());
   return {};
 }
 

@@ -30,7 +30,7 @@ HOSTS = viewers.ROOT / "tests" / "hosts"
 SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
 LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
-        "GL server, quality 80": ["--remote", "--quality", "80"]}
+        "stage, quality 80": ["--remote", "--quality", "80"]}
 PORT = 7070
 ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run

@@ -167,10 +167,10 @@ def main():
                      + "".join(f"<td>{scene['orders'][scheme]:.2f}" if scheme in scene["orders"] else "<td>–"
                                for scheme in COLOURS) + "</tr>" for scene in study["scenes"])
     text = f"""<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Error against run time</title>
-<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; ghost layer: 2em auto; padding: 0 1em }}
+<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; margin: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child, .name {{ text-align: left }} .front {{ font-weight: bold }}
-figure {{ display: inline-block; ghost layer: 4px }} figcaption {{ font-size: 12px; text-align: center }}
+figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
 figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
 <p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the

@@ -110,7 +110,7 @@ def check(page, view):
     ActionChains(page.driver, duration=20).move_to_element_with_offset(editor, int(place[0] * 0.2), -10).click_and_hold(
         ).move_by_offset(0, -50).release().perform()
     page.rests("the edited transfer function", before)
-    assert "opacity" in page.text("knot-text")
+    assert "opacity" in page.text("control-point-text")
     images["edited"] = page.save("3-edited")
 
     before = page.shown()

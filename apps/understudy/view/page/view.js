@@ -128,11 +128,11 @@ function begin(message) {
   const before = remembered() ?? {};
   editor.showHistogram(message.histogram, message.low, message.high);
   editor.show(before.table?.knots ?? message.table);
-  element('tables').replaceChildren(...Object.entries(message.tables).map(([name, knots]) => {
+  element('tables').replaceChildren(...Object.entries(message.tables).map(([name, points]) => {
     const button = document.createElement('button');
     button.type = 'button';
     button.textContent = name;
-    button.onclick = () => { editor.show(knots); ask({table: {knots: editor.knots}}, false); };
+    button.onclick = () => { editor.show(points); ask({table: {knots: editor.points}}, false); };
     return button;
   }));
   element('shows-volume').checked = before.volume ?? message.volume;
@@ -252,21 +252,21 @@ new ResizeObserver(() => { if (volume) ask({size: sizeOf(server)}, true); }).obs
 // ---- the controls
 
 const editor = new TransferEditor(element('editor'), {
-  changed: () => ask({table: {knots: editor.knots}}, true),
-  selected: knot => {
-    element('knot').style.visibility = knot ? 'visible' : 'hidden';
-    if (!knot) return;
-    element('knot-colour').value = hexOf(knot.colour);
-    element('knot-text').textContent = `at ${valueAt(knot.at)}, opacity ${knot.opacity.toPrecision(3)}`;
+  changed: () => ask({table: {knots: editor.points}}, true),
+  selected: point => {
+    element('control-point').style.visibility = point ? 'visible' : 'hidden';
+    if (!point) return;
+    element('control-point-colour').value = hexOf(point.colour);
+    element('control-point-text').textContent = `at ${valueAt(point.at)}, opacity ${point.opacity.toPrecision(3)}`;
   },
   hovered: place => { element('hovered').textContent = place === null ? '' : valueAt(place); },
 });
 function valueAt(place) {
   return volume ? Number((volume.low + place * (volume.high - volume.low)).toPrecision(4)).toString() : '';
 }
-element('knot').style.visibility = 'hidden';
-element('knot-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
-element('knot-remove').addEventListener('click', () => editor.remove());
+element('control-point').style.visibility = 'hidden';
+element('control-point-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
+element('control-point-remove').addEventListener('click', () => editor.remove());
 
 function tellControls() {
   element('surface-value').textContent = valueAt(Number(element('surface-at').value));

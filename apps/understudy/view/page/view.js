@@ -8,7 +8,7 @@ const most_side = 4096;    // of an image, as the program has it
 const wheel_step = 1.0015; // for one unit of a wheel's way
 
 const element = id => document.getElementById(id);
-const server = element('server'), image = element('image'), boxes = element('boxes');
+const viewport = element('viewport'), image = element('image'), boxes = element('boxes');
 
 let volume = null;         // what there is to be seen
 let asked = {};            // since the last request
@@ -147,7 +147,7 @@ function begin(message) {
   element('step').value = before.step ?? message.step;
   element('lossless').checked = before.lossless ?? false;
   tellControls();
-  ask({...before, size: sizeOf(server)}, false);
+  ask({...before, size: sizeOf(viewport)}, false);
 }
 
 function banner(text, part) {
@@ -188,7 +188,7 @@ function showRanks() {
 }
 
 function overlay() {
-  const {width, height} = server.getBoundingClientRect();
+  const {width, height} = viewport.getBoundingClientRect();
   boxes.width = width * window.devicePixelRatio;
   boxes.height = height * window.devicePixelRatio;
   drawBoxes(boxes, element('shows-boxes').checked ? shown?.matrix : null, ranks);
@@ -204,7 +204,7 @@ function sizeOf(of) {
 
 // In halves of the shorter side, right and up from the middle.
 function pointAt(x, y) {
-  const {left, top, width, height} = server.getBoundingClientRect(), half = Math.min(width, height) / 2;
+  const {left, top, width, height} = viewport.getBoundingClientRect(), half = Math.min(width, height) / 2;
   return [(x - left - width / 2) / half, (height / 2 - (y - top)) / half];
 }
 
@@ -247,7 +247,7 @@ image.addEventListener('keydown', event => {
   else return;
   event.preventDefault();
 });
-new ResizeObserver(() => { if (volume) ask({size: sizeOf(server)}, true); }).observe(server);
+new ResizeObserver(() => { if (volume) ask({size: sizeOf(viewport)}, true); }).observe(viewport);
 
 // ---- the controls
 

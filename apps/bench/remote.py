@@ -83,9 +83,10 @@ class Client:
     def travelled(self):
         """Bytes up and down, and round trips, of the last run."""
         report = viewers.read_report(self.folder / "report.json")
-        link, remote = report.get("link"), report.get("server_connection")
-        return {"up": link["up"]["payload_bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
-                "round_trips": remote["round_trips"] if remote else link["up"]["messages"] if link else 0,
+        connection, remote = report.get("connection"), report.get("server_connection")
+        return {"up": connection["up"]["payload_bytes"] if connection else 0,
+                "down": connection["down"]["bytes"] if connection else 0,
+                "round_trips": remote["round_trips"] if remote else connection["up"]["messages"] if connection else 0,
                 "frames": remote["frames"] if remote else report["frames"]}
 
     def viewer(self, options, frames, orbit):

@@ -62,7 +62,7 @@ def checked(folder):
 
 
 def real_table(images):
-    """By number of ranks: direct-send, written home; in brackets the ratios of all exchanges and both ways home."""
+    """By number of ranks: direct-send, written directly; in brackets the ratios of all exchanges and both ways of gathering."""
     lines = ["| ranks | messages | bytes | render ms: predicted | measured | ratio | exchange ms: predicted | measured | ratio "
              "| frame ms: predicted | measured | ratio |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for ranks in range(1, REAL_RANKS + 1):

@@ -13,7 +13,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST_F(Render, APictureAndAReportOfAFile) {
+TEST_F(Render, AnImageAndAReportOfAFile) {
   const std::string file = ball(40);
   const Result result = render(file + " --transfer-function vessels --size 120x90 --frames 3 --report " +
                                folder_.file("r.json") + " --save-float " + folder_.file("f.pfm"));

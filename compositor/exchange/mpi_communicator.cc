@@ -171,7 +171,7 @@ MpiCommunicator::~MpiCommunicator() {
 }
 
 std::span<std::byte> MpiCommunicator::shared_segment(std::size_t bytes) {
-  return segments_ ? segments_->room(bytes) : std::span<std::byte>();
+  return segments_ ? segments_->segment(bytes) : std::span<std::byte>();
 }
 
 void MpiCommunicator::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {

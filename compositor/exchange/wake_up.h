@@ -23,8 +23,8 @@ class WakeUp {
   WakeUp(const WakeUp&) = delete;
   WakeUp& operator=(const WakeUp&) = delete;
 
-  /// How often this rank was notified. To be asked before one looks for what one waits for: what comes after that
-  /// look is not slept through.
+  /// How often this rank was notified. To be asked before one looks for what one waits for: what comes after
+  /// that look is not slept through.
   std::uint32_t notified() const;
   /// Returns when this rank was notified once more than `notified`, or after `most`.
   void sleep(std::uint32_t notified, std::chrono::microseconds most);

@@ -55,7 +55,7 @@ namespace {
 // Far below what anybody asks for, far above what costs time without end.
 constexpr double integral_tolerance = 1e-7;
 
-// What the volume room finds wrong with its arguments is a refusal here, and so is a machine that is too small.
+// What the module `volume` finds wrong with its arguments is a refusal here, and so is a machine that is too small.
 template <class Call>
 auto refusing(Call call) {
   try {

@@ -60,7 +60,7 @@ class Group {
     return {segments_[std::size_t(rank)].emplace_back(std::make_unique_for_overwrite<std::byte[]>(bytes)).get(),
             bytes};
   }
-  bool has_room(Rank rank, std::span<const std::byte> bytes) const {
+  bool has_segment(Rank rank, std::span<const std::byte> bytes) const {
     return std::ranges::any_of(segments_[std::size_t(rank)],
                                [&](const auto& segment) { return segment.get() == bytes.data(); });
   }
@@ -136,7 +136,7 @@ class ThreadCommunicator : public Communicator {
 
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) {
-      if (message.may_be_seen && group_.has_room(rank_, message.bytes))
+      if (message.may_be_seen && group_.has_segment(rank_, message.bytes))
         group_.leave(rank_, message.to, message.bytes);
       else
         group_.send_control(rank_, message.to, message.bytes);

@@ -233,7 +233,7 @@ void Node::forget_client(std::uint64_t client) {
   pre_integration_tables_.erase(client);
 }
 
-// Room for that much of a payload. False, on all ranks, when one of them has none.
+// Memory for that much of a payload. False, on all ranks, when one of them has none.
 bool Node::make_room(std::uint64_t bytes) {
   // All ranks have seen the same orders, so they agree on when there must be more room; only then they must
   // also agree on whether there is.

@@ -1,4 +1,4 @@
-// The bundled viewer's ways of drawing: substituted where the nodes can play the part, and otherwise the
+// The bundled viewer's ways of drawing: substituted where the nodes can render the volume, and otherwise the
 // viewer's own image, bit for bit, with the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

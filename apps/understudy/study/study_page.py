@@ -62,7 +62,7 @@ def work_precision(scene):
                 axes.annotate(f"{p['step']:g}", (p["time_ms"], p["rms_colour"]), fontsize=7, textcoords="offset points",
                               xytext=(4, 4), color=colour)
             axes.loglog([p["time_ms"] for p in early], [p["rms_colour"] for p in early], "x", color=colour, markersize=5,
-                        label=f"{scheme}, rays end early")
+                        label=f"{scheme}, early ray termination")
         front = sorted((p for p in timed(scene) if p["front"]), key=lambda p: p["time_ms"])
         axes.loglog([p["time_ms"] for p in front], [p["rms_colour"] for p in front], "s", color="black", fillstyle="none",
                     markersize=10, label="Pareto front")

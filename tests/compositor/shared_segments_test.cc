@@ -39,7 +39,7 @@ TEST(SharedSegments, WhatOneRankWritesAnotherReads) {
   }
 }
 
-TEST(SharedSegments, OnlyOwnModulesHaveAPlace) {
+TEST(SharedSegments, OnlyOwnSegmentsHaveAPlace) {
   const std::vector<FileDescriptor> memories = memories_of(2);
   SharedSegments zero(memories, 0), one(memories, 1);
   const std::vector<std::byte> elsewhere(100);

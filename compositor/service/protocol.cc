@@ -524,7 +524,7 @@ std::vector<std::byte> encode_size(std::uint64_t bytes) {
 }
 
 std::uint64_t decode_size(std::span<const std::byte> payload) {
-  Reader in("image memory", payload);
+  Reader in("image buffer", payload);
   const auto size = in.integer("bytes", 1, std::int64_t(limits::max_window_pixels * 4 * sizeof(float)));
   in.end();
   return std::uint64_t(size);

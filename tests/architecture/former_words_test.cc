@@ -74,7 +74,7 @@ constexpr FormerWord former_words[] = {
     {"omission", "[Oo]mission", "optimization"},
     {"empty", "[Ee]mpty-blocks|has_empty_blocks|\\bempty blocks\\b", "empty bricks"},
     {"lamp", "\\b[Ll]amps?\\b|\\b[Ll]amp_|_lamp\\b", "light"},
-    {"knot", "\\b[Kk]nots?\\b(?![\"\\\\:])|[Kk]nots?_|_knots?\\b|Knot[A-Z]|Knots", "control points",
+    {"knot", "\\b[Kk]nots?\\b(?![\"'\\\\:])|[Kk]nots?_|_knots?\\b|Knot[A-Z]|Knots", "control points",
      " apps/understudy/view/page/view.js ", "the key in files of transfer functions"},
     {"pair", "[Pp]air_?[Tt]able|[Pp]air_?[Ll]ookup|[Tt]ables? of pairs|max_pair_edge", "pre-integration table"},
     {"slab", "\\b[Ss]labs?\\b|slab_|_slabs?\\b|Slabs?[A-Z]", "segment, slice range",
@@ -99,7 +99,7 @@ constexpr FormerWord former_words[] = {
     {"belongings", "[Bb]elongings", "group resources"},
     {"way", "application's way\\b", "native rendering"},
     {"given", "\\b[Gg]iven[_ ]back\\b", "handed back"},
-    {"memor", "[Ii]mage_?[Mm]emor(y|ies)\\b", "image buffer"},
+    {"memor", "[Ii]mage[ _]?[Mm]emor(y|ies)\\b", "image buffer"},
     {"nobody", "[Nn]obody would see", "Work that cannot change the image is skipped."},
     {"play", "play the part", "plain sentences"},
 };

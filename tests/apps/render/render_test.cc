@@ -123,7 +123,7 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
   EXPECT_THAT(trouble(file + " --transfer-function nothing"), HasSubstr("grey, engine, ct"));
   EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
-  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'control points'"));
+  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'knots'"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("too few"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 1, "colour": [0,0,0], "opacity": 0},

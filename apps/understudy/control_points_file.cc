@@ -62,7 +62,8 @@ volume::TransferControlPoints read_control_points(const std::string& file_or_nam
   try {
     if (!std::filesystem::is_regular_file(file_or_name)) throw std::runtime_error("is no file; name one");
     if (std::filesystem::file_size(file_or_name) > max_file_bytes)
-      throw std::runtime_error(fmt::format("has more than {} bytes; give fewer control points", max_file_bytes));
+      throw std::runtime_error(
+          fmt::format("has more than {} bytes; give fewer control points", max_file_bytes));
     std::ifstream file(file_or_name);
     return control_points_in(Json::parse(file));
   } catch (const Json::exception& error) {

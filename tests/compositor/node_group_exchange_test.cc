@@ -50,7 +50,7 @@ TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
   EXPECT_GT(counts.messages, 0U);
 }
 
-TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrGathered) {
+TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrByTheRoot) {
   const Texture texture = some_texture();
   const volume::RenderRequest request = some_request(texture);
   const auto rendered_by = [&](const ExchangeSettings& settings, std::uint64_t& bytes) {

@@ -1,4 +1,4 @@
-// LD_AUDIT's entry library: the loader asks this library where to look for each library it is about to load.
+// The auditor, for LD_AUDIT: the loader asks this library where to look for each library it is about to load.
 //
 // It lives in a link namespace with a C library of its own, so it is kept to a few lines of C.
 #include <dlfcn.h>

@@ -29,7 +29,7 @@ EGLBoolean make_current_egl(EGLDisplay display, EGLSurface draw, EGLSurface read
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLSurface, EGLSurface, EGLContext)> real{
       egl, "eglMakeCurrent"};
   const auto real_call = [&] { return real(display, draw, read, context); };
-  if (!on_stage()) return real_call();
+  if (!concerns_core()) return real_call();
   WantedContext wanted{egl, number(display), number(context), number(draw), number(read)};
   if (context != EGL_NO_CONTEXT && !is_noted({egl, wanted.display, wanted.handle})) {
     // A wrong handle makes this query fail and leave an error behind; the real call then leaves the same one.
@@ -51,7 +51,7 @@ UNDERSTUDY_ENTRY EGLContext eglCreateContext(EGLDisplay display, EGLConfig confi
   static constinit RealFunction<EGLContext (*)(EGLDisplay, EGLConfig, EGLContext, const EGLint*)> real{
       egl, "eglCreateContext"};
   static constinit RealFunction<EGLenum (*)()> query_api{egl, "eglQueryAPI"};
-  const bool told = on_stage();
+  const bool told = concerns_core();
   const EGLenum api = told ? query_api() : EGL_NONE;
   EGLContext context = real(display, config, share, attributes);
   if (told && context != EGL_NO_CONTEXT && api != EGL_OPENVG_API) {
@@ -63,7 +63,7 @@ UNDERSTUDY_ENTRY EGLContext eglCreateContext(EGLDisplay display, EGLConfig confi
 
 UNDERSTUDY_ENTRY EGLBoolean eglDestroyContext(EGLDisplay display, EGLContext context) {
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay, EGLContext)> real{egl, "eglDestroyContext"};
-  const bool told = on_stage();
+  const bool told = concerns_core();
   const ContextKey key{egl, number(display), number(context)};
   if (told) before_destroy(key);
   const EGLBoolean destroyed = real(display, context);
@@ -83,7 +83,7 @@ UNDERSTUDY_ENTRY EGLBoolean eglReleaseThread() {
 
 UNDERSTUDY_ENTRY EGLBoolean eglTerminate(EGLDisplay display) {
   static constinit RealFunction<EGLBoolean (*)(EGLDisplay)> real{egl, "eglTerminate"};
-  const bool told = on_stage();
+  const bool told = concerns_core();
   const CurrentContext& current = entry_thread.current;
   if (told && current.system == egl && current.display == number(display)) before_frame_end(FrameEnd::destroy);
   const EGLBoolean terminated = real(display);

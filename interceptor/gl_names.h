@@ -8,7 +8,7 @@
 
 namespace understudy::interceptor {
 
-/// The stub libraries in the folder `entry library`, by SONAME.
+/// The stub libraries in the folder `entry`, by SONAME.
 constexpr const char* stub_names[] = {"libGL.so.1", "libGLX.so.0", "libOpenGL.so.0", "libEGL.so.1",
                                       "libOSMesa.so.8"};
 constexpr int stub_count = 5;

@@ -1,5 +1,5 @@
 // What glvnd's libGL.so.1 wants of libGLX.so.0 beside GLX itself. An application that opens the real libGL.so.1
-// by its absolute path, past the folder entry library, gets our libGLX.so.0 as that library's dependency: it
+// by its absolute path, past the folder, gets our libGLX.so.0 as that library's dependency: it
 // must find these two. The order of the functions is glvnd's (src/GLX/libglxgl.h there); a test compares it
 // with the installed library.
 #include <GL/glx.h>

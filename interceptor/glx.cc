@@ -19,7 +19,7 @@ std::uintptr_t number(const void* handle) {
 constexpr WindowSystem glx = WindowSystem::glx;
 
 GLXContext created(Display* display, GLXContext context, GLXContext share, bool desktop_gl = true) {
-  if (context != nullptr && on_stage()) {
+  if (context != nullptr && concerns_core()) {
     note_created({glx, number(display), number(context)}, number(share), desktop_gl);
     report_gone();
   }
@@ -54,7 +54,7 @@ Bool make_current_read(Display* display, GLXDrawable draw, GLXDrawable read, GLX
 }
 
 void destroy(Display* display, GLXContext context, RealFunction<void (*)(Display*, GLXContext)>& real) {
-  const bool told = on_stage();
+  const bool told = concerns_core();
   const ContextKey key{glx, number(display), number(context)};
   if (told) before_destroy(key);
   real(display, context);

@@ -11,7 +11,7 @@
 namespace understudy::interceptor {
 
 /// True when the call came from the application and a core may want to know of it.
-inline bool on_stage() {
+inline bool concerns_core() {
   return entry_thread.level == 0 && !core_is_out();
 }
 
@@ -35,7 +35,7 @@ void after_make_current(const WantedContext& wanted, bool succeeded);
 
 template <class RealCall>
 auto make_current(const WantedContext& wanted, RealCall real_call) {
-  if (!on_stage()) {
+  if (!concerns_core()) {
     const auto result = real_call();
     if (result != 0 && entry_thread.level == 0) follow_driver(wanted);
     return result;

@@ -46,7 +46,7 @@ std::uintptr_t shape(GLenum type, GLsizei width, GLsizei height) {
 }
 
 OSMesaContext created(OSMesaContext context, OSMesaContext share) {
-  if (context != nullptr && on_stage()) {
+  if (context != nullptr && concerns_core()) {
     note_created({osmesa, 0, number(context)}, number(share), /*desktop_gl=*/true);
     report_gone();
   }
@@ -56,7 +56,7 @@ OSMesaContext created(OSMesaContext context, OSMesaContext share) {
 /// The application is about to get the address of a buffer: what is pending must be in it, depth included.
 /// Reading no pixel leaves everything as it is, and counts as looking at them.
 void settle_for_reading() {
-  if (!on_stage() || entry_thread.current.system != osmesa || entry_thread.current.context == 0) return;
+  if (!concerns_core() || entry_thread.current.system != osmesa || entry_thread.current.context == 0) return;
   before_frame_end(FrameEnd::finish);
   char nothing;
   const auto read = entry_thread.state.table->ReadPixels;
@@ -97,7 +97,7 @@ UNDERSTUDY_ENTRY OSMesaContext OSMesaCreateContextAttribs(const int* attributes,
 
 UNDERSTUDY_ENTRY void OSMesaDestroyContext(OSMesaContext context) {
   static constinit RealFunction<void (*)(OSMesaContext)> real{osmesa, "OSMesaDestroyContext"};
-  const bool told = on_stage();
+  const bool told = concerns_core();
   const ContextKey key{osmesa, 0, number(context)};
   if (told) before_destroy(key);
   real(context);
@@ -113,7 +113,7 @@ UNDERSTUDY_ENTRY GLboolean OSMesaMakeCurrent(OSMesaContext context, void* buffer
   const std::uintptr_t drawable = release ? 0 : number(buffer);
   const WantedContext wanted{osmesa, 0, release ? 0 : number(context), drawable,
                              release ? 0 : shape(type, width, height)};
-  if (on_stage() && entry_thread.current.system == osmesa && entry_thread.current.context != 0) {
+  if (concerns_core() && entry_thread.current.system == osmesa && entry_thread.current.context != 0) {
     before_frame_end(FrameEnd::finish);
     frame_ended(0);
   }

@@ -288,7 +288,7 @@ void claim_names() {
   if (claimed.test_and_set()) return;
   for (int stub = 0; stub < stub_count; ++stub) {
     if (stub == osmesa_stub || stubs.path[stub][0] == '\0') continue;
-    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs an entry library, no more
+    real_dlopen(stubs.path[stub], RTLD_LAZY | RTLD_LOCAL);  // a missing stub costs one name, no more
   }
 }
 

@@ -6,7 +6,7 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watching, Phase::deferring,
-                                                       Phase::owing, Phase::compiling};
+                                                       Phase::depth_deferred, Phase::compiling};
 
 }  // namespace
 

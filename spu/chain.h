@@ -22,12 +22,12 @@ namespace understudy::spu {
 
 /// What the stream is doing, as far as a unit may want other slots for it.
 enum class Phase {
-  plain,      ///< no volume texture exists: nothing is watched but texture uploads, lists and shaders
-  watching,   ///< a volume texture exists: draws are looked at
-  deferring,  ///< a run of slices is open: every call but more of the same closes it first
-  owing,      ///< watching, and the depth that slices would have written is not there: see
-              ///< volume/deferred_depth_write.h
-  compiling,  ///< between glNewList and glEndList: calls are recorded by the driver, not executed
+  plain,           ///< no volume texture exists: nothing is watched but texture uploads, lists and shaders
+  watching,        ///< a volume texture exists: draws are looked at
+  deferring,       ///< a run of slices is open: every call but more of the same closes it first
+  depth_deferred,  ///< watching, and the depth that slices would have written is not there: see
+                   ///< volume/deferred_depth_write.h
+  compiling,       ///< between glNewList and glEndList: calls are recorded by the driver, not executed
 };
 constexpr int phase_count = 5;
 

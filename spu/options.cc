@@ -99,39 +99,37 @@ struct Row {
 
 constexpr std::array rows{
     Row{{"-n,--nodes", "UNDERSTUDY_NODES", "N", "0",
-         "render on N MPI ranks of this machine; 0: inside the viewer, on threads"},
+         "render on N MPI ranks of this machine; 0 renders inside the viewer, on threads"},
         set_number<&Options::nodes, 0, max_nodes>},
     Row{{"--connect", "UNDERSTUDY_CONNECT", "WHERE", "",
          "render on the node group of `understudy serve`: its socket, or HOST:PORT on another machine"},
         set_text<&Options::connect>},
     Row{{"--exchange", "UNDERSTUDY_EXCHANGE", "NAME", "auto",
-         "how the nodes' partial images become one: serial, tree, direct-send, binary-swap, radix-k, or "
-         "auto, "
-         "the cheapest for each image by what messages and bytes cost here"},
+         "how the images of the nodes are composited: serial, tree, direct-send, binary-swap, radix-k, or "
+         "auto: the cheapest for each image by the measured cost of messages and bytes"},
         set_name<&Options::exchange, compositor::set_algorithm>},
     Row{{"--pixels", "UNDERSTUDY_PIXELS", "NAME", "float",
-         "what travels between nodes: float (exact), half (rounds to 1/2048 of a value), byte (to 1/510)"},
+         "how nodes exchange pixels: float (exact), half (rounded to 1/2048 of a value) or byte (to 1/510)"},
         set_name<&Options::pixels, compositor::set_layout>},
     Row{{"--gather", "UNDERSTUDY_GATHER", "WAY", "direct",
-         "how the parts of an image come to the viewer: direct (every node of this machine writes its part "
-         "into "
+         "how the parts of an image reach the viewer: direct (each node of this machine writes its part into "
          "the viewer's memory) or root (one node collects them)"},
         set_name<&Options::gather, compositor::set_gather>},
     Row{{"--overlap", "UNDERSTUDY_OVERLAP", "WHEN", "auto",
-         "composite parts of an image while others are drawn: on, off, or auto, where that was faster"},
+         "composite parts of an image while others are rendered: on, off, or auto: where it was faster"},
         set_name<&Options::overlap, compositor::set_overlap>},
     Row{{"--tiles", "UNDERSTUDY_TILES", "on|off", "off",
-         "with --remote, draw what is no volume with as many processes as there are nodes, each a tile of the "
-         "window"},
+         "with --remote, draw everything but volumes with as many processes as there are nodes, each one tile "
+         "of the window"},
         set_switch<&Options::tiles>},
     Row{{"--frame-latency", "UNDERSTUDY_FRAME_LATENCY", "FRAMES", "0",
-         "1: while the camera moves, show the image of the frame before, so that nodes work while the viewer "
-         "does; once it rests, viewers that have a window are asked to draw again"},
+         "1 shows a moving camera the image of the frame before, so that nodes and viewer work at the same "
+         "time; once the camera rests, the viewer's window is asked to draw again"},
         set_number<&Options::frame_latency, 0, 1>},
     Row{{"--verify", "UNDERSTUDY_VERIFY", "[K]", "0",
-         "compare every K-th frame whole with the viewer's own drawing (without K: every frame; 0: when "
+         "compare every K-th frame whole with the viewer's own drawing; without K every frame, 0 when "
          "something "
-         "changed that could make it wrong; -1: never compare anything)"},
+         "changed that could make it wrong, -1 never"},
         set_number<&Options::verify, -1, 1'000'000>},
     Row{{"", "UNDERSTUDY_VERIFY_PSNR", "DB", "0",
          "a compared image below this PSNR is refused, beside the bound that every tile must keep"},
@@ -142,21 +140,21 @@ constexpr std::array rows{
     Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
         set_text<&Options::report>},
     Row{{"--explain", "UNDERSTUDY_EXPLAIN", "", "off",
-         "say for every volume what was recognised, and why draws were left to the viewer; for every frame and "
-         "in the end what was left out of the work, and what was not, and why"},
+         "print what was recognised of every volume, why draws were not substituted, and what was skipped or "
+         "not, and why"},
         set_switch<&Options::explain>},
     Row{{"--disable-optimization", "UNDERSTUDY_DISABLE_OPTIMIZATION", "LIST", "none",
-         "do what nobody would see nevertheless, to compare: all, or some of empty-bricks, hidden-samples, "
-         "dominated-samples, footprints, unchanged-images, unchanged-texels, known-colours, absent-depth, "
-         "unseen-depth, with commas between"},
+         "do work although it cannot change the image, to compare: all, or a list with commas of empty-bricks, "
+         "hidden-samples, dominated-samples, footprints, unchanged-images, unchanged-texels, known-colours, "
+         "absent-depth, unseen-depth"},
         set_disabled_optimizations},
     Row{{"--error", "UNDERSTUDY_ERROR", "E", "none",
-         "samples lie anywhere, as few as keep every channel of every pixel within E of the integral: a number "
-         "like 0.002, or a fraction like 0.5/255, above 0 and at most 1"},
+         "choose samples freely, as few as keep every channel of every pixel within E of the integral: a "
+         "number like 0.002 or a fraction like 0.5/255, above 0 and at most 1"},
         set_error},
     Row{{"--time", "UNDERSTUDY_TIME", "T", "none",
-         "samples lie anywhere, as many as can be cast in T an image: 30ms, or 0.03s, above 0 and at most a "
-         "minute; with --error, that goes first"},
+         "choose samples freely, as many as can be cast in T per image: 30ms or 0.03s, above 0 and at most a "
+         "minute; --error takes precedence"},
         set_time},
     Row{{"--save-frames", "UNDERSTUDY_SAVE_FRAMES", "DIR", "",
          "save the composited float images: frame_0001.pfm and frame_0001_alpha.pfm, …"},
@@ -170,9 +168,8 @@ constexpr std::array rows{
          "lists them"},
         set_text<&Options::chain>},
     Row{{"--server-opengl", "UNDERSTUDY_SERVER_OPENGL", "NAME", "auto",
-         "what makes the calls of --remote and of traces: egl (without a window system), osmesa (on the CPU, "
-         "one "
-         "colour buffer), or auto, OSMesa where EGL makes no context"},
+         "the OpenGL library of --remote and of traces: egl (without a window system), osmesa (on the CPU, one "
+         "colour buffer), or auto: OSMesa where EGL makes no context"},
         set_server_opengl},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},

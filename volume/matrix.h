@@ -1,4 +1,4 @@
-// The little double-precision algebra that the rooms share: row-major 4x4 matrices on column vectors, and
+// The little double-precision algebra that the modules share: row-major 4x4 matrices on column vectors, and
 // vectors of three. Planes are kept as request.h keeps them (HalfSpace: normal . p + offset >= 0).
 #pragma once
 

@@ -88,7 +88,7 @@ void point_size(benchmark::State& state) {
   for (auto _ : state) glPointSize(size = 3 - size);  // NOLINT(clang-analyzer-deadcode.DeadStores)
 }
 
-// Calls that the track unit control messages, with next to no work for the driver.
+// Calls that the track unit takes notice of, with next to no work for the driver.
 
 void empty_upload(benchmark::State& state) {
   glBindTexture(GL_TEXTURE_2D, 1);

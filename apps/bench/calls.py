@@ -1,4 +1,4 @@
-"""What a call costs more under Understudy: bare, through the door alone, with track, with units that
+"""What a call costs more under Understudy: bare, through the entry library alone, with track, with units that
 pass, and with track answering queries itself.
 
 The program understudy-bench-calls measures single calls and a frame of 5,000 calls with Google Benchmark; glxgears

@@ -106,7 +106,7 @@ struct Way {
 };
 
 const char* name_of(Gather gather) {
-  return gather == Gather::direct ? "direct" : "root";
+  return gather == Gather::direct ? "direct" : "gathered";
 }
 
 struct WayMeasured {
@@ -214,7 +214,7 @@ void run(const Settings& settings) {
         fmt::print("{}\n", nlohmann::ordered_json{{"scene", scene.name},
                                                   {"ranks", ranks},
                                                   {"exchange", compositor::name_of(way.algorithm)},
-                                                  {"home", name_of(way.gather)},
+                                                  {"gather", name_of(way.gather)},
                                                   {"samples", parts.samples()},
                                                   {"samples_counted", real.counts.samples_taken},
                                                   {"messages", counted.messages},

@@ -30,7 +30,7 @@ HOSTS = viewers.ROOT / "tests" / "hosts"
 SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
 LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
-        "GL server, quality 80": ["--remote", "--quality", "80"]}
+        "stage, quality 80": ["--remote", "--quality", "80"]}
 PORT = 7070
 ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run
@@ -83,9 +83,10 @@ class Client:
     def travelled(self):
         """Bytes up and down, and round trips, of the last run."""
         report = viewers.read_report(self.folder / "report.json")
-        link, remote = report.get("link"), report.get("server_connection")
-        return {"up": link["up"]["payload_bytes"] if link else 0, "down": link["down"]["bytes"] if link else 0,
-                "round_trips": remote["round_trips"] if remote else link["up"]["messages"] if link else 0,
+        connection, remote = report.get("connection"), report.get("server_connection")
+        return {"up": connection["up"]["payload_bytes"] if connection else 0,
+                "down": connection["down"]["bytes"] if connection else 0,
+                "round_trips": remote["round_trips"] if remote else connection["up"]["messages"] if connection else 0,
                 "frames": remote["frames"] if remote else report["frames"]}
 
     def viewer(self, options, frames, orbit):

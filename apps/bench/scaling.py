@@ -53,7 +53,7 @@ def checked(folder):
     print("scaling: " + ", ".join(f"{key} {value:.3g}" for key, value in costs.items()))
     (folder / "real.json").write_text(json.dumps({"costs": costs, "images": images}), encoding="utf-8")
     (folder / "real.md").write_text(real_table(images), encoding="utf-8")
-    return [{"name": f"scaling/real/{image['scene']}/{image['exchange']}/{image['home']}/{image['ranks']} ranks",
+    return [{"name": f"scaling/real/{image['scene']}/{image['exchange']}/{image['gather']}/{image['ranks']} ranks",
              "value": image["frame_ms_measured"], "unit": "ms", "predicted_ms": image["frame_ms"],
              "measured_to_predicted": image["frame_ms_measured"] / image["frame_ms"],
              **{key: image[key] for key in ("render_ms", "render_ms_measured", "exchange_ms", "exchange_ms_measured",
@@ -62,12 +62,12 @@ def checked(folder):
 
 
 def real_table(images):
-    """By number of ranks: direct-send, written home; in brackets the ratios of all exchanges and both ways home."""
+    """By number of ranks: direct-send, written directly; in brackets the ratios of all exchanges and both ways of gathering."""
     lines = ["| ranks | messages | bytes | render ms: predicted | measured | ratio | exchange ms: predicted | measured | ratio "
              "| frame ms: predicted | measured | ratio |", "|---|---|---|---|---|---|---|---|---|---|---|---|"]
     for ranks in range(1, REAL_RANKS + 1):
         chosen = [image for image in images if image["ranks"] == ranks and image["scene"] == "lobes"]
-        usual = next(image for image in chosen if (image["exchange"], image["home"]) == ("direct-send", "direct"))
+        usual = next(image for image in chosen if (image["exchange"], image["gather"]) == ("direct-send", "direct"))
         cells = [str(ranks), str(usual["messages"]), str(usual["bytes"])]
         for key in ("render_ms", "exchange_ms", "frame_ms"):
             predicted, measured = usual[key], usual[f"{key}_measured"]

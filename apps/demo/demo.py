@@ -123,7 +123,7 @@ def main():
     (FOLDER / "report.json").write_text(json.dumps(summary(scenes), indent=1), encoding="utf-8")
     (FOLDER / "index.html").write_text(page.html(scenes, table(scenes)), encoding="utf-8")
     print("\n" + table(scenes))
-    print(f"\npictures and difference maps: {FOLDER / 'index.html'}")
+    print(f"\nimages and difference maps: {FOLDER / 'index.html'}")
     untouched = [f"{scene.name}, {shot.way}" for scene in scenes for shot in scene.shots[1:] if not shot.substituted()]
     if untouched:
         print("understudy substituted nothing in: " + "; ".join(untouched), file=sys.stderr)

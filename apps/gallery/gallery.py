@@ -140,7 +140,7 @@ def main():
         shots += [take(volume, file, kind) for kind in KINDS]
     (FOLDER / "table.md").write_text(table(shots), encoding="utf-8")
     (FOLDER / "index.html").write_text(html(shots), encoding="utf-8")
-    print(f"\npictures: {FOLDER / 'index.html'}\nfigures:  {FOLDER / 'table.md'}")
+    print(f"\nimages:   {FOLDER / 'index.html'}\nfigures:  {FOLDER / 'table.md'}")
 
 
 if __name__ == "__main__":

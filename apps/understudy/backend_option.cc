@@ -38,10 +38,9 @@ std::string to_bytes(std::string& text) {
 
 void add_backend_option(CLI::App& subcommand, std::string& backend) {
   subcommand
-      .add_option(
-          "--backend", backend,
-          "who casts the nodes' rays: the CPU, OpenGL on EGL or OSMesa, or the faster one of both, measured; "
-          "without nodes it is always the CPU, and so it is unless asked")
+      .add_option("--backend", backend,
+                  "what casts the rays of the nodes: cpu, OpenGL on EGL or OSMesa, or auto: the faster one, "
+                  "measured. Rendering inside the viewer's process (no -n) always uses the CPU")
       ->check(CLI::IsMember({"cpu", "gl", "gl:egl", "gl:osmesa", "auto"}).description(""))
       ->type_name("cpu|gl|gl:egl|gl:osmesa|auto");
 }

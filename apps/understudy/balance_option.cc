@@ -4,11 +4,9 @@ namespace understudy::launcher {
 
 void add_balance_option(CLI::App& subcommand, std::string& balance) {
   subcommand
-      .add_option(
-          "--balance", balance,
-          "whether nodes that take longer give blocks of their volumes to others: a slice at a time, as "
-          "Mueller "
-          "et al. did in 2006, or as many as are predicted to even the nodes' times out; off, unless asked")
+      .add_option("--balance", balance,
+                  "whether slow nodes give blocks of their volumes to others: off (default), muller (one slice "
+                  "at a time, Mueller et al. 2006) or predicted (as many as should even out the times)")
       ->check(CLI::IsMember({"off", "muller", "predicted"}).description(""))
       ->type_name("off|muller|predicted");
 }

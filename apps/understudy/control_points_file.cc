@@ -44,7 +44,7 @@ volume::TransferControlPoints control_points_in(const nlohmann::json& json) {
     throw std::runtime_error(fmt::format("'positions' is '{}', neither range nor values", positions));
   control_points.of_values = positions == "values";
   const auto list = json.find("knots");
-  if (list == json.end() || !list->is_array()) throw std::runtime_error("there is no list 'control points'");
+  if (list == json.end() || !list->is_array()) throw std::runtime_error("there is no list 'knots'");
   for (const Json& entry : *list) {
     try {
       control_points.control_points.push_back(control_point_in(entry));
@@ -62,12 +62,13 @@ volume::TransferControlPoints read_control_points(const std::string& file_or_nam
   try {
     if (!std::filesystem::is_regular_file(file_or_name)) throw std::runtime_error("is no file; name one");
     if (std::filesystem::file_size(file_or_name) > max_file_bytes)
-      throw std::runtime_error(fmt::format("has more than {} bytes; give fewer knots", max_file_bytes));
+      throw std::runtime_error(
+          fmt::format("has more than {} bytes; give fewer control points", max_file_bytes));
     std::ifstream file(file_or_name);
     return control_points_in(Json::parse(file));
   } catch (const Json::exception& error) {
     throw std::runtime_error(
-        fmt::format("{}: not a transfer function: {}; as in {{\"control points\": [{{\"at\": 0, \"colour\": "
+        fmt::format("{}: not a transfer function: {}; as in {{\"knots\": [{{\"at\": 0, \"colour\": "
                     "[0, 0, 0], \"opacity\": 0}}, …]}}",
                     file_or_name, error.what()));
   } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-// The environments of child processes: the viewer's has an injection method in it, the nodes' has none.
+// The environments of child processes: the viewer's loads the entry library, the nodes' does not.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ InjectionSettings settings_of(InjectionMethod injection, const Installation& ins
 /// Puts `entry` in front of a list with `:` between entries.
 void put_in_front(Environment& environment, const std::string& variable, const std::string& entry);
 
-/// What `understudy-node` and mpirun run in: no injection method, and none of the options that are meant for
+/// What `understudy-node` and mpirun run in: no injection, and none of the options that are meant for
 /// the viewer.
 Environment node_environment(Environment environment, const Installation& installation);
 

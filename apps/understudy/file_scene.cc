@@ -87,7 +87,8 @@ void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
   subcommand.add_option("--size", arguments.size, "of the image")->type_name("WxH")->capture_default_str();
   subcommand.add_option("--step", arguments.step, "between samples, in voxels")->capture_default_str();
   subcommand
-      .add_option("--termination", arguments.termination, "a ray ends where less than this shows through")
+      .add_option("--termination", arguments.termination,
+                  "early ray termination: a ray ends where less than this shows through")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   subcommand.add_option("--volume-size", arguments.volume_size, "of raw scalars")

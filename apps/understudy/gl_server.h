@@ -21,7 +21,7 @@ namespace understudy::launcher {
 std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
                                               const std::filesystem::path& socket, Environment environment);
 
-/// Adds the subcommand `GL server`, which is not shown in the help.
+/// Adds the subcommand `gl-server`, which is not shown in the help.
 void add_gl_server_command(CLI::App& app, std::function<int()>& chosen);
 
 }  // namespace understudy::launcher

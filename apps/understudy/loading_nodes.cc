@@ -28,12 +28,11 @@ ServiceMaker linked_to(const std::string& address) {
 }  // namespace
 
 void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
-  CLI::Option* nodes =
-      subcommand
-          .add_option("-n,--nodes", arguments.nodes,
-                      "MPI ranks, each reads its own part; without, and without a hostfile or a Slurm "
-                      "allocation: this process")
-          ->check(CLI::Range(1, spu::max_nodes));
+  CLI::Option* nodes = subcommand
+                           .add_option("-n,--nodes", arguments.nodes,
+                                       "number of MPI ranks, each of which reads its own part; default: what a "
+                                       "hostfile or a Slurm allocation says, else this process")
+                           ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(subcommand, arguments.hostfile);
   subcommand
       .add_option("--connect", arguments.connect, "nodes that `understudy serve` keeps: a socket, or HOST:PORT")

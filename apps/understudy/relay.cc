@@ -104,8 +104,10 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
                             "--secret-file", std::filesystem::absolute(plan.secret_file), "--to",
                             plan.connection_request.to == Destination::gl_server ? "gl-server" : "nodes",
                             "--pixels", layout_names[std::size_t(plan.connection_request.pixels)], "--quality",
-                            std::to_string(plan.connection_request.jpeg_quality), "--socket", socket,
-                            "--figures", folder},
+                            std::to_string(plan.connection_request.jpeg_quality),
+                            "with --connect HOST:PORT: JPEG quality of images while the view moves; images of "
+                            "a view at rest are lossless. Default: all images are lossless",
+                            socket, "--figures", folder},
               .environment = current_environment(),
               .own_group = true});
   const auto until = Clock::now() + patience_with_start;

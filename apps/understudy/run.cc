@@ -417,19 +417,18 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
                                                                  {"folder", InjectionMethod::folder}};
   subcommand
       ->add_option("--injection", arguments->injection,
-                   "how OpenGL calls are caught: audit (all of them), preload, folder")
+                   "how OpenGL calls are intercepted: audit (default; all of them), preload or folder")
       ->transform(CLI::CheckedTransformer(injection_methods, CLI::ignore_case).description(""))
       ->type_name("audit|preload|folder");
   subcommand
       ->add_option("--trace", arguments->trace,
-                   "record every call in FILE, for `understudy replay`; a further process of the viewer is "
+                   "record every call in FILE for `understudy replay`; other processes of the viewer are "
                    "recorded in FILE.PID")
       ->type_name("FILE");
   subcommand->add_flag(
       "--remote", arguments->remote,
-      "the viewer needs no OpenGL: its calls are made, and all is drawn, beside the nodes, and "
-      "images come back to its windows; with --connect HOST:PORT on that machine (understudy serve "
-      "--gl-server)");
+      "run a viewer without OpenGL: a GL server beside the nodes executes its calls and sends images to its "
+      "windows; with --connect HOST:PORT on that machine (understudy serve --gl-server)");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

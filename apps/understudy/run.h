@@ -1,4 +1,4 @@
-// `understudy run [options] -- viewer args…`: the viewer as a child process with an injection method open,
+// `understudy run [options] -- viewer args…`: the viewer as a child process with the entry library under it,
 // nodes behind it when asked for, and the figures of the run at its end. The exit status is the viewer's own
 // (128 + signal when killed).
 #pragma once

@@ -155,10 +155,9 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   arguments->socket = runtime_directory() / "understudy-nodes.sock";
   CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
   subcommand
-      ->add_option(
-          "-n,--nodes", arguments->nodes,
-          "MPI ranks, on this machine or on those of --hostfile; without: as many as that has slots, or "
-          "a Slurm allocation tasks")
+      ->add_option("-n,--nodes", arguments->nodes,
+                   "number of MPI ranks, on this machine or on those of --hostfile; default: the slots of the "
+                   "hostfile, or the tasks of a Slurm allocation")
       ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(*subcommand, arguments->hostfile);
   add_backend_option(*subcommand, arguments->choices.backend);
@@ -175,19 +174,19 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   CLI::Option* secret_file =
       subcommand
           ->add_option("--secret-file", arguments->secret_file,
-                       "with --listen: what clients must have too; made if there is no such file")
+                       "with --listen: the secret that clients must have; created if the file does not exist")
           ->type_name("FILE");
   CLI::Option* listen =
       subcommand
-          ->add_option(
-              "--listen", arguments->listen,
-              "let clients of other machines in at HOST:PORT; without HOST: this machine's own only, 0.0.0.0: "
-              "all of its networks; port 0: any that is free")
+          ->add_option("--listen", arguments->listen,
+                       "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
+                       "all of its networks; port 0 takes any that is free")
           ->type_name("[HOST]:PORT")
           ->needs(secret_file);
   subcommand
       ->add_flag("--gl-server", arguments->server,
-                 "make the calls of viewers without OpenGL, too (understudy run --remote --connect HOST:PORT)")
+                 "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "
+                 "HOST:PORT)")
       ->needs(listen);
   add_gl_server_option(*subcommand, arguments->server_opengl);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")

@@ -97,17 +97,17 @@ volume::Light light_of(const ShadingArguments& arguments, const volume::Vec3& ex
 
 void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
   subcommand
-      .add_option("--method", arguments.method,
-                  "what is classified: each sample, or the way between two samples, integrated ahead "
-                  "(fewer steps will do), or samples on steps that are divided where the table bends")
+      .add_option(
+          "--method", arguments.method,
+          "what is classified: each sample (post-classified), the segment between two samples (pre-integrated, "
+          "needs fewer samples), or samples whose distance adapts to the transfer function (adaptive)")
       ->check(CLI::IsMember({"post-classified", "pre-integrated", "adaptive"}).description(""))
       ->type_name("post-classified|pre-integrated|adaptive")
       ->capture_default_str();
   subcommand
       .add_option("--cut-at-bricks", arguments.cut_at_bricks,
-                  "pre-integrated: end segments at the faces of bricks with EDGE voxels (a multiple of 8), as "
-                  "renderers do whose bricks "
-                  "share no more than these, to be compared with")
+                  "with pre-integrated: end segments at the faces of bricks of EDGE voxels (a multiple of 8), "
+                  "for comparison with renderers whose bricks share no more than their faces")
       ->type_name("EDGE");
   subcommand.add_option("--tolerance", arguments.tolerance, "of adaptive steps: the error that each may have")
       ->check(CLI::PositiveNumber.description(""))
@@ -115,32 +115,31 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
       ->capture_default_str();
   subcommand
       .add_option("--operator", arguments.op,
-                  "how a ray's samples become a pixel: composed front to back, the largest, their sum, or the "
-                  "first that is not clear, opaque")
+                  "how the samples of a ray become a pixel: composited front to back (over), the largest "
+                  "(max), their sum (add), or the first that is not transparent, shown opaque (first-hit)")
       ->check(CLI::IsMember({"over", "max", "add", "first-hit"}).description(""))
       ->type_name("over|max|add|first-hit")
       ->capture_default_str();
   subcommand
       .add_option("--surface", arguments.surfaces,
-                  "an iso-surface: a value, or a place in the volume's range (40%); plain colour #rrggbb and "
-                  "opacity; as often as wanted")
+                  "an iso-surface: a value, or a place in the range of the volume (40%), with a colour #rrggbb "
+                  "and an opacity; may be given several times")
       ->type_name("VALUE[,COLOUR[,OPACITY]]")
       ->allow_extra_args(false);
-  subcommand.add_flag("--no-volume", arguments.no_volume,
-                      "surfaces alone, without what --transfer-function shows");
+  subcommand.add_flag("--no-volume", arguments.no_volume, "show surfaces alone, without the volume");
   subcommand
       .add_option("--light", arguments.light,
-                  "Blinn and Phong's, on the volume and its surfaces, or on surfaces alone; it shines from the "
-                  "eye unless --light-from is given")
+                  "Blinn-Phong lighting of the volume and its surfaces (all) or of surfaces alone (surfaces); "
+                  "the light is at the eye unless --light-from is given")
       ->check(CLI::IsMember({"all", "surfaces"}).description(""))
       ->type_name("all|surfaces");
   subcommand
       .add_option("--light-from", arguments.light_from,
-                  "a light that stands still: azimuth and elevation in degrees, as for --camera")
+                  "a fixed light: azimuth and elevation in degrees, as for --camera")
       ->type_name("A,E");
   subcommand
       .add_option("--material", arguments.material,
-                  "under a light: ambient, diffuse and specular share, and shininess (0.2,0.8,0.3,20)")
+                  "ambient, diffuse and specular share, and shininess, of what is lit (default 0.2,0.8,0.3,20)")
       ->type_name("A,D,S,N");
 }
 

@@ -89,7 +89,7 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--table", table,
                  "Transfer function of your own instead: a JSON file of control points, with values and "
                  "opacities from 0 to "
-                 "1 as {\"control points\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
+                 "1 as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
       ->type_name("FILE");
   app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
   app.add_flag("--second", options.second_volume,

@@ -27,7 +27,7 @@ PresetFile::PresetFile(const std::string& path) : path_(path) {
     throw Error(
         ExitCode::bad_file,
         fmt::format(
-            "{}: {}; write {{\"control points\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
+            "{}: {}; write {{\"knots\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
             "…]}}, values between 0 and 1, sorted by \"at\"",
             path, what));
   };

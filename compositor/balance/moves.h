@@ -29,7 +29,7 @@ volume::TexelBox blocks_owned(const volume::TexelBox& lattice, const volume::Tex
 std::vector<BlockMove> moves(const volume::VolumeDescription& volume, std::span<const volume::TexelBox> before,
                              std::span<const volume::TexelBox> after);
 
-/// The blocks that the busiest rank sends or receives. Margins left out.
+/// The blocks that the busiest rank sends or receives. Ghost layers left out.
 std::size_t most_blocks_moved(const volume::TexelBox& lattice, std::span<const volume::TexelBox> before,
                               std::span<const volume::TexelBox> after);
 

@@ -84,7 +84,7 @@ Made if_all_have(MPI_Comm machine, Made made) {
 // most.
 struct Wait {
   std::chrono::microseconds only_yield = patience;
-  bool all_ring = false;  ///< whoever is waited for notifies when there is something to be seen
+  bool all_notify = false;  ///< whoever is waited for notifies when there is something to be seen
 };
 
 template <class Done>
@@ -103,7 +103,7 @@ void wait_until(WakeUp* wake_ups, Done done, const Wait& wait) {
     if (waited < wait.only_yield)
       sched_yield();
     else if (wake_ups)
-      wake_ups->sleep(notified, wait.all_ring ? std::clamp(waited, shortest_sleep, longest_sleep) : nap);
+      wake_ups->sleep(notified, wait.all_notify ? std::clamp(waited, shortest_sleep, longest_sleep) : nap);
     else
       std::this_thread::sleep_for(nap);
   }
@@ -171,7 +171,7 @@ MpiCommunicator::~MpiCommunicator() {
 }
 
 std::span<std::byte> MpiCommunicator::shared_segment(std::size_t bytes) {
-  return segments_ ? segments_->room(bytes) : std::span<std::byte>();
+  return segments_ ? segments_->segment(bytes) : std::span<std::byte>();
 }
 
 void MpiCommunicator::transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) {

@@ -56,7 +56,7 @@ class PixelMessage {
   PixelMessage() = default;
   explicit PixelMessage(std::size_t room)
       : own_(std::make_unique_for_overwrite<std::byte[]>(room)), room_(own_.get(), room), bytes_(room_) {}
-  /// In a room of somebody else's, who keeps it.
+  /// In memory of somebody else's, who keeps it.
   explicit PixelMessage(std::span<std::byte> room) : room_(room), bytes_(room) {}
 
   std::size_t size() const { return bytes_.size(); }
@@ -91,7 +91,7 @@ PixelMessage encode_pixels(const volume::Image& image, const volume::Rect& rect,
 std::size_t most_message_bytes(const volume::Rect& rect, Layout layout);
 PixelMessage space_for_pixels(const volume::Rect& rect, Layout layout);
 
-/// Goes through the pixels of a message that has come in such a room, row by row.
+/// Goes through the pixels of a message that has come in such memory, row by row.
 class PixelReader {
  public:
   /// `message` outlives it. Throws RankLost when it is no such message.

@@ -33,7 +33,7 @@ struct ExchangeSettings {
 bool set_algorithm(ExchangeSettings& settings, std::string_view name);
 /// "float", "half" or "byte". False, with `settings` unchanged, for any other.
 bool set_layout(ExchangeSettings& settings, std::string_view name);
-/// "direct" or "gathered". False, with `settings` unchanged, for any other.
+/// "direct" or "root". False, with `settings` unchanged, for any other.
 bool set_gather(ExchangeSettings& settings, std::string_view name);
 /// "auto", "on" or "off". False, with `settings` unchanged, for any other.
 bool set_overlap(ExchangeSettings& settings, std::string_view name);

@@ -12,7 +12,7 @@ namespace understudy::compositor {
 
 namespace {
 
-/// Rooms begin at cache lines.
+/// Segments begin at cache lines.
 constexpr std::size_t alignment = 64;
 
 }  // namespace
@@ -42,7 +42,7 @@ SharedSegments::~SharedSegments() {
   for (const std::span<std::byte>& memory : memories_) ::munmap(memory.data(), memory.size());
 }
 
-std::span<std::byte> SharedSegments::room(std::size_t bytes) {
+std::span<std::byte> SharedSegments::segment(std::size_t bytes) {
   if (bytes > most_bytes - used_) return {};
   const std::size_t first = used_;
   used_ = std::min(most_bytes, first + (bytes + alignment - 1) / alignment * alignment);

@@ -29,7 +29,7 @@ class SharedSegments {
   SharedSegments& operator=(const SharedSegments&) = delete;
 
   /// Empty when there is not so much left.
-  std::span<std::byte> room(std::size_t bytes);
+  std::span<std::byte> segment(std::size_t bytes);
   /// Nobody looks at this rank's segments any longer.
   void clear() { used_ = 0; }
 
@@ -38,7 +38,7 @@ class SharedSegments {
     std::uint64_t first = 0;
     std::uint64_t bytes = 0;
   };
-  /// Nothing for bytes that are in no room of this rank.
+  /// Nothing for bytes that are in no segment of this rank.
   std::optional<Place> place_of(std::span<const std::byte> bytes) const;
   /// Throws RankLost when there can be nothing.
   std::span<const std::byte> at(Rank rank, Place place) const;

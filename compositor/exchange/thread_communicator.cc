@@ -56,13 +56,13 @@ class Group {
     return message.size();
   }
 
-  std::span<std::byte> room(Rank rank, std::size_t bytes) {
+  std::span<std::byte> segment(Rank rank, std::size_t bytes) {
     return {segments_[std::size_t(rank)].emplace_back(std::make_unique_for_overwrite<std::byte[]>(bytes)).get(),
             bytes};
   }
-  bool has_room(Rank rank, std::span<const std::byte> bytes) const {
+  bool has_segment(Rank rank, std::span<const std::byte> bytes) const {
     return std::ranges::any_of(segments_[std::size_t(rank)],
-                               [&](const auto& room) { return room.get() == bytes.data(); });
+                               [&](const auto& segment) { return segment.get() == bytes.data(); });
   }
   /// So that the address sanitizer sees who looks into one of them later.
   void clear_segments(Rank rank) { segments_[std::size_t(rank)].clear(); }
@@ -136,7 +136,7 @@ class ThreadCommunicator : public Communicator {
 
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) {
-      if (message.may_be_seen && group_.has_room(rank_, message.bytes))
+      if (message.may_be_seen && group_.has_segment(rank_, message.bytes))
         group_.leave(rank_, message.to, message.bytes);
       else
         group_.send_control(rank_, message.to, message.bytes);
@@ -150,7 +150,7 @@ class ThreadCommunicator : public Communicator {
 
   std::span<std::byte> shared_segment(std::size_t bytes) override {
     if (!share_memory_) return {};
-    return group_.room(rank_, bytes);
+    return group_.segment(rank_, bytes);
   }
 
   void broadcast(Rank root, std::span<std::byte> bytes) override {

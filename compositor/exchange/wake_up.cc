@@ -32,19 +32,19 @@ WakeUp::WakeUp(const FileDescriptor& memory, int count, int mine) : mine_(mine) 
       ::mmap(nullptr, count * sizeof(Slot), PROT_READ | PROT_WRITE, MAP_SHARED, memory.get(), 0);
   if (mapped == MAP_FAILED)
     throw std::system_error(errno, std::generic_category(), "the ranks' wake-ups cannot be mapped");
-  wake_up_ = {static_cast<Slot*>(mapped), std::size_t(count)};
+  slots_ = {static_cast<Slot*>(mapped), std::size_t(count)};
 }
 
 WakeUp::~WakeUp() {
-  ::munmap(wake_up_.data(), wake_up_.size_bytes());
+  ::munmap(slots_.data(), slots_.size_bytes());
 }
 
 std::uint32_t WakeUp::notified() const {
-  return wake_up_[std::size_t(mine_)].notified.load();
+  return slots_[std::size_t(mine_)].notified.load();
 }
 
 void WakeUp::sleep(std::uint32_t notified, std::chrono::microseconds most) {
-  Slot& slot = wake_up_[std::size_t(mine_)];
+  Slot& slot = slots_[std::size_t(mine_)];
   const timespec patience{most.count() / 1'000'000, most.count() % 1'000'000 * 1000};
   ++slot.sleepers;
   // Returns at once when the number is another one already.
@@ -53,7 +53,7 @@ void WakeUp::sleep(std::uint32_t notified, std::chrono::microseconds most) {
 }
 
 void WakeUp::notify(int slot) {
-  Slot& other = wake_up_[std::size_t(slot)];
+  Slot& other = slots_[std::size_t(slot)];
   ++other.notified;
   if (other.sleepers.load() > 0) ::syscall(SYS_futex, &other.notified, FUTEX_WAKE, 1, nullptr, nullptr, 0);
 }

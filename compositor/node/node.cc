@@ -233,7 +233,7 @@ void Node::forget_client(std::uint64_t client) {
   pre_integration_tables_.erase(client);
 }
 
-// Room for that much of a payload. False, on all ranks, when one of them has none.
+// Memory for that much of a payload. False, on all ranks, when one of them has none.
 bool Node::make_room(std::uint64_t bytes) {
   // All ranks have seen the same orders, so they agree on when there must be more room; only then they must
   // also agree on whether there is.
@@ -391,7 +391,7 @@ void Node::request(Clients& clients, Clients::Request request) {
     counts.composite_ms = milliseconds_since(drawn);
   }
   if (!rect)
-    return clients.reply(request, MessageType::refused, encode_text("there is no image memory for this image"));
+    return clients.reply(request, MessageType::refused, encode_text("there is no image buffer for this image"));
   compositing_.add_cost_of_whole_windows(task_, memories_.of(task_.client), counts);
   overlap_.took(order.overlapped, counts.samples, milliseconds_since(start), counts.composite_ms);
   rendered.rect = *rect;
@@ -528,7 +528,7 @@ void Node::draw(OwnOutcome& mine) {
 void Node::draw_in_bands(OwnOutcome& mine) {
   const ImageBuffers::Memory& memory = memories_.of(task_.client);
   if (!mine.refused && 4 * whole_.pixels() > memory.floats)
-    mine.refuse("there is no image memory for this image");
+    mine.refuse("there is no image buffer for this image");
   if (mine.refused) return refuse_to_draw(communicator_);
   travelled_ = {};
   const auto draw_band = [&](const volume::Rect& band) -> std::optional<volume::Image> {

@@ -32,7 +32,7 @@ OpaqueTiles::OpaqueTiles(Communicator& communicator, std::uint32_t number, const
       tiles_(volume::tiles_touched(window_)),
       hidden_(tiles_.pixels()),
       control_heard_(footprints.size()) {
-  // Notes go where footprints share a tile.
+  // Control messages go where footprints share a tile.
   const Rect mine = volume::tiles_touched(footprints[std::size_t(communicator.rank())]);
   std::vector<Rank>* side = &nearer_;
   for (const Rank rank : order) {

@@ -42,7 +42,7 @@ constexpr std::size_t max_boxes_per_message = 4096;  ///< of texels
 constexpr int max_ranks = 4096;
 constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
 
-// Links over TCP (compositor/tcp).
+// Connections over TCP (compositor/tcp).
 constexpr std::size_t min_secret_bytes = 16;
 constexpr std::size_t max_secret_bytes = 4096;
 constexpr std::size_t max_pending_clients = 256;  ///< that have not proved themselves; the oldest makes room

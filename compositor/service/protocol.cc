@@ -163,12 +163,12 @@ void write(Writer& out, const std::optional<SliceSegment>& slice_segment) {
   write(out, slice_segment->reach);
 }
 
-std::optional<SliceSegment> read_slab(Reader& in) {
-  if (!in.flag("slab")) return std::nullopt;
+std::optional<SliceSegment> read_slice_segment(Reader& in) {
+  if (!in.flag("slice_segment")) return std::nullopt;
   SliceSegment slice_segment;
-  slice_segment.planes = in.real("slab.planes");
-  read(in, "slab.offset", slice_segment.offset);
-  read(in, "slab.reach", slice_segment.reach);
+  slice_segment.planes = in.real("slice_segment.planes");
+  read(in, "slice_segment.offset", slice_segment.offset);
+  read(in, "slice_segment.reach", slice_segment.reach);
   return slice_segment;
 }
 
@@ -329,7 +329,7 @@ VolumeDescription decode_volume(std::span<const std::byte> payload) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume.stored.high[axis] =
         in.small(std::string("stored.high.") + x_y_z[axis], volume.stored.low[axis] + 1, volume.size[axis]);
-  volume.ghost_layer = in.small("margin", 0, max_axis_texels);
+  volume.ghost_layer = in.small("ghost_layer", 0, max_axis_texels);
   in.end();
   return volume;
 }
@@ -456,7 +456,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
     plane.offset = in.real("clip_planes.offset");
   }
   request.classification = read_classification(in, kept);
-  request.slice_segment = read_slab(in);
+  request.slice_segment = read_slice_segment(in);
   request.fog = read_fog(in);
   request.method = in.enumerator("method", Method::adaptive);
   request.cut_at_bricks = std::uint8_t(in.integer("cut_at_bricks", 0, 255));
@@ -524,7 +524,7 @@ std::vector<std::byte> encode_size(std::uint64_t bytes) {
 }
 
 std::uint64_t decode_size(std::span<const std::byte> payload) {
-  Reader in("image memory", payload);
+  Reader in("image buffer", payload);
   const auto size = in.integer("bytes", 1, std::int64_t(limits::max_window_pixels * 4 * sizeof(float)));
   in.end();
   return std::uint64_t(size);

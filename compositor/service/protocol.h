@@ -99,7 +99,7 @@ struct KeptPreIntegrationTable {
   volume::PreIntegrationTable table;
 };
 
-/// An image that lies at the beginning of the image memory.
+/// An image that lies at the beginning of the image buffer.
 struct RenderedReply {
   volume::Rect rect;
   volume::FrameCounts counts;

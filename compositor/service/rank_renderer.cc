@@ -55,7 +55,8 @@ namespace {
 // Far below what anybody asks for, far above what costs time without end.
 constexpr double integral_tolerance = 1e-7;
 
-// What the volume room finds wrong with its arguments is a refusal here, and so is a machine that is too small.
+// What the module `volume` finds wrong with its arguments is a refusal here, and so is a machine that is too
+// small.
 template <class Call>
 auto refusing(Call call) {
   try {
@@ -149,7 +150,8 @@ void RankRenderer::check_texels(VolumeKey key, std::span<const TexelBox> boxes, 
     if (is_empty(box) || !contains(stored, box) || (volume.state == Volume::State::filling && !slice_range))
       throw RequestRefused(fmt::format("texels ({}, {}, {}) to ({}, {}, {}) are no {} of volume {}", box.low[0],
                                        box.low[1], box.low[2], box.high[0], box.high[1], box.high[2],
-                                       slice_range || !contains(stored, box) ? "part" : "slab", key.volume));
+                                       slice_range || !contains(stored, box) ? "part" : "slice range",
+                                       key.volume));
     texels += texels_in(box);
   }
   if (const std::size_t expected = texels * bytes_per_texel(key); bytes != expected)

@@ -80,8 +80,8 @@ bool same(const Mac& a, const Mac& b) {
   return ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-constexpr std::string_view from_client = "understudy connection: client";
-constexpr std::string_view from_server = "understudy connection: server";
+constexpr std::string_view from_client = "understudy link: client";
+constexpr std::string_view from_server = "understudy link: server";
 
 }  // namespace
 

@@ -36,7 +36,7 @@ enum class Destination : std::uint8_t {
 /// What a client wants, and how.
 struct ConnectionRequest {
   Destination to = Destination::nodes;
-  Layout pixels = Layout::rgba32f;  ///< in which the nodes' images are gathered
+  Layout pixels = Layout::rgba32f;  ///< of the nodes' images on their way back
   int jpeg_quality = 0;             ///< of images of views that move, 1 to 100; 0: no bit of them is lost
   bool only_asks = false;           ///< whether it would be let in
 };

@@ -87,7 +87,7 @@ class Core {
       thread.table = thread.driver;
       return;
     }
-    Member& member = member_of(context, share, server_ ? spu::link_driver() : *thread.driver);
+    Member& member = member_of(context, share, server_ ? spu::remote_driver() : *thread.driver);
     member.window = system == WindowSystem::glx ? drawable : 0;
     spu::Chain& chain = member.chain;
     chain.make_current();
@@ -129,7 +129,7 @@ class Core {
 
   void program_ends() {
     session_->end();
-    // The parent's link is none of a forked child's to shut.
+    // The parent's connection is none of a forked child's to shut.
     if (server_ && getpid() == process_) server_->end();
   }
 

@@ -1,5 +1,5 @@
 // Relays between viewers and GL servers (compositor/tcp/relay.h). What they add is JPEG: with a quality in the
-// client's wishes, images travel as JPEG while frames follow each other, and what was lost of them comes as
+// client's request, images travel as JPEG while frames follow each other, and what was lost of them comes as
 // it is once the view rests: with a frame that changes nothing, or when there was none for rest_after.
 #pragma once
 

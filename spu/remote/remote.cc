@@ -89,7 +89,7 @@ bool unmaps(CallId call) {
 
 }  // namespace
 
-const DispatchTable& link_driver() {
+const DispatchTable& remote_driver() {
   static const DispatchTable table = [] {
     DispatchTable all{};
     AsWords<Asked>::fill(all);
@@ -102,7 +102,7 @@ Remote::Remote(Chain& chain, ServerConnection& server)
     : chain_(chain),
       server_(server),
       pack_(*chain.find<Pack>()),
-      question_encoder_(link_driver(), [] {}),
+      question_encoder_(remote_driver(), [] {}),
       front_(true, chain.group()) {
   pack_.hand_to(*this);
   question_encoder_.hide_addresses();
@@ -169,7 +169,7 @@ void Remote::show_frame() {
   records.append_plain(event::frame, words);
   server_.show_frame(records, drawable_);
   front_.shown();
-  front_owed_ = false;
+  front_pending_ = false;
   records.clear();
   note_drawable(records);
   server_.send(records);
@@ -178,23 +178,23 @@ void Remote::show_frame() {
 /// Nobody sees what is drawn off the screen.
 bool Remote::has_front_to_show() {
   if (drawable_.number == 0 || drawable_.screen == 0) return false;
-  return front_.is_drawn() || (front_owed_ && server_.owes(drawable_));
+  return front_.is_drawn() || (front_pending_ && server_.is_front_pending(drawable_));
 }
 
 /// An application may flush after each triangle: it need not wait until each of them is seen. False when the
-/// image is owed.
+/// image is pending.
 bool Remote::show_front() {
   pack_.hand_on();
-  front_owed_ = !server_.show_front(drawable_);
+  front_pending_ = !server_.show_front(drawable_);
   front_.shown();
-  return !front_owed_;
+  return !front_pending_;
 }
 
 void Remote::show_front_now() {
   pack_.hand_on();
   server_.show_front_now(drawable_);
   front_.shown();
-  front_owed_ = false;
+  front_pending_ = false;
 }
 
 void Remote::frame_ended(FrameEnd kind) {

@@ -1,7 +1,7 @@
-// The link unit: what pack has packed is made by a GL server, in another process and perhaps on another
+// The remote unit: what pack has packed is made by a GL server, in another process and perhaps on another
 // machine, and what it answers comes back (Humphreys et al. 2002; Chromium's pack and network units).
 //
-// Its chain stands on link_driver(), by which the encoder's own questions go the same way.
+// Its chain stands on remote_driver(), by which the encoder's own questions go the same way.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ namespace understudy::spu {
 class Pack;
 
 /// For Chain: every command, asked of the current chain's link; nothing happens where there is none.
-const DispatchTable& link_driver();
+const DispatchTable& remote_driver();
 
 class Remote final : public Unit, public RecordTaker {
  public:
@@ -84,7 +84,7 @@ class Remote final : public Unit, public RecordTaker {
   std::uint64_t frames_ = 0;
   bool introduced_ = false;
   bool extensions_fetched_ = false;
-  bool front_owed_ = false;     ///< the GL server's link may still owe an image of the front buffer
+  bool front_pending_ = false;  ///< an image of the front buffer may still be pending
   bool without_error_ = false;  ///< glGetError said so, and nothing was called since
 };
 

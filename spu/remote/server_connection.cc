@@ -82,7 +82,7 @@ std::thread ServerConnection::start(void (ServerConnection::*work)()) {
 ServerConnection::~ServerConnection() {
   end();
   receiver_.join();
-  if (payer_.joinable()) payer_.join();
+  if (pending_shower_.joinable()) pending_shower_.join();
 }
 
 void ServerConnection::end() {
@@ -251,7 +251,7 @@ void ServerConnection::show_frame(const Records& records, const FrontDrawable& d
   {
     const std::scoped_lock lock(replies_);
     frames_.push_back(drawable);
-    owed_.erase(drawable.number);
+    pending_.erase(drawable.number);
   }
   transmit(records, ServerReply::image, thread_number());
   ++counters().round_trips;
@@ -270,44 +270,44 @@ bool ServerConnection::show_front(const FrontDrawable& drawable) {
   {
     const std::scoped_lock lock(replies_);
     if (!frames_.empty()) {
-      owed_[drawable.number] = {thread_number(), drawable};
-      if (!payer_.joinable()) payer_ = start(&ServerConnection::show_owed);
+      pending_[drawable.number] = {thread_number(), drawable};
+      if (!pending_shower_.joinable()) pending_shower_ = start(&ServerConnection::show_pending);
       return false;
     }
     frames_.push_back(drawable);
-    owed_.erase(drawable.number);
+    pending_.erase(drawable.number);
   }
   transmit(front_shown(drawable), ServerReply::image, thread_number());
   ++frames_sent_;
   return true;
 }
 
-bool ServerConnection::owes(const FrontDrawable& drawable) {
+bool ServerConnection::is_front_pending(const FrontDrawable& drawable) {
   const std::scoped_lock lock(replies_);
-  return owed_.contains(drawable.number);
+  return pending_.contains(drawable.number);
 }
 
 /// What an application has flushed is seen although the application says no more. The GL server has then what
 /// was sent, which is what was drawn before the last flush or little more.
-void ServerConnection::show_owed() {
-  const auto can_pay = [&] { return !owed_.empty() && frames_.empty(); };
+void ServerConnection::show_pending() {
+  const auto can_show = [&] { return !pending_.empty() && frames_.empty(); };
   for (;;) {
     {
       std::unique_lock lock(replies_);
-      replied_.wait(lock, [&] { return lost_ || can_pay(); });
+      replied_.wait(lock, [&] { return lost_ || can_show(); });
       if (lost_) return;
     }
     // Another thread may hold this one for as long as it waits for an answer.
     const std::scoped_lock sending(sending_);
-    Owed owed;
+    PendingFront pending;
     {
       const std::scoped_lock lock(replies_);
-      if (lost_ || !can_pay()) continue;
-      owed = owed_.begin()->second;
-      owed_.erase(owed_.begin());
-      frames_.push_back(owed.drawable);
+      if (lost_ || !can_show()) continue;
+      pending = pending_.begin()->second;
+      pending_.erase(pending_.begin());
+      frames_.push_back(pending.drawable);
     }
-    transmit(front_shown(owed.drawable), ServerReply::image, owed.thread);
+    transmit(front_shown(pending.drawable), ServerReply::image, pending.thread);
     ++frames_sent_;
   }
 }

@@ -58,12 +58,13 @@ class ServerConnection {
   /// frames are on their way.
   void show_frame(const Records& records, const FrontDrawable& drawable);
   /// What is in its front buffer will be shown in `drawable`. Never waits: while frames are on their way it is
-  /// owed, and asked for when they have come. False when it is owed.
+  /// pending, and asked for when they have come. False when it is pending.
   bool show_front(const FrontDrawable& drawable);
   /// The same, but waits while too many frames are on their way.
   void show_front_now(const FrontDrawable& drawable);
-  /// Whether the drawable's front buffer was to be shown and is not on its way yet. A frame that is shown pays.
-  bool owes(const FrontDrawable& drawable);
+  /// Whether the drawable's front buffer was to be shown and is not on its way yet. A frame that is shown ends
+  /// that.
+  bool is_front_pending(const FrontDrawable& drawable);
   /// Waits until all frames are shown.
   void wait_for_frames();
 
@@ -82,7 +83,7 @@ class ServerConnection {
     std::vector<std::uint8_t> pixels;
   };
 
-  struct Owed {
+  struct PendingFront {
     std::uint64_t thread = 0;  ///< whose context has the drawable
     FrontDrawable drawable;
   };
@@ -91,7 +92,7 @@ class ServerConnection {
   void transmit(const Records& records, ServerReply reply, std::uint64_t thread);
   void lose(const std::string& why);
   void receive_all();
-  void show_owed();
+  void show_pending();
   void take(compositor::Message message);
   void take_image(const compositor::Message& message);
   void refine_image(const compositor::Message& message);
@@ -114,16 +115,16 @@ class ServerConnection {
   std::mutex replies_;
   std::condition_variable replied_;
   std::vector<CallAnswer> answers_;
-  std::size_t awaited_ = 0;             ///< answers to questions on their way
-  std::deque<FrontDrawable> frames_;    ///< on their way, the oldest first
-  std::map<std::uint64_t, Owed> owed_;  ///< by drawable
+  std::size_t awaited_ = 0;                        ///< answers to questions on their way
+  std::deque<FrontDrawable> frames_;               ///< on their way, the oldest first
+  std::map<std::uint64_t, PendingFront> pending_;  ///< by drawable
   // For who may not wait for a lock.
   std::atomic<std::uint64_t> frames_sent_ = 0;
   std::atomic<std::uint64_t> frames_shown_ = 0;
 
   std::map<std::uint64_t, Shown> images_;  ///< by drawable; the receiving thread's
   std::thread receiver_;
-  std::thread payer_;  ///< of what is owed; started when something is
+  std::thread pending_shower_;  ///< started when something is pending
 };
 
 }  // namespace understudy::spu

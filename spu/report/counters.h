@@ -20,7 +20,7 @@ namespace understudy::spu {
 constexpr std::uint32_t counters_magic = 0x55444332;  // "UDC2"
 constexpr int max_counted_volumes = 32;
 constexpr int max_counted_reasons = 8;
-constexpr int max_counted_omission_reasons = 4;
+constexpr int max_counted_done_reasons = 4;
 constexpr int max_counted_threads = 64;
 constexpr int max_frame_records = 4096;
 
@@ -145,7 +145,7 @@ struct ProcessCounters {
   std::atomic<std::uint64_t> frames_left;         ///< with at least one run of slices not substituted
   volume::FrameCounts total;                      ///< over all frames; the ring below forgets
   Amounts total_amounts;                          ///< likewise
-  ReasonCount done_because[optimization_count][max_counted_omission_reasons];
+  ReasonCount done_because[optimization_count][max_counted_done_reasons];
   std::int32_t nodes;                        ///< 0: embedded
   std::atomic<std::uint64_t> images_behind;  ///< shown one frame late, and of these
   std::atomic<std::uint64_t> windows_asked;  ///< how often the window was asked to draw again
@@ -184,7 +184,7 @@ void put_text(std::span<char> field, std::string_view text);
 void count_reason(VolumeCounters& volume, std::string_view reason, std::uint64_t times = 1);
 
 /// Counts once more why something was done that this optimization could have spared. An optimization knows
-/// max_counted_omission_reasons; the last of them is "other reasons" once there are more.
+/// max_counted_done_reasons; the last of them is "other reasons" once there are more.
 void count_done(Optimization optimization, std::string_view reason);
 
 /// Counts one finished frame: its ring slot, and the totals.

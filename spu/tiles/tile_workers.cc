@@ -63,9 +63,9 @@ void TileWorkers::gather(int parts) {
     process_counters().tiles.count = std::uint32_t(parts);
   } catch (const std::exception& error) {
     workers_.clear();
-    fmt::print(stderr, "understudy: GL server: polygons are drawn by one process: tile worker of a tile: {}\n",
+    fmt::print(stderr, "understudy: GL server: windows are drawn by one process: no tile worker: {}\n",
                error.what());
-    give_up("a tile worker of a tile could not be had");
+    give_up("a tile worker could not be had");
   }
 }
 
@@ -83,9 +83,9 @@ void TileWorkers::send(TileWorker& worker, const Records& records, bool wants_an
 
 void TileWorkers::lose(const char* what) {
   workers_.clear();
-  fmt::print(stderr,
-             "understudy: GL server: polygons are drawn by one process from here on: a tile worker {}\n", what);
-  give_up("a tile worker of a tile was lost");
+  fmt::print(stderr, "understudy: GL server: windows are drawn by one process from here on: a tile worker {}\n",
+             what);
+  give_up("a tile worker was lost");
 }
 
 void TileWorkers::hand_on(bool now) {

@@ -15,7 +15,7 @@ VolumeUnit& here() {
   return *Chain::current()->find<VolumeUnit>();
 }
 
-/// A draw with a depth test, or a read: the answer would depend on what is owed.
+/// A draw with a depth test, or a read: the answer would depend on the deferred depth.
 struct NoteDepthUse {
   static const DispatchTable& before(CallId call) {
     VolumeUnit& unit = here();
@@ -70,7 +70,7 @@ bool looks_at_depth(CallId call) {
 
 }  // namespace
 
-void pay_depth(const DispatchTable& gl, const Run& run) {
+void write_depth(const DispatchTable& gl, const Run& run) {
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -78,7 +78,7 @@ void pay_depth(const DispatchTable& gl, const Run& run) {
   gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
 }
 
-void fill_owing_slots(DispatchTable& table) {
+void fill_depth_deferred_slots(DispatchTable& table) {
   fill_watching_slots(table);
   DispatchTable noting;
   PassThrough<NoteDepthUse>::fill(noting);

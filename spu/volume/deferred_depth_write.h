@@ -1,10 +1,10 @@
 // The depth that slices write, and that usually nobody looks at.
 //
 // Many viewers leave depth writes on while they blend slices. Drawing the slices once more for their depth
-// alone would cost almost what the image did. So the first frame of a volume pays (the run is replayed with
+// alone would cost almost what the image did. So the first frame of a volume draws it (the run is replayed with
 // colour masked), and is watched until its depth is cleared: if no draw with a depth test, no read of depth and
-// no copy comes in between, the depth is owed from then on. Should a later frame look at it after all, every
-// frame after that one pays.
+// no copy comes in between, it is deferred from then on. Should a later frame look at it after all, every
+// frame after that one draws it at once.
 #pragma once
 
 #include "dispatch/table.h"
@@ -14,9 +14,9 @@ namespace understudy::spu {
 class Run;
 
 /// Replays `run` into the depth buffer only.
-void pay_depth(const DispatchTable& gl, const Run& run);
+void write_depth(const DispatchTable& gl, const Run& run);
 
 /// The watching slots, each of which first asks whether the call looks at depth.
-void fill_owing_slots(DispatchTable& table);
+void fill_depth_deferred_slots(DispatchTable& table);
 
 }  // namespace understudy::spu

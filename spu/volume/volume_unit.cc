@@ -156,7 +156,7 @@ void VolumeUnit::fill(Phase phase, DispatchTable& table) {
     fill_stack_detection_slots(table);
   }
   if (phase == Phase::watching) fill_watching_slots(table);
-  if (phase == Phase::owing) fill_owing_slots(table);
+  if (phase == Phase::depth_deferred) fill_depth_deferred_slots(table);
   if (phase == Phase::deferring) fill_deferring_slots(table);
 }
 
@@ -287,7 +287,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
 
 Phase VolumeUnit::resting_phase() const {
   if (!merging_->held.empty()) return Phase::deferring;
-  return depth_watched_ != 0 ? Phase::owing : Phase::watching;
+  return depth_watched_ != 0 ? Phase::depth_deferred : Phase::watching;
 }
 
 void VolumeUnit::stack_defined() {
@@ -543,12 +543,12 @@ void VolumeUnit::settle_depth(const Substitution& s) {
     ++(why.empty() ? runs.left_out : runs.done);
   });
   if (!why.empty()) {
-    pay_depth(*context().gl, s.run);
+    write_depth(*context().gl, s.run);
     count_done(Optimization::unseen_depth, why);
   }
   if (s.volume.depth_looked_at) return;
   depth_watched_ = s.run.volume_texture();
-  chain_.set_phase(Phase::owing);
+  chain_.set_phase(Phase::depth_deferred);
 }
 
 void VolumeUnit::depth_looked_at() {

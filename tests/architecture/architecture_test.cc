@@ -12,6 +12,9 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/architecture/project_files.h"
+
+namespace understudy::testing {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,11 +26,6 @@ constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "
 
 constexpr std::uintmax_t max_source_bytes = 40'000;
 
-struct SourceFile {
-  std::string path;  ///< from the project's root
-  std::string text;
-};
-
 bool is_code(const SourceFile& file) {
   return file.path.ends_with(".h") || file.path.ends_with(".cc");
 }
@@ -38,33 +36,6 @@ std::string_view module_of(std::string_view path) {
 
 std::size_t height_of(std::string_view module) {
   return static_cast<std::size_t>(std::find(modules.begin(), modules.end(), module) - modules.begin());
-}
-
-std::string contents(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Everything that belongs to the project: hidden folders, build folders and results do not.
-std::vector<SourceFile> project_files() {
-  const fs::path root = UNDERSTUDY_SOURCE_DIR;
-  std::vector<SourceFile> files;
-  for (fs::recursive_directory_iterator entry(root), end; entry != end; ++entry) {
-    const std::string name = entry->path().filename();
-    if (entry->is_directory()) {
-      const bool results =
-          entry.depth() == 0 && (name.starts_with("build") || name == "out" || name == "shared");
-      if (name.starts_with(".") || name == "__pycache__" || results) entry.disable_recursion_pending();
-    } else if (entry->is_regular_file() && name != ".git") {  // of a git worktree
-      files.push_back({fs::relative(entry->path(), root), contents(entry->path())});
-    }
-  }
-  return files;
-}
-
-const std::vector<SourceFile>& files() {
-  static const std::vector<SourceFile> all = project_files();
-  return all;
 }
 
 /// What stands between the quotes or brackets of the include lines.
@@ -81,7 +52,7 @@ std::vector<std::string> includes_of(const SourceFile& file) {
 template <typename Forbidden>
 std::vector<std::string> includes_where(Forbidden forbidden) {
   std::vector<std::string> found;
-  for (const SourceFile& file : files()) {
+  for (const SourceFile& file : project_files()) {
     if (!is_code(file)) continue;
     for (const std::string& header : includes_of(file)) {
       if (forbidden(file, header)) found.push_back(file.path + " includes " + header);
@@ -92,7 +63,7 @@ std::vector<std::string> includes_where(Forbidden forbidden) {
 
 TEST(Architecture, HasFilesInEveryModule) {
   for (const std::string_view module : modules) {
-    EXPECT_TRUE(std::any_of(files().begin(), files().end(), [&](const SourceFile& file) {
+    EXPECT_TRUE(std::any_of(project_files().begin(), project_files().end(), [&](const SourceFile& file) {
       return is_code(file) && module_of(file.path) == module;
     })) << module;
   }
@@ -144,7 +115,7 @@ TEST(Architecture, EveryModuleAndEveryProgramSaysWhatItIs) {
 }
 
 TEST(Architecture, NoSourceFileIsTooLongToRead) {
-  for (const SourceFile& file : files()) {
+  for (const SourceFile& file : project_files()) {
     if (is_code(file) || file.path.ends_with(".py")) {
       EXPECT_LE(file.text.size(), max_source_bytes) << file.path;
     }
@@ -156,7 +127,7 @@ TEST(Architecture, HoldsNoGeneratedFile) {
   const std::regex mark(
       std::string("(do not ") + "edit|generated " + "by|@" + "generated|auto-?" + "generated)",
       std::regex::icase);
-  for (const SourceFile& file : files()) {
+  for (const SourceFile& file : project_files()) {
     if (!is_code(file)) continue;
     const std::string head = file.text.substr(0, 400);
     EXPECT_FALSE(std::regex_search(head, mark)) << file.path;
@@ -165,10 +136,11 @@ TEST(Architecture, HoldsNoGeneratedFile) {
 
 TEST(Architecture, HoldsNoPathOfTheMachineItWasWrittenOn) {
   const std::regex path(std::string("(/") + "work/|/" + "root/|/" + "home/[a-z])");
-  for (const SourceFile& file : files()) {
+  for (const SourceFile& file : project_files()) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(file.text, found, path)) << file.path << ": " << found.str();
   }
 }
 
 }  // namespace
+}  // namespace understudy::testing

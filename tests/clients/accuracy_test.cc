@@ -19,7 +19,7 @@ using understudy::launcher::read_image;
 
 const Words one_view = {"--azimuth", "35", "--elevation", "25", "--background", "0.2", "0.1", "0.3"};
 
-class EveryMode : public GlServer, public testing::WithParamInterface<const char*> {};
+class EveryMode : public CommandTest, public testing::WithParamInterface<const char*> {};
 
 std::vector<double> channels(const viewer_test::Image& image) {
   return {image.rgb.begin(), image.rgb.end()};
@@ -79,7 +79,7 @@ TEST_P(EveryMode, OpaqueGeometryBeforeTheVolumeStaysWhereItWas) {
 INSTANTIATE_TEST_SUITE_P(Viewer, EveryMode, testing::Values("rgba", "table", "core"),
                          [](const auto& info) { return std::string(info.param); });
 
-class Ranks : public GlServer {};
+class Ranks : public CommandTest {};
 
 constexpr int frames = 3;
 

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-class Backend : public GlServer {
+class Backend : public CommandTest {
  protected:
   /// The last of so many frames on two nodes, and what the report says of backends. A view that rests would be
   /// drawn once.

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class BadInput : public GlServer {
+class BadInput : public CommandTest {
  protected:
   Words viewer(const fs::path& volume, const Words& options = {}) const {
     return Words{(programs / "understudy-viewer").string(),
@@ -118,7 +118,7 @@ TEST_F(BadInput, VoxelsThatAreNoNumbersGiveAFiniteImageEverywhereElse) {
   }
 }
 
-class Serve : public GlServer {
+class Serve : public CommandTest {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
@@ -131,7 +131,7 @@ class Serve : public GlServer {
 TEST_F(Serve, ATakenSocketIsNamedAndStaysTheFirstOnes) {
   if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
   const fs::path socket = file("nodes.sock");
-  Child first(on_gl_server(serve(socket)), file(""));
+  Child first(command_of(serve(socket)), file(""));
   ASSERT_TRUE(
       comes_true([&] { return !first.running() || first.out().find("2 nodes at") != std::string::npos; }));
   ASSERT_TRUE(first.running()) << first.err();

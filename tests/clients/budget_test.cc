@@ -21,7 +21,7 @@ std::filesystem::path path_of(const Volume& volume) {
   return std::filesystem::path(SOURCE_FOLDER) / "../shared/data" / volume.file;
 }
 
-class BudgetRun : public GlServer {
+class BudgetRun : public CommandTest {
  protected:
   /// Eight frames of the viewer with a budget; false where the volume is not at hand.
   bool show(const Volume& volume, const Words& budget) {

@@ -138,30 +138,30 @@ int substituted(const nlohmann::json& report) {
   return runs;
 }
 
-GlServer::GlServer() : runtime_(folder_.file("runtime")), abandoned_before_(abandoned_shared_memory()) {
+CommandTest::CommandTest() : runtime_(folder_.file("runtime")), abandoned_before_(abandoned_shared_memory()) {
   fs::create_directory(runtime_);
 }
 
-Command GlServer::on_gl_server(const Words& words, std::map<std::string, std::string> environment) const {
+Command CommandTest::command_of(const Words& words, std::map<std::string, std::string> environment) const {
   environment.emplace("XDG_RUNTIME_DIR", runtime_.string());
   return {words, environment};
 }
 
-Outcome GlServer::run(const Words& words, const std::map<std::string, std::string>& environment) const {
-  return Child(on_gl_server(words, environment), file("")).finish();
+Outcome CommandTest::run(const Words& words, const std::map<std::string, std::string>& environment) const {
+  return Child(command_of(words, environment), file("")).finish();
 }
 
-Outcome GlServer::run_well(const Words& words, const std::map<std::string, std::string>& environment) const {
+Outcome CommandTest::run_well(const Words& words, const std::map<std::string, std::string>& environment) const {
   Outcome outcome = run(words, environment);
   EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   return outcome;
 }
 
-nlohmann::json GlServer::json(const std::string& name) const {
+nlohmann::json CommandTest::json(const std::string& name) const {
   return nlohmann::json::parse(contents(file(name)));
 }
 
-std::vector<pid_t> GlServer::processes(const std::string& program) const {
+std::vector<pid_t> CommandTest::processes(const std::string& program) const {
   // The folder's name is in the environment of all that descends from a test, also of orphans.
   const std::string mark = "XDG_RUNTIME_DIR=" + runtime_.string();
   std::vector<pid_t> found;
@@ -174,7 +174,7 @@ std::vector<pid_t> GlServer::processes(const std::string& program) const {
   return found;
 }
 
-std::string GlServer::leftovers() const {
+std::string CommandTest::leftovers() const {
   std::string left;
   comes_true([&] { return processes().empty(); });
   for (const pid_t pid : processes()) {

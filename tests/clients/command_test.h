@@ -47,14 +47,14 @@ viewer_test::Difference told(const std::string& what, const viewer_test::Image& 
 /// Runs of slices that the nodes drew, over all volumes of a report.
 int substituted(const nlohmann::json& report);
 
-class GlServer : public testing::Test {
+class CommandTest : public testing::Test {
  protected:
-  GlServer();
+  CommandTest();
 
   std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
 
   /// With runtime files (sockets, folders of runs) in a folder of this test's own.
-  Command on_gl_server(const Words& words, std::map<std::string, std::string> environment = {}) const;
+  Command command_of(const Words& words, std::map<std::string, std::string> environment = {}) const;
   Outcome run(const Words& words, const std::map<std::string, std::string>& environment = {}) const;
   /// The same, and expects status 0.
   Outcome run_well(const Words& words, const std::map<std::string, std::string>& environment = {}) const;

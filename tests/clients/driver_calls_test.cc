@@ -24,7 +24,7 @@ using testing::Not;
 
 constexpr const char* whole_image = "glDrawArrays(mode = GL_TRIANGLES, first = 0, count = 3)";
 
-class DriverCalls : public RecordingServer {
+class DriverCalls : public RecordingTest {
  protected:
   std::vector<RecordedFrame> bare(const RecordedLibrary& library, const Words& viewer,
                                   const std::map<std::string, std::string>& environment) const {

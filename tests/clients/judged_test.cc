@@ -39,7 +39,7 @@ std::vector<double> screenshot(const viewer_test::Image& image) {
   return channels;
 }
 
-class Judged : public GlServer, public testing::WithParamInterface<Scene> {
+class Judged : public CommandTest, public testing::WithParamInterface<Scene> {
  protected:
   /// No voxel is 0, so that a minimum has something to tell; edges and smooth places, three different sizes.
   std::string volume() const {

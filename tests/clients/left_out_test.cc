@@ -56,7 +56,7 @@ double largest_difference(const Image& a, const Image& b) {
   return most;
 }
 
-class LeftOut : public GlServer, public testing::WithParamInterface<std::size_t> {
+class LeftOut : public CommandTest, public testing::WithParamInterface<std::size_t> {
  protected:
   /// Frames as floats and as shown, and the report, all beginning with `name`.
   nlohmann::json show(const Case& shown, const std::string& name, const Words& options) {
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Items, LeftOut, testing::Range(std::size_t(0), cases.si
   return fmt::format("{}_{}", name, info.param);
 });
 
-class Explained : public GlServer {};
+class Explained : public CommandTest {};
 
 TEST_F(Explained, FrameByFrameAndInTheEnd) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;

@@ -18,7 +18,7 @@ namespace {
 constexpr int frames = 20;
 constexpr int ranks = 3;
 
-class LostNode : public GlServer, public testing::WithParamInterface<int> {
+class LostNode : public CommandTest, public testing::WithParamInterface<int> {
  protected:
   /// The process of a rank; 0 when there is none.
   pid_t rank(int number) const {
@@ -71,9 +71,9 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   };
   run_well(viewer(file("bare")));
 
-  Child child(on_gl_server(under({"-n", std::to_string(ranks), "--report", file("report.json")}) +
-                           viewer(file("under"))),
-              file(""));
+  Child child(
+      command_of(under({"-n", std::to_string(ranks), "--report", file("report.json")}) + viewer(file("under"))),
+      file(""));
   const auto frame_is_out = [&](int number) {
     return comes_true([&] {
       return !child.running() || child.out().find(fmt::format("frame {}:", number)) != std::string::npos;

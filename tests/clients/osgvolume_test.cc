@@ -16,7 +16,7 @@
 namespace clients {
 namespace {
 
-class Osgvolume : public GlServer {
+class Osgvolume : public CommandTest {
  protected:
   void SetUp() override {
     const std::string lacking =
@@ -36,7 +36,7 @@ class Osgvolume : public GlServer {
                      const std::string& report = "") {
     std::map<std::string, std::string> all = osgvolume_environment(display_->name());
     all.insert(environment.begin(), environment.end());
-    Child child(on_gl_server(prefix + osgvolume(), all), file(""));
+    Child child(command_of(prefix + osgvolume(), all), file(""));
     viewer_test::Image before;
     const bool holds_still = comes_true([&] {
       if (!child.running()) return true;

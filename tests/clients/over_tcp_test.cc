@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 using understudy::compositor::Clock;
 using understudy::compositor::testing::Line;
 
-class OverTcp : public GlServer {
+class OverTcp : public CommandTest {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
@@ -37,9 +37,9 @@ class OverTcp : public GlServer {
   /// `understudy serve` with two nodes at a port of its own.
   void serve(const Words& options = {}) {
     fs::create_directory(file("server"));
-    server_.emplace(on_gl_server(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket",
-                                       socket(), "--listen", ":0", "--secret-file", secret()} +
-                                 options),
+    server_.emplace(command_of(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket",
+                                     socket(), "--listen", ":0", "--secret-file", secret()} +
+                               options),
                     file("server"));
     std::smatch found;
     std::string said;
@@ -192,10 +192,9 @@ TEST_F(OverTcp, ALineThatStandsStillForThreeSecondsIsWaitedFor) {
     run_well(under(remote + over_tcp()) + turning("flowing.png", frames));
     Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("held"));
-    Child child(
-        on_gl_server(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
-                     turning("held.png", frames)),
-        file("held"));
+    Child child(command_of(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
+                           turning("held.png", frames)),
+                file("held"));
     // In the middle of an image, most likely.
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
     ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
@@ -223,10 +222,9 @@ TEST_F(OverTcp, AfterACutViewersDrawByThemselvesOrSayThatNobodyDraws) {
   for (const Words& remote : {Words{}, Words{"--remote"}}) {
     Line line(understudy::compositor::tcp_address_of(address_).value());
     fs::create_directories(file("cut"));
-    Child child(
-        on_gl_server(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
-                     turning("cut.png", 40)),
-        file("cut"));
+    Child child(command_of(under(remote + at(line.address().text()) + Words{"--report", file("report.json")}) +
+                           turning("cut.png", 40)),
+                file("cut"));
     EXPECT_TRUE(comes_true([&] { return line.bytes_down() > 600'000 || !child.running(); }));
     ASSERT_TRUE(child.running()) << line.bytes_down() << " bytes came\n" << child.err();
     line.cut();

@@ -10,7 +10,7 @@
 namespace clients {
 namespace {
 
-class Pipeline : public GlServer {
+class Pipeline : public CommandTest {
  protected:
   struct Shown {
     std::string turning, resting;

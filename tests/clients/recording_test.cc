@@ -6,18 +6,18 @@ namespace clients {
 
 namespace fs = std::filesystem;
 
-std::string RecordingServer::dump_of(const std::string& recording) const {
+std::string RecordingTest::dump_of(const std::string& recording) const {
   return run_well({"apitrace", "dump", "--color=never", file(recording)}).out;
 }
 
-std::string RecordingServer::dump_of_bare(const RecordedLibrary& library, const Words& viewer,
-                                          const Environment& environment) const {
+std::string RecordingTest::dump_of_bare(const RecordedLibrary& library, const Words& viewer,
+                                        const Environment& environment) const {
   run_well(Words{"apitrace", "trace", "-a", library.api, "-o", file("bare.trace")} + viewer, environment);
   return dump_of("bare.trace");
 }
 
-std::string RecordingServer::dump_of_driver(const RecordedLibrary& library, const Words& options,
-                                            const Words& viewer, const Environment& environment) const {
+std::string RecordingTest::dump_of_driver(const RecordedLibrary& library, const Words& options,
+                                          const Words& viewer, const Environment& environment) const {
   const fs::path recorder = system_libraries / "apitrace/wrappers" / library.wrapper;
   const fs::path drivers = file("drivers");
   fs::create_directory(drivers);

@@ -24,7 +24,7 @@ struct RecordedLibrary {
 constexpr RecordedLibrary egl{"egl", "egltrace.so", "libEGL.so.1"};
 constexpr RecordedLibrary glx{"gl", "glxtrace.so", "libGLX.so.0"};
 
-class RecordingServer : public GlServer {
+class RecordingTest : public CommandTest {
  protected:
   using Environment = std::map<std::string, std::string>;
 

@@ -43,7 +43,7 @@ class RemoteFront : public RemoteViewer {
 
   /// What is on the screen some time after the program has drawn all; the program has ended then.
   viewer_test::Image rests_at(const Words& command, const std::function<bool(const viewer_test::Image&)>& as) {
-    Child child(on_gl_server(command, on_display()), file(""));
+    Child child(command_of(command, on_display()), file(""));
     EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
     viewer_test::Image last;
     EXPECT_TRUE(comes_true([&] {
@@ -124,7 +124,7 @@ TEST_F(RemoteFront, TextIsThatOfTheXServersFonts) {
 
 TEST_F(RemoteFront, ASpaceMovesOn) {
   // Unlike that of Mesa's own glXUseXFont, to which a glyph without pixels is an error.
-  Child child(on_gl_server(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
+  Child child(command_of(remotely() + Words{WRITES_TEXT, "fixed", "32", "1"}, on_display()), file(""));
   EXPECT_TRUE(comes_true([&] { return !child.running() || child.out().find("drawn") != std::string::npos; }));
   EXPECT_NE(child.out().find("moves by 6.00"), std::string::npos) << child.out() << child.err();
 }

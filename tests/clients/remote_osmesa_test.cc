@@ -60,9 +60,9 @@ TEST_F(RemoteOsmesa, CoreContextsAndNodes) {
 
 /// libOSMesa is the system's, and Mesa's libraries for EGL are not there besides.
 TEST_F(RemoteOsmesa, TheGlServerOpensTheSystemsLibraryAlone) {
-  Child child(on_gl_server(under({"--remote", "--server-opengl", "osmesa"}) +
-                               viewer("table", {"--frames", "100000", "--orbit", "1"}),
-                           {{"DISPLAY", display_->name()}}),
+  Child child(command_of(under({"--remote", "--server-opengl", "osmesa"}) +
+                             viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                         {{"DISPLAY", display_->name()}}),
               file(""));
   const auto mapped_by_a_gl_server = [&] {
     for (const pid_t process : processes("understudy")) {

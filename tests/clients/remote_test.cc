@@ -48,7 +48,7 @@ class Remote : public RemoteViewer {
   void expect_images_in_the_window(bool by_shared_memory) {
     viewer_test::Image local;
     {
-      Child child(on_gl_server(under() + viewer("table", {}), on_display()), file(""));
+      Child child(command_of(under() + viewer("table", {}), on_display()), file(""));
       ASSERT_TRUE(comes_true([&] {
         const viewer_test::Image before = local;
         local = screen().value_or(before);
@@ -57,7 +57,7 @@ class Remote : public RemoteViewer {
       child.signal(SIGTERM);
       EXPECT_EQ(child.finish().status, 128 + SIGTERM);
     }
-    Child child(on_gl_server(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()),
+    Child child(command_of(under({"--remote"}) + without_opengl() + viewer("table", {}), on_display()),
                 file(""));
     const bool shown = comes_true([&] {
       const auto now = screen();
@@ -93,10 +93,9 @@ TEST_F(Remote, PolygonsInTilesAreThoseOfOneProcess) {
   const auto frames = [&](const std::string& tiles) {
     // A solid that reaches into the volume: its depth is read from all tiles.
     const Outcome outcome = run_well(
-        under({"-n", "2", "--remote", "--tiles", tiles, "--report", file("report.json")}) +
-            without_opengl() +
-            viewer("table",
-                   {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames", file("tiles_" + tiles)}),
+        under({"-n", "2", "--remote", "--tiles", tiles, "--report", file("report.json")}) + without_opengl() +
+            viewer("table", {"--frames", "3", "--orbit", "50", "--opaque", "--screenshot-frames",
+                             file("tiles_" + tiles)}),
         on_display());
     EXPECT_EQ(substituted(json("report.json")), 3) << outcome.err;
     return json("report.json").at("tiles");
@@ -176,7 +175,7 @@ TEST_F(Remote, ImagesAreInTheWindowOfAServerWithoutSharedMemory) {
 
 TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
   Child child(
-      on_gl_server(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      command_of(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
       file(""));
   // The GL server that listens, and its process for the viewer.
   const auto servers = [&] {
@@ -201,7 +200,7 @@ TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {
 
 TEST_F(Remote, AViewerThatIsKilledEndsItsGlServer) {
   Child child(
-      on_gl_server(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
+      command_of(under({"--remote"}) + viewer("table", {"--frames", "100000", "--orbit", "1"}), on_display()),
       file(""));
   ASSERT_TRUE(comes_true([&] {
     const auto now = screen();

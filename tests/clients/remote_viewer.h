@@ -14,7 +14,7 @@
 
 namespace clients {
 
-class RemoteViewer : public GlServer {
+class RemoteViewer : public CommandTest {
  protected:
   /// The test is skipped, or has failed, where there is no display afterwards.
   void start_display(std::initializer_list<Need> needs) {

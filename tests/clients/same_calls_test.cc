@@ -15,7 +15,7 @@
 namespace clients {
 namespace {
 
-class SameCalls : public RecordingServer {
+class SameCalls : public RecordingTest {
  protected:
   void expect_same(const RecordedLibrary& library, const Words& viewer, Environment environment) const {
     const std::vector<std::string> bare = calls_in(dump_of_bare(library, viewer, environment));

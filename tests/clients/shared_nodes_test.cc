@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class SharedNodes : public GlServer {
+class SharedNodes : public CommandTest {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
@@ -37,7 +37,7 @@ TEST_F(SharedNodes, ServeTwoViewersAtTheSameTime) {
   run_well(second_viewer + Words{"--screenshot", file("second_bare.png")});
 
   const std::string socket = file("nodes.sock");
-  Child nodes(on_gl_server({(programs / "understudy").string(), "serve", "-n", "2", "--socket", socket}),
+  Child nodes(command_of({(programs / "understudy").string(), "serve", "-n", "2", "--socket", socket}),
               file(""));
   ASSERT_TRUE(
       comes_true([&] { return !nodes.running() || nodes.out().find("2 nodes at") != std::string::npos; }));
@@ -45,8 +45,8 @@ TEST_F(SharedNodes, ServeTwoViewersAtTheSameTime) {
 
   // The first draws from before the second comes until after it has gone.
   fs::create_directory(file("first"));
-  Child first(on_gl_server(under({"--connect", socket, "--report", file("first.json")}) + first_viewer +
-                           Words{"--frames", "100000", "--screenshot-frames", file("first")}),
+  Child first(command_of(under({"--connect", socket, "--report", file("first.json")}) + first_viewer +
+                         Words{"--frames", "100000", "--screenshot-frames", file("first")}),
               file(""));
   const auto first_draws = [&](int frames) {
     return comes_true([&] { return !first.running() || frames_written("first") > frames; }) && first.running();

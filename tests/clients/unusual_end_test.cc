@@ -11,7 +11,7 @@
 namespace clients {
 namespace {
 
-class UnusualEnd : public GlServer {
+class UnusualEnd : public CommandTest {
  protected:
   void SetUp() override {
     if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty())
@@ -36,7 +36,7 @@ TEST_F(UnusualEnd, AViewerThatLeavesInTheMidstOfAFrame) {
 
 TEST_F(UnusualEnd, AViewerThatIsKilled) {
   for (const int signal : {SIGKILL, SIGSEGV}) {
-    Child child(on_gl_server(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
+    Child child(command_of(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
                 file(""));
     ASSERT_TRUE(
         comes_true([&] { return !child.running() || child.out().find("frame 3:") != std::string::npos; }));
@@ -53,7 +53,7 @@ TEST_F(UnusualEnd, AViewerThatIsKilled) {
 }
 
 TEST_F(UnusualEnd, ALauncherThatIsKilledTakesNodesAndViewerWithItAndTheNextOneCleansUp) {
-  Child child(on_gl_server(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
+  Child child(command_of(on_two_ranks() + engine_viewer("table", {"--frames", "100000", "--print-times"})),
               file(""));
   ASSERT_TRUE(
       comes_true([&] { return !child.running() || child.out().find("frame 3:") != std::string::npos; }));

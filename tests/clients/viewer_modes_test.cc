@@ -1,4 +1,4 @@
-// The bundled viewer's ways of drawing: substituted where the nodes can play the part, and otherwise the
+// The bundled viewer's ways of drawing: substituted where the nodes can render the volume, and otherwise the
 // viewer's own image, bit for bit, with the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Words view(const Words& options) {
          options;
 }
 
-class ViewerModes : public GlServer, public testing::WithParamInterface<Way> {};
+class ViewerModes : public CommandTest, public testing::WithParamInterface<Way> {};
 
 TEST_P(ViewerModes, AreSubstitutedOrLeft) {
   if (const std::string lacking = missing({Need::engine}); !lacking.empty()) GTEST_SKIP() << lacking;
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Way{"StacksFrontToBack", "stacks", {"--operator", "under", "--opaque"}, 1, nullptr}),
     [](const auto& info) { return std::string(info.param.name); });
 
-class TimeSteps : public GlServer, public testing::WithParamInterface<const char*> {};
+class TimeSteps : public CommandTest, public testing::WithParamInterface<const char*> {};
 
 // The whole volume once; then, of a box in its middle, the tiles of 16^3 texels that it meets.
 TEST_P(TimeSteps, SendOnlyWhatChanges) {
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Of, TimeSteps, testing::Values("whole", "part", "again"
                          [](const auto& info) { return std::string(info.param); });
 
 /// An operator, or the pre-integrated segments.
-class OperatorsOnRanks : public GlServer, public testing::WithParamInterface<const char*> {};
+class OperatorsOnRanks : public CommandTest, public testing::WithParamInterface<const char*> {};
 
 TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;

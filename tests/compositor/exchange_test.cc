@@ -65,9 +65,9 @@ double largest_error(const Scene& scene, const Image& image) {
       std::array<double, 4> sum;
       sum.fill(volume::neutral_value(scene.op));
       for (const Rank rank : scene.order) {
-        const Image& image = scene.images[std::size_t(rank)];
-        if (intersection(image.rect, {x, y, 1, 1}).empty()) continue;
-        const float* pixel = image.at(x, y);
+        const Image& part = scene.images[std::size_t(rank)];
+        if (intersection(part.rect, {x, y, 1, 1}).empty()) continue;
+        const float* pixel = part.at(x, y);
         const double clear = 1 - sum[3];
         for (std::size_t c = 0; c < 4; ++c) {
           if (scene.op == Operator::over) sum[c] += clear * pixel[c];

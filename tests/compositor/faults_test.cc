@@ -128,7 +128,7 @@ TEST_P(StoppedRank, OrOneThatIsKilledLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Rank, StoppedRank, ::testing::Values(0, 1));
 
-TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAPictureDisturbNobody) {
+TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAnImageDisturbNobody) {
   start(3);
   const auto linked = connect();
   upload(*linked, texture_);

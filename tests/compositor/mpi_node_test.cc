@@ -112,7 +112,7 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedImage) {
   }
 }
 
-TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAPicture) {
+TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAnImage) {
   const Texture texture = some_texture();
   const auto count = [&](const volume::RenderRequest& request, int ranks, Algorithm algorithm, Gather gather) {
     const volume::KdTree tree(texture.description, ranks);

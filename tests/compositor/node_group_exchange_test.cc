@@ -50,7 +50,7 @@ TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
   EXPECT_GT(counts.messages, 0U);
 }
 
-TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrGathered) {
+TEST_F(NodeGroupTest, PartsAreGatheredDirectlyOrByTheRoot) {
   const Texture texture = some_texture();
   const volume::RenderRequest request = some_request(texture);
   const auto rendered_by = [&](const ExchangeSettings& settings, std::uint64_t& bytes) {
@@ -99,7 +99,7 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
     request.termination = 0;
     const Rendered all = linked->render(request);
     const std::uint64_t bytes = all.counts.bytes_exchanged, samples = all.counts.samples;
-    const volume::Image image = whole_image(all, request);
+    const volume::Image complete = whole_image(all, request);
     request.termination = 5e-6F;
     std::optional<volume::Image> first;
     for (int i = 0; i < 5; ++i) {
@@ -108,7 +108,7 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
       EXPECT_EQ(rendered.counts.samples, samples);
       EXPECT_GT(rendered.counts.samples_hidden, 0U);
       const volume::Image image = whole_image(rendered, request);
-      EXPECT_LE(largest_difference(image, image), 1e-5);
+      EXPECT_LE(largest_difference(image, complete), 1e-5);
       if (!first) first = image;
       EXPECT_EQ(image.rgba, first->rgba) << "whenever control messages come";
       // One that is refused leaves no control message that counts.

@@ -99,7 +99,7 @@ TEST(Overlap, ARankThatCannotGoOnEndsTheImageOnAllRanksAfterTheSameBand) {
       const ImageTask task{1, volume::Operator::over, whole, Layout::rgba32f, true, {0, 1, 2}};
       ImageBuffers::Memory mine{memory.size(), {}, {true, false, false}};
       if (communicator.rank() == 0) mine.here = memory;
-      const auto image = [&](bool may_fail) {
+      const auto make_image = [&](bool may_fail) {
         std::size_t drawn = 0;
         volume::FrameCounts travelled;
         const bool there = draw_and_composite(
@@ -120,9 +120,9 @@ TEST(Overlap, ARankThatCannotGoOnEndsTheImageOnAllRanksAfterTheSameBand) {
       if (failing == bands + 1 && communicator.rank() == 1) {
         refuse_to_draw(communicator);
       } else {
-        EXPECT_EQ(image(true), failing == bands);
+        EXPECT_EQ(make_image(true), failing == bands);
       }
-      EXPECT_TRUE(image(false)) << "the next image";
+      EXPECT_TRUE(make_image(false)) << "the next image";
     });
     // 1/4 over 1/2 over 3/4.
     constexpr float expected = 0.25F + 0.75F * (0.5F + 0.5F * 0.75F);

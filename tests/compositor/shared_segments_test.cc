@@ -29,36 +29,36 @@ TEST(SharedSegments, WhatOneRankWritesAnotherReads) {
   SharedSegments zero(memories, 0), one(memories, 1);
   constexpr std::string_view first = "behind", second = "in front";
   for (const std::string_view text : {first, second}) {
-    const std::span<std::byte> room = one.room(text.size());
-    ASSERT_EQ(room.size(), text.size());
-    std::memcpy(room.data(), text.data(), text.size());
-    const auto place = one.place_of(room);
+    const std::span<std::byte> segment = one.segment(text.size());
+    ASSERT_EQ(segment.size(), text.size());
+    std::memcpy(segment.data(), text.data(), text.size());
+    const auto place = one.place_of(segment);
     ASSERT_TRUE(place);
     const std::span<const std::byte> seen = zero.at(1, *place);
     EXPECT_EQ(std::string_view(reinterpret_cast<const char*>(seen.data()), seen.size()), text);
   }
 }
 
-TEST(SharedSegments, OnlyOwnModulesHaveAPlace) {
+TEST(SharedSegments, OnlyOwnSegmentsHaveAPlace) {
   const std::vector<FileDescriptor> memories = memories_of(2);
   SharedSegments zero(memories, 0), one(memories, 1);
   const std::vector<std::byte> elsewhere(100);
   EXPECT_FALSE(zero.place_of(elsewhere));
-  EXPECT_FALSE(zero.place_of(one.room(100)));
+  EXPECT_FALSE(zero.place_of(one.segment(100)));
 }
 
 TEST(SharedSegments, GivesNoMoreThanThereIsAndTakesPagesWhenTheyAreWritten) {
   const std::vector<FileDescriptor> memories = memories_of(1);
   SharedSegments segments(memories, 0);
-  EXPECT_TRUE(segments.room(SharedSegments::most_bytes + 1).empty());
-  EXPECT_EQ(segments.room(SharedSegments::most_bytes - 1000).size(), SharedSegments::most_bytes - 1000);
-  EXPECT_TRUE(segments.room(2000).empty());
-  EXPECT_EQ(segments.room(900).size(), 900U);
-  EXPECT_TRUE(segments.room(100).empty());
+  EXPECT_TRUE(segments.segment(SharedSegments::most_bytes + 1).empty());
+  EXPECT_EQ(segments.segment(SharedSegments::most_bytes - 1000).size(), SharedSegments::most_bytes - 1000);
+  EXPECT_TRUE(segments.segment(2000).empty());
+  EXPECT_EQ(segments.segment(900).size(), 900U);
+  EXPECT_TRUE(segments.segment(100).empty());
   EXPECT_EQ(resident_bytes(memories[0]), 0U);
   segments.clear();
-  const std::span<std::byte> room = segments.room(100'000);
-  std::ranges::fill(room, std::byte(1));
+  const std::span<std::byte> segment = segments.segment(100'000);
+  std::ranges::fill(segment, std::byte(1));
   EXPECT_LT(resident_bytes(memories[0]), 200'000U);
 }
 

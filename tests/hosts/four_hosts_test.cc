@@ -92,7 +92,7 @@ std::set<std::string> names_in(const fs::path& folder, const std::string& beginn
   return names;
 }
 
-class FourHosts : public clients::GlServer {
+class FourHosts : public clients::CommandTest {
  protected:
   void SetUp() override {
     if (const std::string& obstacle = Network::shared()->obstacle(); !obstacle.empty())
@@ -107,8 +107,8 @@ class FourHosts : public clients::GlServer {
 
   /// A viewer on the first host, with nodes on all of them.
   clients::Command on_four_hosts(const Words& options, const Words& viewer) const {
-    return on_gl_server(on_host(1, clients::under(Words{"--hostfile", file("hosts")} + options) + viewer),
-                        {{"OMPI_MCA_plm_rsh_agent", HOSTS_FOLDER "/launch_agent.sh"}});
+    return command_of(on_host(1, clients::under(Words{"--hostfile", file("hosts")} + options) + viewer),
+                      {{"OMPI_MCA_plm_rsh_agent", HOSTS_FOLDER "/launch_agent.sh"}});
   }
 
   std::uint64_t bytes_sent_by(int number) const {

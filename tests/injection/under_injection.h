@@ -1,4 +1,4 @@
-// A program, bare and behind an injection method: what it printed, and what Understudy counted.
+// A program, bare and under an injection method: what it printed, and what Understudy counted.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ CountedRun run_behind(InjectionMethod injection, const Words& command, Words env
 
 class UnderInjection : public ::testing::TestWithParam<InjectionMethod> {
  protected:
-  /// Runs it bare, which must go well, and behind the injection method, which must print and answer the same.
-  /// The answer is the run behind the injection method.
+  /// Runs it bare, which must go well, and under the injection method, which must print and answer the same.
+  /// The answer is the run under the injection method.
   static CountedRun expect_same(const Words& command, const Words& environment = {});
 
   std::string file(const std::string& name) const { return folder_.file(name); }

@@ -59,7 +59,7 @@ TEST_F(ContextlessCalls, AreLeftForTheLauncher) {
   EXPECT_EQ(counters->frames, 0U);
 }
 
-TEST_F(ContextlessCalls, AreTheCoreAffairWhenThereIsOne) {
+TEST_F(ContextlessCalls, AreTheCoresAffairWhenThereIsOne) {
   play("one_frame");
   EXPECT_TRUE(left().empty()) << "the test's core keeps no counters";
 }

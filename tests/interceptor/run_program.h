@@ -33,7 +33,7 @@ inline Outcome run_program(const std::vector<std::string>& environment,
     for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return result + "'";
   };
-  // env starts the program, so that neither the shell nor timeout runs behind the entry library.
+  // env starts the program, so that neither the shell nor timeout runs under the entry library.
   std::string line = "exec timeout 60 env -u LD_PRELOAD -u LD_AUDIT -u LD_LIBRARY_PATH";
   for (const std::string& variable : environment) line += quoted(variable);
   for (const std::string& word : command) line += quoted(word);

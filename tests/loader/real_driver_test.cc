@@ -1,4 +1,4 @@
-// glxinfo and eglinfo ask a driver nearly everything that can be asked. Behind an injection method they must
+// glxinfo and eglinfo ask a driver nearly everything that can be asked. Under an injection method they must
 // hear the same.
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -42,7 +42,7 @@ std::vector<std::string> known_remote_differences() {
   return lines_of({std::istreambuf_iterator<char>(in), {}});
 }
 
-class Piglit : public GlServer {
+class Piglit : public CommandTest {
  protected:
   /// Why piglit cannot be run here; empty where it can.
   std::string lacking() const {
@@ -55,8 +55,8 @@ class Piglit : public GlServer {
   /// Runs all tests, with `before` in front of piglit, and leaves the results in a folder of that name.
   void run_all(const std::string& results, const std::string& before, const std::string& chain) const {
     const auto jobs = std::to_string(std::max(2U, std::thread::hardware_concurrency()));
-    Child piglit(on_gl_server({script.string(), file(results).string()},
-                              {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
+    Child piglit(command_of({script.string(), file(results).string()},
+                            {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
                  file(""));
     const Outcome outcome = piglit.finish(patience_with_piglit);
     ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;

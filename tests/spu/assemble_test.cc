@@ -100,7 +100,7 @@ TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
   }
 }
 
-TEST_F(Assemble, TilesWithoutStagesAreToldWhereTheyAre) {
+TEST_F(Assemble, TilesWithoutGlServersAreToldWhereTheyAre) {
   EXPECT_THAT(error_of("tiles(of=2) driver"), HasSubstr("--tiles on"));
 }
 

@@ -173,7 +173,7 @@ TEST_F(BudgetTest, TheSameSceneIsCalibratedOnceAndAnotherTableAgain) {
   EXPECT_EQ(counters.calibrations, 2U) << "another table";
 }
 
-TEST_F(BudgetTest, APictureThatIsWrongByMoreMakesTheNextFiner) {
+TEST_F(BudgetTest, AnImageThatIsWrongByMoreMakesTheNextFiner) {
   Budget budget({.error = 0.02});
   const auto first = ask(budget);
   ASSERT_TRUE(first);

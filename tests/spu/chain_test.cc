@@ -21,7 +21,8 @@ using testing::install;
 using testing::installed;
 using testing::MockDriver;
 
-constexpr std::array phases = {Phase::plain, Phase::watching, Phase::deferring, Phase::owing, Phase::compiling};
+constexpr std::array phases = {Phase::plain, Phase::watching, Phase::deferring, Phase::depth_deferred,
+                               Phase::compiling};
 
 int unit_clears = 0;
 

@@ -1,6 +1,6 @@
-// Through whatever injection method someone looks at the framebuffer, the volume's image is there already.
+// By whatever command someone looks at the framebuffer, the volume's image is there already.
 //
-// A run of slices is kept back until something could see its result. Each injection method here is the first
+// A run of slices is kept back until something could see its result. Each command here is the first
 // call after the slices; what it shows is then read past the chain, so that nothing but this call can have
 // ended the run.
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr double alike = 40;      ///< dB, between the application's own image a
 constexpr double different = 30;  ///< what an image without the volume must not reach
 
 /// What an application has beside its window: two framebuffers with a texture each, textures of one and of
-/// three dimensions, and a buffer. All are made before the slices, so that an injection method is one call.
+/// three dimensions, and a buffer. All are made before the slices, so that a look is one call.
 struct Targets {
   std::array<GLuint, 2> framebuffer{};
   std::array<GLuint, 2> texture{};
@@ -432,7 +432,7 @@ INSTANTIATE_TEST_SUITE_P(Changes, InjectionMethods, ::testing::ValuesIn(changes_
 INSTANTIATE_TEST_SUITE_P(Attachments, InjectionMethods, ::testing::ValuesIn(looks_at_an_attachment()),
                          name_of_method);
 
-/// The injection methods above stand for all: while a run is open, no command but those that add to it goes
+/// The commands above stand for all: while a run is open, no command but those that add to it goes
 /// past.
 TEST(OpenRun, IsClosedByEveryCallThatAddsNothing) {
   auto app = GlApplication::start(Profile::compatibility);

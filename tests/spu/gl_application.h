@@ -38,7 +38,7 @@ class GlApplication {
   /// With false the application talks to the driver: the bare run.
   void use_chain(bool on);
 
-  /// As the injection method does around glXSwapBuffers.
+  /// As the entry library does around glXSwapBuffers.
   void end_frame();
 
   std::vector<float> read_pixels();

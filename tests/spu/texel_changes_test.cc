@@ -17,7 +17,7 @@ using volume::TexelBox;
 
 const TexelBox whole{{0, 0, 0}, {70, 50, 40}};
 constexpr std::size_t all_texels = std::size_t{70} * 50 * 40;
-constexpr std::uint64_t block = 16 * 16 * 16;
+constexpr std::uint64_t block_bytes = 16 * 16 * 16;
 
 /// The texels as the application has them; the texture follows.
 template <class Texel>
@@ -133,8 +133,8 @@ TEST(TexelChanges, OfACornerSendTheBlocksThatItTouches) {
   std::mt19937 random(3);
   auto before = film.draw(20);
   for (const bool all_again : {false, true}) {
-    for (const auto& [corner, bytes] : {std::pair{TexelBox{{0, 0, 0}, {9, 16, 12}}, block},
-                                        {TexelBox{{12, 3, 3}, {20, 9, 20}}, 4 * block},
+    for (const auto& [corner, bytes] : {std::pair{TexelBox{{0, 0, 0}, {9, 16, 12}}, block_bytes},
+                                        {TexelBox{{12, 3, 3}, {20, 9, 20}}, 4 * block_bytes},
                                         {TexelBox{{65, 49, 35}, {70, 50, 40}}, std::uint64_t(6 * 2 * 8)}}) {
       film.fill(corner, random);
       film.upload(all_again ? whole : corner);
@@ -204,7 +204,7 @@ TEST(TexelChanges, CopiedFromTheFramebufferAreSeen) {
   app->gl().CopyTexSubImage3D(GL_TEXTURE_3D, 0, 20, 20, 21, 2, 2, 10, 10);
   const Sent sent(*app);
   EXPECT_NE(film.draw(20), before);
-  EXPECT_EQ(sent.bytes(), block);
+  EXPECT_EQ(sent.bytes(), block_bytes);
 }
 
 /// A texture like the one that is bound.
@@ -253,7 +253,7 @@ TEST(TexelChanges, CopiedFromAnotherTextureConcernTheDestinationAlone) {
                                10);
     const auto after = film.draw(20);
     EXPECT_NE(after, before);
-    EXPECT_EQ(sent.bytes(), block);
+    EXPECT_EQ(sent.bytes(), block_bytes);
 
     std::vector<std::uint8_t> copied(1000, 250);
     app->gl().TexSubImage3D(GL_TEXTURE_3D, 0, 20, 20, 20, 10, 10, 10, GL_RED, GL_UNSIGNED_BYTE, copied.data());

@@ -36,7 +36,7 @@ std::uint64_t left_in_empty_bricks(const FrameCounts& c) {
   return c.samples - c.samples_taken - c.samples_hidden - c.dominated_samples;
 }
 
-TEST(Optimizations, OfEmptyBlocksChangesNoImage) {
+TEST(Optimizations, OfEmptyBricksChangesNoImage) {
   double worst = 0;
   for (const TexelType type : {TexelType::u8, TexelType::u16, TexelType::f32, TexelType::rgba8})
     for (const Operator op : {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit})

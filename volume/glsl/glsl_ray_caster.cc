@@ -145,8 +145,8 @@ struct GlslRayCaster::Rays {
     starts.resize(pixels.pixels());
     steps.resize(pixels.pixels());
     tbb::combinable<FrameCounts> partial;
-    const int strip_rows = (height + packet_height - 1) / packet_height;
-    tbb::parallel_for(tbb::blocked_range<int>(0, strip_rows), [&](const tbb::blocked_range<int>& range) {
+    const int packet_rows = (height + packet_height - 1) / packet_height;
+    tbb::parallel_for(tbb::blocked_range<int>(0, packet_rows), [&](const tbb::blocked_range<int>& range) {
       FrameCounts& mine = partial.local();
       RayPacket packet;
       for (int row = range.begin(); row < range.end(); ++row)

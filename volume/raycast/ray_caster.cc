@@ -294,7 +294,7 @@ void compose_behind(float* front, const float* back, int pixels) {
   }
 }
 
-/// What stays the same from image to image while classification and circumstances do.
+/// What stays the same from image to image while classification and prepared key do.
 struct RayCaster::Prepared {
   Classification classification;
   PreparedKey prepared_key;

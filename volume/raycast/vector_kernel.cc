@@ -119,7 +119,7 @@ HWY_INLINE void take_samples(Packet& rays, const Constants& constants, Source so
 
 /// Eight segments of every ray, as take_samples() takes samples.
 template <typename Source>
-HWY_INLINE void take_slabs(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
+HWY_INLINE void take_segments(Packet& rays, const Constants& constants, Source source, Colours& pixels) {
   const Floats one = hn::Set(FloatTag(), 1.0F);
   std::array<Located, samples_between_tests> front, back;
   std::array<SegmentIndex, samples_between_tests> classified;
@@ -185,7 +185,7 @@ void walk_packet(const Scene& scene, const RayPacket& packet, Source source, flo
           const Floats block = hn::Set(f, float(samples_between_tests));
           taken = hn::Add(taken, truncated(hn::Min(hn::Max(left, hn::Zero(f)), block)));
           if constexpr (slice_segments) {
-            take_slabs(rays, constants, source, pixels[g]);
+            take_segments(rays, constants, source, pixels[g]);
           } else {
             take_samples(rays, constants, source, pixels[g]);
           }

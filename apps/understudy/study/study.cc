@@ -301,7 +301,7 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   command->add_option("--scene", arguments->scenes, "of the built-in ones only these")->type_name("NAME");
   command
       ->add_option("--volume", arguments->volumes,
-                   "a file as a scene of its own, with a built-in table or a file of knots")
+                   "a file as a scene of its own, with a built-in table or a file of control points")
       ->type_name("FILE[,TABLE]");
   command->add_flag("--quick", arguments->quick, "fewer settings, smaller images, fewer repetitions");
   command->add_option("--size", arguments->edge, "edge of the images, in pixels")->check(CLI::Range(8, 4096));

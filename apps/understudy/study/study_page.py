@@ -62,7 +62,7 @@ def work_precision(scene):
                 axes.annotate(f"{p['step']:g}", (p["time_ms"], p["rms_colour"]), fontsize=7, textcoords="offset points",
                               xytext=(4, 4), color=colour)
             axes.loglog([p["time_ms"] for p in early], [p["rms_colour"] for p in early], "x", color=colour, markersize=5,
-                        label=f"{scheme}, rays end early")
+                        label=f"{scheme}, early ray termination")
         front = sorted((p for p in timed(scene) if p["front"]), key=lambda p: p["time_ms"])
         axes.loglog([p["time_ms"] for p in front], [p["rms_colour"] for p in front], "s", color="black", fillstyle="none",
                     markersize=10, label="Pareto front")
@@ -167,10 +167,10 @@ def main():
                      + "".join(f"<td>{scene['orders'][scheme]:.2f}" if scheme in scene["orders"] else "<td>–"
                                for scheme in COLOURS) + "</tr>" for scene in study["scenes"])
     text = f"""<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>Error against run time</title>
-<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; ghost layer: 2em auto; padding: 0 1em }}
+<style>body {{ font: 15px/1.45 sans-serif; max-width: 1300px; margin: 2em auto; padding: 0 1em }}
 table {{ border-collapse: collapse }} td, th {{ padding: 2px 9px; text-align: right; border-bottom: 1px solid #ddd }}
 td:first-child, th:first-child, .name {{ text-align: left }} .front {{ font-weight: bold }}
-figure {{ display: inline-block; ghost layer: 4px }} figcaption {{ font-size: 12px; text-align: center }}
+figure {{ display: inline-block; margin: 4px }} figcaption {{ font-size: 12px; text-align: center }}
 figure img {{ image-rendering: pixelated; width: 200px }}</style>
 <h1>Error against run time</h1>
 <p>{study['edge']}² pixels, {study['instruction_set']}. Errors are of premultiplied colour and opacity, in float, against the

@@ -55,12 +55,12 @@ void add_view(CLI::App& app, std::function<int()>& chosen) {
   add_loading_nodes(*command, arguments->nodes);
   CLI::Option* web = command
                          ->add_option("--web", arguments->port,
-                                      "in browsers, by the link that is printed; 0: any port that is free")
+                                      "show in browsers, by the link that is printed; 0 takes any free port")
                          ->check(CLI::Range(0, last_port))
                          ->type_name("PORT");
   command
       ->add_option("--bind", arguments->host,
-                   "listen there instead of on this machine alone; what travels is not encrypted, and "
+                   "address to listen at instead of this machine alone. Connections are not encrypted; "
                    "browsers elsewhere need `ssh -L` (docs/view.md)")
       ->type_name("HOST")
       ->needs(web)

@@ -64,7 +64,7 @@ ViewCamera camera_in(const Json& json) {
 volume::TransferControlPoints table_in(const Json& json) {
   constexpr const char* key = "table";
   if (member(key, json, "knots").size() > max_view_control_points)
-    fail(key, fmt::format("has more than {} knots", max_view_control_points));
+    fail(key, fmt::format("has more than {} control points", max_view_control_points));
   try {
     volume::TransferControlPoints table = control_points_in(json);
     if (table.of_values) fail(key, "is of values, not of places in the range");

@@ -23,7 +23,7 @@ constexpr double coarsest = 6;
 ViewState::ViewState(const FileScene& scene)
     : camera_{scene.image.camera, {}},
       image_(scene.image),
-      prepared_light_(scene.image.shading.light.value_or(usual_light(scene))) {}
+      light_(scene.image.shading.light.value_or(usual_light(scene))) {}
 
 void ViewState::apply(const ViewMessage& message) {
   sequence_ = message.sequence;
@@ -42,7 +42,7 @@ void ViewState::apply(const ViewMessage& message) {
   Shading& shading = image_.shading;
   if (message.shows_volume) shading.shows_volume = *message.shows_volume;
   if (message.surfaces) shading.surfaces = *message.surfaces;
-  if (message.light) shading.light = *message.light ? std::optional(prepared_light_) : std::nullopt;
+  if (message.light) shading.light = *message.light ? std::optional(light_) : std::nullopt;
   if (message.step) image_.step = *message.step;
 }
 

@@ -38,7 +38,7 @@ class ViewState {
 
   ViewCamera camera_;
   ImageSettings image_;           ///< but for the camera
-  volume::Light prepared_light_;  ///< when there is light
+  volume::Light light_;  ///< when there is light
   bool still_ = true;
   bool lossless_moving_ = false;
   std::uint64_t sequence_ = 0;

@@ -86,7 +86,7 @@ TransferFunction stepped(const TransferFunction& whole, double step, std::size_t
 }  // namespace
 
 std::string name_of(const Setting& setting) {
-  return fmt::format("{} of {:.4g} of the application's steps, rays end below {:.1e}{}",
+  return fmt::format("{} of {:.4g} of the application's steps, early ray termination below {:.1e}{}",
                      setting.method == volume::Method::pre_integrated ? "pre-integrated segments" : "samples",
                      setting.step, setting.termination, setting.as_halves ? ", half floats between nodes" : "");
 }

@@ -13,7 +13,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST_F(Render, APictureAndAReportOfAFile) {
+TEST_F(Render, AnImageAndAReportOfAFile) {
   const std::string file = ball(40);
   const Result result = render(file + " --transfer-function vessels --size 120x90 --frames 3 --report " +
                                folder_.file("r.json") + " --save-float " + folder_.file("f.pfm"));
@@ -123,7 +123,7 @@ TEST_F(Render, WhatIsWrongIsSaidWithTheNextStep) {
   EXPECT_THAT(trouble(folder_.write("short_9x9x9_u8.raw", std::string(700, 'x'))), HasSubstr("truncated"));
   EXPECT_THAT(trouble(file + " --transfer-function nothing"), HasSubstr("grey, engine, ct"));
   EXPECT_THAT(trouble(table("{")), HasSubstr("not a transfer function"));
-  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'control points'"));
+  EXPECT_THAT(trouble(table("{}")), HasSubstr("no list 'knots'"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 0, "colour": [0,0,0], "opacity": 0}]})")),
               HasSubstr("too few"));
   EXPECT_THAT(trouble(table(R"({"knots": [{"at": 1, "colour": [0,0,0], "opacity": 0},

@@ -83,7 +83,7 @@ TEST(Difference, OfOnePixelInAHundredIsATenthOfItsSizeInRms) {
   EXPECT_EQ(map.pixel(7, 4)[0], 0.0F);
 }
 
-TEST(Difference, CountsAlphaOnlyWhereAPictureHasSome) {
+TEST(Difference, CountsAlphaOnlyWhereAnImageHasSome) {
   const Image a = grey_image(4, 4, 0.5F);
   Image b = a;
   for (std::size_t i = 3; i < b.rgba.size(); i += 4) b.rgba[i] = 0.5F;

@@ -20,9 +20,9 @@ TEST(Environment, EveryMethodHasItsVariable) {
 
 TEST(Environment, PutsALibraryInFrontOfWhatTheUserHas) {
   Environment environment{{"LD_PRELOAD", "libuser.so"}};
-  put_in_front(environment, "LD_PRELOAD", "door.so");
+  put_in_front(environment, "LD_PRELOAD", "entry.so");
   put_in_front(environment, "LD_AUDIT", "audit.so");
-  EXPECT_EQ(environment["LD_PRELOAD"], "injection method.so:libuser.so");
+  EXPECT_EQ(environment["LD_PRELOAD"], "entry.so:libuser.so");
   EXPECT_EQ(environment["LD_AUDIT"], "audit.so");
 }
 

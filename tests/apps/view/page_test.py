@@ -95,8 +95,8 @@ def check(page, view):
     assert "secret" not in page.driver.current_url, "the secret stays in no address"
 
     before = page.shown()
-    server = page.element("image")
-    ActionChains(page.driver, duration=20).move_to_element(server).click_and_hold().move_by_offset(120, 40).move_by_offset(
+    canvas = page.element("image")
+    ActionChains(page.driver, duration=20).move_to_element(canvas).click_and_hold().move_by_offset(120, 40).move_by_offset(
         60, -20).release().perform()
     page.rests("the turned image", before)
     images["turned"] = page.save("2-turned")
@@ -110,7 +110,7 @@ def check(page, view):
     ActionChains(page.driver, duration=20).move_to_element_with_offset(editor, int(place[0] * 0.2), -10).click_and_hold(
         ).move_by_offset(0, -50).release().perform()
     page.rests("the edited transfer function", before)
-    assert "opacity" in page.text("knot-text")
+    assert "opacity" in page.text("control-point-text")
     images["edited"] = page.save("3-edited")
 
     before = page.shown()
@@ -160,7 +160,7 @@ def pending(link):
         page.element("secret").send_keys("0" * 32)
         page.driver.execute_script("document.querySelector('#ask button').click()")
         page.until(lambda: "not this session" in page.text("ask-reason"), "the refusal")
-        page.save("9-stranger")
+        page.save("9-without-secret")
         assert page.shown() == ""
     finally:
         page.driver.quit()

@@ -76,15 +76,15 @@ Outcome run_viewer(const std::vector<std::string>& arguments, const std::string&
 }
 
 Image read_png(const std::string& path) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&image, path.c_str()))
-    throw std::runtime_error(path + ": " + std::string(image.message));
-  image.format = PNG_FORMAT_RGB;
-  Image image{static_cast<int>(image.width), static_cast<int>(image.height), {}};
-  image.rgb.resize(PNG_IMAGE_SIZE(image));
-  if (!png_image_finish_read(&image, nullptr, image.rgb.data(), 0, nullptr))
-    throw std::runtime_error(path + ": " + std::string(image.message));
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&png, path.c_str()))
+    throw std::runtime_error(path + ": " + std::string(png.message));
+  png.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr))
+    throw std::runtime_error(path + ": " + std::string(png.message));
   return image;
 }
 

@@ -9,7 +9,7 @@ using namespace client;
 
 namespace {
 
-/// Without a context OpenGL does nothing; whatever it does, it must do the same behind an injection method.
+/// Without a context OpenGL does nothing; whatever it does, it must do the same under an injection method.
 void no_context() {
   glClear(GL_COLOR_BUFFER_BIT);
   GLuint texture = 7;

@@ -81,7 +81,7 @@ class RemoteApplication {
   Chain& make_context(bool core = false, std::uint64_t shares_with = 0) {
     window.core = core;
     if (core) window.version = link->versions().core;
-    chains_.push_back(std::make_unique<Chain>(link_driver(), std::make_shared<ShareGroup>(), &install,
+    chains_.push_back(std::make_unique<Chain>(remote_driver(), std::make_shared<ShareGroup>(), &install,
                                               Surroundings{chains_.size() + 1, shares_with, link.get()}));
     const auto session = std::make_shared<RenderSession>(Options{});
     EXPECT_EQ(assemble(*chains_.back(), "pack remote", session), std::nullopt);

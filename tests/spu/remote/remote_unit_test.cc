@@ -37,7 +37,7 @@ class RemoteUnitTest : public ::testing::Test {
   std::unique_ptr<ServerConnection>& link_ = application_.link;
 };
 
-TEST_F(RemoteUnitTest, TellsWhatTheStagesOpenGLIs) {
+TEST_F(RemoteUnitTest, TellsWhatTheGlServersOpenGLIs) {
   make_context();
   const auto* version = reinterpret_cast<const char*>(gl().GetString(GL_VERSION));
   ASSERT_NE(version, nullptr);
@@ -101,7 +101,7 @@ TEST_F(RemoteUnitTest, ErrorsComeWhenTheyAreAskedFor) {
   EXPECT_EQ(gl().GetError(), GLenum(GL_INVALID_VALUE));
 }
 
-TEST_F(RemoteUnitTest, FramesComeHome) {
+TEST_F(RemoteUnitTest, FramesComeBack) {
   make_context();
   gl().ClearColor(1, 0, 0, 1);
   gl().Clear(GL_COLOR_BUFFER_BIT);
@@ -320,7 +320,7 @@ TEST_F(RemoteUnitTest, ContextsShareWhatTheyShare) {
   EXPECT_FALSE(gl().IsTexture(texture));
 }
 
-TEST_F(RemoteUnitTest, AStageThatEndsIsNoticed) {
+TEST_F(RemoteUnitTest, AGlServerThatEndsIsNoticed) {
   make_context();
   GLint value = 0;
   gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &value);

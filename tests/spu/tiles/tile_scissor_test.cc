@@ -70,7 +70,7 @@ TEST_F(TileScissorTest, IsThereDuringADrawAlone) {
   EXPECT_EQ(state, before);
 }
 
-TEST_F(TileScissorTest, LeavesOfTheApplicationsBoxWhatIsInTheStrip) {
+TEST_F(TileScissorTest, LeavesOfTheApplicationsBoxWhatIsInTheTile) {
   state.enabled = true;
   for (const auto& [box, within] : std::vector<std::pair<std::array<GLint, 4>, std::array<GLint, 4>>>{
            {{5, 0, 7, 25}, {5, 20, 7, 5}}, {{5, 22, 7, 3}, {5, 22, 7, 3}}, {{5, 40, 7, 3}, {5, 40, 7, 0}}}) {

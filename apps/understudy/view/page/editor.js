@@ -1,4 +1,4 @@
-// The transfer function: knots over the volume's values, above the volume's histogram.
+// The transfer function: control points over the volume's values, above the volume's histogram.
 
 const radius = 6;
 
@@ -11,11 +11,11 @@ export const hexOf = colour => '#' + colour.map(v => Math.round(v * 255).toStrin
 export const colourIn = hex => [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16) / 255);
 
 export class TransferEditor {
-  // on: {changed(), selected(knot or null), hovered(place or null)}
+  // on: {changed(), selected(control point or null), hovered(place or null)}
   constructor(canvas, on) {
     this.canvas = canvas;
     this.on = on;
-    this.knots = [];
+    this.points = [];
     this.bins = [];
     this.selected = -1;
     this.dragging = false;
@@ -39,32 +39,32 @@ export class TransferEditor {
     this.draw();
   }
 
-  show(knots) {
-    this.knots = knots.map(knot => ({...knot, colour: [...knot.colour]}));
+  show(points) {
+    this.points = points.map(point => ({...point, colour: [...point.colour]}));
     this.select(-1);
   }
 
   select(index) {
     this.selected = index;
-    this.on.selected(this.knots[index] ?? null);
+    this.on.selected(this.points[index] ?? null);
     this.draw();
   }
 
   recolour(colour) {
     if (this.selected < 0) return;
-    this.knots[this.selected].colour = colour;
+    this.points[this.selected].colour = colour;
     this.changed();
   }
 
   remove() {
-    if (this.selected < 0 || this.knots.length <= 2) return;
-    this.knots.splice(this.selected, 1);
+    if (this.selected < 0 || this.points.length <= 2) return;
+    this.points.splice(this.selected, 1);
     this.select(-1);
     this.on.changed();
   }
 
   changed() {
-    this.on.selected(this.knots[this.selected] ?? null);
+    this.on.selected(this.points[this.selected] ?? null);
     this.draw();
     this.on.changed();
   }
@@ -83,10 +83,10 @@ export class TransferEditor {
   }
 
   at(x) {
-    const next = this.knots.findIndex(knot => knot.at > x);
-    if (next === 0) return this.knots[0];
-    if (next < 0) return this.knots.at(-1);
-    const [a, b] = [this.knots[next - 1], this.knots[next]];
+    const next = this.points.findIndex(point => point.at > x);
+    if (next === 0) return this.points[0];
+    if (next < 0) return this.points.at(-1);
+    const [a, b] = [this.points[next - 1], this.points[next]];
     const share = (x - a.at) / (b.at - a.at);
     return {colour: a.colour.map((value, k) => value + share * (b.colour[k] - value)),
             opacity: a.opacity + share * (b.opacity - a.opacity)};
@@ -95,13 +95,13 @@ export class TransferEditor {
   press(event) {
     this.canvas.setPointerCapture(event.pointerId);
     const [x, y] = this.placeOf(event), frame = this.frame;
-    const far = this.knots.map(knot =>
-      Math.hypot((knot.at - x) * frame.width, (heightOf(knot.opacity) - y) * frame.height));
+    const far = this.points.map(point =>
+      Math.hypot((point.at - x) * frame.width, (heightOf(point.opacity) - y) * frame.height));
     const nearest = far.indexOf(Math.min(...far));
     this.dragging = true;
     if (far[nearest] <= 2 * radius) return this.select(nearest);
-    const index = this.knots.filter(knot => knot.at <= x).length;
-    this.knots.splice(index, 0, {at: x, colour: [...this.at(x).colour], opacity: opacityAt(y)});
+    const index = this.points.filter(point => point.at <= x).length;
+    this.points.splice(index, 0, {at: x, colour: [...this.at(x).colour], opacity: opacityAt(y)});
     this.selected = index;
     this.changed();
   }
@@ -110,9 +110,9 @@ export class TransferEditor {
     const [x, y] = this.placeOf(event);
     this.on.hovered(x);
     if (!this.dragging || this.selected < 0) return;
-    const knot = this.knots[this.selected];
-    knot.at = Math.min(this.knots[this.selected + 1]?.at ?? 1, Math.max(this.knots[this.selected - 1]?.at ?? 0, x));
-    knot.opacity = opacityAt(y);
+    const point = this.points[this.selected];
+    point.at = Math.min(this.points[this.selected + 1]?.at ?? 1, Math.max(this.points[this.selected - 1]?.at ?? 0, x));
+    point.opacity = opacityAt(y);
     this.changed();
   }
 
@@ -143,10 +143,10 @@ export class TransferEditor {
       context.fillStyle = '#8d95a3';
       context.fillText(String(opacity), frame.left + 2, y(heightOf(opacity)) + 9);
     }
-    if (this.knots.length < 2) return;
+    if (this.points.length < 2) return;
 
     const fill = context.createLinearGradient(x(0), 0, x(1), 0);
-    for (const knot of this.knots) fill.addColorStop(Math.min(1, Math.max(0, knot.at)), css(knot.colour, 0.45));
+    for (const point of this.points) fill.addColorStop(Math.min(1, Math.max(0, point.at)), css(point.colour, 0.45));
     context.beginPath();
     context.moveTo(x(0), y(0));
     // Straight lines of opacity are curves of its cube root.
@@ -158,10 +158,10 @@ export class TransferEditor {
     context.strokeStyle = '#ffffffc0';
     context.lineWidth = 1;
     context.stroke();
-    this.knots.forEach((knot, i) => {
+    this.points.forEach((point, i) => {
       context.beginPath();
-      context.arc(x(knot.at), y(heightOf(knot.opacity)), radius, 0, 7);
-      context.fillStyle = css(knot.colour);
+      context.arc(x(point.at), y(heightOf(point.opacity)), radius, 0, 7);
+      context.fillStyle = css(point.colour);
       context.fill();
       context.lineWidth = i === this.selected ? 2.5 : 1.25;
       context.strokeStyle = i === this.selected ? '#f0a04b' : '#ffffff';

@@ -8,7 +8,7 @@ const most_side = 4096;    // of an image, as the program has it
 const wheel_step = 1.0015; // for one unit of a wheel's way
 
 const element = id => document.getElementById(id);
-const server = element('server'), image = element('image'), boxes = element('boxes');
+const viewport = element('viewport'), image = element('image'), boxes = element('boxes');
 
 let volume = null;         // what there is to be seen
 let asked = {};            // since the last request
@@ -128,11 +128,11 @@ function begin(message) {
   const before = remembered() ?? {};
   editor.showHistogram(message.histogram, message.low, message.high);
   editor.show(before.table?.knots ?? message.table);
-  element('tables').replaceChildren(...Object.entries(message.tables).map(([name, knots]) => {
+  element('tables').replaceChildren(...Object.entries(message.tables).map(([name, points]) => {
     const button = document.createElement('button');
     button.type = 'button';
     button.textContent = name;
-    button.onclick = () => { editor.show(knots); ask({table: {knots: editor.knots}}, false); };
+    button.onclick = () => { editor.show(points); ask({table: {knots: editor.points}}, false); };
     return button;
   }));
   element('shows-volume').checked = before.volume ?? message.volume;
@@ -147,7 +147,7 @@ function begin(message) {
   element('step').value = before.step ?? message.step;
   element('lossless').checked = before.lossless ?? false;
   tellControls();
-  ask({...before, size: sizeOf(server)}, false);
+  ask({...before, size: sizeOf(viewport)}, false);
 }
 
 function banner(text, part) {
@@ -188,7 +188,7 @@ function showRanks() {
 }
 
 function overlay() {
-  const {width, height} = server.getBoundingClientRect();
+  const {width, height} = viewport.getBoundingClientRect();
   boxes.width = width * window.devicePixelRatio;
   boxes.height = height * window.devicePixelRatio;
   drawBoxes(boxes, element('shows-boxes').checked ? shown?.matrix : null, ranks);
@@ -204,7 +204,7 @@ function sizeOf(of) {
 
 // In halves of the shorter side, right and up from the middle.
 function pointAt(x, y) {
-  const {left, top, width, height} = server.getBoundingClientRect(), half = Math.min(width, height) / 2;
+  const {left, top, width, height} = viewport.getBoundingClientRect(), half = Math.min(width, height) / 2;
   return [(x - left - width / 2) / half, (height / 2 - (y - top)) / half];
 }
 
@@ -247,26 +247,26 @@ image.addEventListener('keydown', event => {
   else return;
   event.preventDefault();
 });
-new ResizeObserver(() => { if (volume) ask({size: sizeOf(server)}, true); }).observe(server);
+new ResizeObserver(() => { if (volume) ask({size: sizeOf(viewport)}, true); }).observe(viewport);
 
 // ---- the controls
 
 const editor = new TransferEditor(element('editor'), {
-  changed: () => ask({table: {knots: editor.knots}}, true),
-  selected: knot => {
-    element('knot').style.visibility = knot ? 'visible' : 'hidden';
-    if (!knot) return;
-    element('knot-colour').value = hexOf(knot.colour);
-    element('knot-text').textContent = `at ${valueAt(knot.at)}, opacity ${knot.opacity.toPrecision(3)}`;
+  changed: () => ask({table: {knots: editor.points}}, true),
+  selected: point => {
+    element('control-point').style.visibility = point ? 'visible' : 'hidden';
+    if (!point) return;
+    element('control-point-colour').value = hexOf(point.colour);
+    element('control-point-text').textContent = `at ${valueAt(point.at)}, opacity ${point.opacity.toPrecision(3)}`;
   },
   hovered: place => { element('hovered').textContent = place === null ? '' : valueAt(place); },
 });
 function valueAt(place) {
   return volume ? Number((volume.low + place * (volume.high - volume.low)).toPrecision(4)).toString() : '';
 }
-element('knot').style.visibility = 'hidden';
-element('knot-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
-element('knot-remove').addEventListener('click', () => editor.remove());
+element('control-point').style.visibility = 'hidden';
+element('control-point-colour').addEventListener('input', event => editor.recolour(colourIn(event.target.value)));
+element('control-point-remove').addEventListener('click', () => editor.remove());
 
 function tellControls() {
   element('surface-value').textContent = valueAt(Number(element('surface-at').value));

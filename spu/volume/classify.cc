@@ -67,6 +67,21 @@ void VolumeUnit::count_probe(std::string_view why) {
   if (!why.empty()) count_done(Optimization::known_colours, why);
 }
 
+const ProgramFindings& VolumeUnit::findings(const Substitution& s, std::span<const UniformValue> values) {
+  const GLuint program = s.pipeline.program;
+  const auto record = chain_.group().programs().program(program);
+  auto& [link, text] = texts_[program];
+  if (link != record->link) {
+    text = {};
+    link = record->link;
+  }
+  const DispatchTable& gl = *context().gl;
+  const SamplerRoles roles = sampler_roles(gl, s.pipeline, samplers_.of(gl, program, record->link));
+  const ProgramFindings* const found = text.findings(record->fragment_sources, roles, values);
+  if (found == nullptr) throw Refusal{text.trouble()};
+  return *found;
+}
+
 void VolumeUnit::classify(Substitution& s) {
   const DispatchTable& gl = *context().gl;
   KnownVolume& known = s.volume;
@@ -87,14 +102,11 @@ void VolumeUnit::classify(Substitution& s) {
     s.inputs.push_back({key.back(), VerificationSchedule::Effect::unknown});
     const auto values = fragment_uniform_values(context(), s.pipeline.program, parts);
     for (const UniformValue& value : values) key.push_back(value.value);
-    const SamplerRoles roles =
-        sampler_roles(gl, s.pipeline, samplers_.of(gl, s.pipeline.program, s.fragment.record->link));
-    const auto says = findings(s.pipeline.program, parts, roles);
-    if (!says) throw Refusal{parts.facts_trouble};
-    if (std::string reason = refusal_of_slices(parts, *says, s.fragment, !s.slice_segments.empty());
+    const ProgramFindings& says = findings(s, values);
+    if (std::string reason = refusal_of_slices(parts, says, s.fragment, !s.slice_segments.empty());
         !reason.empty())
       throw Refusal{std::move(reason)};
-    for (const auto& input : uniform_inputs(parts, *says, values)) s.inputs.push_back(input);
+    for (const auto& input : uniform_inputs(says, values)) s.inputs.push_back(input);
   } else if (s.pipeline.assembly) {
     key.push_back(std::nanf(""));  // its parameters may be any state of the context: probed every time
   } else {

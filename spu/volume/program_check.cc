@@ -72,8 +72,8 @@ bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, co
   if (index >= fragment.range.low.size()) return false;
   const auto component = std::size_t(source.component);
   if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
-  return influence.target == program::Target::colour && influence.flow == program::Flow::data &&
-         !influence.through_table;
+  // A fade that is decided by a number (PyMOL's fog) is measured as one that is computed from it.
+  return influence.target == program::Target::colour && !influence.through_table;
 }
 
 std::string sentence(std::string text) {
@@ -104,16 +104,34 @@ SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
   return roles;
 }
 
-std::shared_ptr<const ProgramFindings> findings_of(const ProgramStages& stages, const SamplerRoles& roles) {
-  if (!stages.facts) return nullptr;
+const ProgramFindings* ProgramText::findings(std::span<const std::string> fragment_sources,
+                                             const SamplerRoles& roles, std::span<const UniformValue> values) {
+  std::vector<program::KnownUniform> known;
+  if (readings_ < most_readings) {
+    for (const UniformValue& value : values) {
+      if (value.chooses) known.push_back({std::string(value.name), value.component, double(value.value)});
+    }
+  }
+  if (readings_ > 0 && known == known_ && (!findings_ || findings_->roles == roles))
+    return findings_ ? &*findings_ : nullptr;
+  ++readings_;
+  known_ = std::move(known);
+  findings_.reset();
+  program::StageFinding read = program::analyse(program::Stage::fragment, fragment_sources, known_);
+  if (const auto* failure = std::get_if<program::Failure>(&read)) {
+    trouble_ = "the fragment shader is not understood: " + failure->what;
+    return nullptr;
+  }
+  findings_.emplace(std::get<program::StageFacts>(std::move(read)), roles);
   const std::vector<std::string> volumes = ends_of_ways(roles);
-  return std::make_shared<const ProgramFindings>(
-      ProgramFindings{roles, slice_finding(*stages.facts, volumes), ray_finding(*stages.facts, volumes)});
+  findings_->slices = slice_finding(findings_->facts, volumes);
+  findings_->ray = ray_finding(findings_->facts, volumes);
+  return &*findings_;
 }
 
 std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
                               const FragmentInputs& fragment, bool slice_segments) {
-  const StageFacts& facts = *stages.facts;
+  const StageFacts& facts = findings.facts;
   const SamplerRoles& roles = findings.roles;
   if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
   const program::SliceFinding& finding = findings.slices;
@@ -135,8 +153,8 @@ std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings
   return sentence(texts(facts, unexplained).front());
 }
 
-std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFindings& findings) {
-  const StageFacts& facts = *stages.facts;
+std::string refusal_of_ray_caster(const ProgramFindings& findings) {
+  const StageFacts& facts = findings.facts;
   if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
   const program::RayFinding& finding = findings.ray;
   if (!finding.loop) return "no loop of the fragment shader samples the volume";
@@ -151,15 +169,16 @@ std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFind
   return {};
 }
 
-VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
+VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
                                             std::span<const UniformValue> values) {
   const auto only_colours = [&](const UniformValue& value) {
-    return std::ranges::none_of(findings.slices.uniforms, [&](const program::UniformUse& use) {
-      const Source& source = stages.facts->sources[use.source];
-      if (!use.discard && !use.branch && !use.coordinate) return false;
-      if (value.name.empty()) return source.kind == SourceKind::uniform_block;
-      return source.component == value.component && same_variable(source.name, std::string(value.name));
-    });
+    return !value.chooses &&
+           std::ranges::none_of(findings.slices.uniforms, [&](const program::UniformUse& use) {
+             const Source& source = findings.facts.sources[use.source];
+             if (!use.discard && !use.branch && !use.coordinate) return false;
+             if (value.name.empty()) return source.kind == SourceKind::uniform_block;
+             return source.component == value.component && same_variable(source.name, std::string(value.name));
+           });
   };
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs inputs;

@@ -2,13 +2,14 @@
 // the values that were tried; the text says on what else they can depend (spu/volume/program).
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "spu/volume/classification/probe.h"
 #include "spu/volume/pipeline.h"
+#include "spu/volume/program/analysis.h"
 #include "spu/volume/program/ray_caster.h"
 #include "spu/volume/program/slices.h"
 #include "spu/volume/program_stages.h"
@@ -23,15 +24,32 @@ struct SamplerRoles {
   bool operator==(const SamplerRoles&) const = default;
 };
 
-/// What the text says about the volume, for one choice of roles.
+/// What the text says about the volume, for one choice of roles and as long as the uniforms that choose between
+/// branches keep their values.
 struct ProgramFindings {
+  program::StageFacts facts;
   SamplerRoles roles;
   program::SliceFinding slices;
   program::RayFinding ray;
 };
 
-/// Null where the text is not understood. To be kept: it takes as long as a few draws.
-std::shared_ptr<const ProgramFindings> findings_of(const ProgramStages& stages, const SamplerRoles& roles);
+/// The findings of one link of a program. Each takes about as long as a few draws, and is kept.
+class ProgramText {
+ public:
+  /// Null, with the reason in trouble(), where the text is not understood.
+  const ProgramFindings* findings(std::span<const std::string> fragment_sources, const SamplerRoles& roles,
+                                  std::span<const UniformValue> values);
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  /// Later values of uniforms that change all the time are not told to the analysis.
+  static constexpr int most_readings = 16;
+
+  std::vector<program::KnownUniform> known_;
+  std::optional<ProgramFindings> findings_;
+  std::string trouble_;
+  int readings_ = 0;
+};
 
 SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
                            const std::vector<SamplerUniform>& samplers);
@@ -43,11 +61,11 @@ std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings
                               const FragmentInputs& fragment, bool slice_segments);
 
 /// Why a ray caster may not be; empty: it may.
-std::string refusal_of_ray_caster(const ProgramStages& stages, const ProgramFindings& findings);
+std::string refusal_of_ray_caster(const ProgramFindings& findings);
 
 /// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or
 /// move samples is unknown.
-VerificationSchedule::Inputs uniform_inputs(const ProgramStages& stages, const ProgramFindings& findings,
+VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
                                             std::span<const UniformValue> values);
 
 }  // namespace understudy::spu

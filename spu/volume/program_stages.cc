@@ -70,6 +70,11 @@ UniformShape shape_of(GLenum type) {
   }
 }
 
+bool is_sampler(GLenum type) {
+  return type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_CUBE ||
+         type == GL_SAMPLER_2D_RECT || type == GL_SAMPLER_1D_SHADOW || type == GL_SAMPLER_2D_SHADOW;
+}
+
 template <class Visit>
 void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
   GLint count = 0;
@@ -451,9 +456,12 @@ std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLui
     const GLint location = gl.GetUniformLocation(application, uniform.name.c_str());
     const UniformShape shape = shape_of(uniform.type);
     if (location < 0 || shape.components == 0) continue;
+    const bool chooses = !is_sampler(uniform.type) && (shape.kind == UniformShape::Kind::integer ||
+                                                       shape.kind == UniformShape::Kind::natural);
     std::array<GLfloat, 16> value{};
     gl.GetUniformfv(application, location, value.data());
-    for (int c = 0; c < shape.components; ++c) values.push_back({uniform.name, c, value[std::size_t(c)]});
+    for (int c = 0; c < shape.components; ++c)
+      values.push_back({uniform.name, c, value[std::size_t(c)], chooses});
   }
   if (stages.uniform_blocks) append_block_contents(gl, application, values);
   return values;

@@ -47,6 +47,7 @@ struct UniformValue {
   std::string_view name;  ///< of StageUniform; empty: of a block
   int component = 0;
   float value = 0;
+  bool chooses = false;  ///< an integer or a truth value: what branches are usually decided by
 };
 
 /// Needs the program's record; `application` is the program itself, for attribute locations.

@@ -111,11 +111,8 @@ void VolumeUnit::compose_proxy_request(Substitution& s, compositor::RenderServic
 
   const MarchContext measured = context_of();
   MarchInputs inputs = march_inputs(measured, chain_.group());
-  const auto says = findings(
-      s.pipeline.program, parts,
-      sampler_roles(*context().gl, s.pipeline, samplers_.of(*context().gl, s.pipeline.program, record->link)));
-  if (!says) throw Refusal{parts.facts_trouble};
-  if (std::string reason = refusal_of_ray_caster(parts, *says); !reason.empty())
+  const auto values = fragment_uniform_values(context(), s.pipeline.program, parts);
+  if (std::string reason = refusal_of_ray_caster(findings(s, values)); !reason.empty())
     throw Refusal{std::move(reason)};
   append_inputs(s.inputs, inputs, known.camera != box.camera.texture_to_clip);
   known.camera = box.camera.texture_to_clip;

@@ -25,6 +25,7 @@
 #include "spu/volume/frame_clock.h"
 #include "spu/volume/geometry/slices.h"
 #include "spu/volume/present.h"
+#include "spu/volume/program_check.h"
 #include "spu/volume/program_samplers.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/render_session.h"
@@ -38,8 +39,6 @@ namespace understudy::spu {
 struct ImageDifference;
 struct NativeImage;
 class NativeDrawing;
-struct ProgramFindings;
-struct SamplerRoles;
 struct MergedVolume;
 struct Transferred;
 
@@ -168,10 +167,8 @@ class VolumeUnit final : public Unit {
   /// The application draws this frame, and the volume is measured anew.
   [[noreturn]] void lose(KnownVolume& known, const ImageDifference& difference);
   NativeDrawing& sentinel_drawing(const Substitution& s);
-  /// Throws Refusal where the program's text does not allow what was recognised.
-  void check_program(Substitution& s);
-  std::shared_ptr<const ProgramFindings> findings(GLuint program, const ProgramStages& stages,
-                                                  const SamplerRoles& roles);
+  /// What the text of the run's program says now. Throws Refusal where it is not understood.
+  const ProgramFindings& findings(const Substitution& s, std::span<const UniformValue> values);
   void explain(const Substitution& s, std::string_view beginning = {});
   void count_substituted(KnownVolume& known, const volume::FrameCounts& counts);
 
@@ -223,8 +220,8 @@ class VolumeUnit final : public Unit {
   int other_stacks_ = 0;  ///< runs through many 2-D textures that were no volume, since the last that was
   ProgramSamplers samplers_;
   std::map<GLuint, std::pair<std::uint64_t, ProgramStages>>
-      stages_;  ///< by program, with the link they stem from
-  std::map<GLuint, std::pair<std::uint64_t, std::shared_ptr<const ProgramFindings>>> findings_;  ///< likewise
+      stages_;                                                     ///< by program, with the link they stem from
+  std::map<GLuint, std::pair<std::uint64_t, ProgramText>> texts_;  ///< likewise
   std::unique_ptr<NativeDrawing> sentinel_drawing_;
   std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
   std::minstd_rand random_;               ///< where sentinels stand

@@ -17,6 +17,7 @@ struct KnownUniform {
   std::string name;  ///< as in Source::name
   int component = 0;
   double value = 0;
+  bool operator==(const KnownUniform&) const = default;
 };
 
 /// GLSL 1.10 to 4.60 and ES 1.00 to 3.20; 1.10 where the text does not say. Several sources are several shader

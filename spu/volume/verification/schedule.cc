@@ -14,10 +14,10 @@ constexpr double grown_footprint = 1.5;
 std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
                                  const VerificationSchedule::Inputs& now) {
   std::vector<std::size_t> changed;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (now[i].effect == VerificationSchedule::Effect::followed && i < before.size()) continue;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (now[i].effect == VerificationSchedule::Effect::followed) continue;
     // What is no number differs from itself.
-    if (i >= before.size() || !(before[i].value == now[i].value)) changed.push_back(i);
+    if (!(before[i].value == now[i].value)) changed.push_back(i);
   }
   return changed;
 }
@@ -40,6 +40,7 @@ bool VerificationSchedule::is_trusted(std::size_t index) const {
 
 void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
   if (inputs_.size() != inputs.size()) {
+    right_ = false;
     inputs_.clear();
     changing_.clear();
     now_changed_.clear();

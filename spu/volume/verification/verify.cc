@@ -143,14 +143,4 @@ void VolumeUnit::compare_sentinels(Substitution& s, const volume::ImageView& ima
   schedule.sentinels_took(count, milliseconds_since(start));
 }
 
-std::shared_ptr<const ProgramFindings> VolumeUnit::findings(GLuint program, const ProgramStages& stages,
-                                                            const SamplerRoles& roles) {
-  auto& [link, known] = findings_[program];
-  if (!known || link != stages_[program].first || !(known->roles == roles)) {
-    known = findings_of(stages, roles);
-    link = stages_[program].first;
-  }
-  return known;
-}
-
 }  // namespace understudy::spu

@@ -1,0 +1,61 @@
+// Every scenario bare, bare in floats, and under Understudy: is what it shows right, and is it substituted or
+// left as its file says?
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "tests/adversary/command.h"
+#include "tests/adversary/verdict.h"
+
+namespace adversary {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int frames = 30;
+
+std::string contents(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Adversary : public testing::TestWithParam<NamedScenario> {
+ protected:
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+
+  /// Of `adversary run` into the folder of that name, after the words of `before`.
+  void draw(const std::string& into, std::vector<std::string> before = {},
+            const std::vector<std::string>& after = {}) {
+    before.insert(before.end(), {ADVERSARY_PROGRAM, "run", GetParam().name, (folder_ / into).string(),
+                                 "--frames", std::to_string(frames)});
+    before.insert(before.end(), after.begin(), after.end());
+    const fs::path log = folder_ / (into + ".log");
+    // A viewer that is faster by itself would be left to itself, and nothing would be tested.
+    ASSERT_EQ(run_command(before, log, {"UNDERSTUDY_SPEED_GUARD=off"}), 0) << contents(log);
+  }
+
+  const fs::path folder_ = fs::path(ADVERSARY_FOLDER) / GetParam().name;
+};
+
+TEST_P(Adversary, ShowsNoWrongImage) {
+  ASSERT_NO_FATAL_FAILURE(draw("bare"));
+  ASSERT_NO_FATAL_FAILURE(draw("exact", {}, {"--exact"}));
+  ASSERT_NO_FATAL_FAILURE(
+      draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder_ / "report.json").string(), "--"}));
+  const Verdict verdict = judge(folder_, frames);
+  fmt::print("adversary: {}\n{}", line_about(GetParam(), verdict), contents(folder_ / "under.log"));
+  EXPECT_EQ(what_is_not_met(GetParam().scenario, verdict), "") << "images are in " << folder_;
+  if (!HasFailure() && std::getenv("ADVERSARY_KEEP_IMAGES") == nullptr) fs::remove_all(folder_);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Adversary, testing::ValuesIn(all_scenarios()),
+                         [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace adversary

@@ -1,0 +1,25 @@
+#include "tests/adversary/caster_scene.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::casters {
+
+Scenario blank_then_cut() {
+  return {
+      .sentence = "The first six frames show nothing; then opacity comes, and what lies beyond z = 0.5 is cut.",
+      .key_frames = {6},
+      .start = [](Canvas& canvas) -> DrawFrame {
+        auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
+uniform float opacity;)",
+                                                                   R"(
+  if (here.z > 0.5) continue;
+  colour.a *= opacity;)")});
+
+        return [scene](int frame) {
+          scene->program.use();
+          scene->program.set("opacity", frame < 6 ? 0.0F : 1.0F);
+          scene->draw(frame);
+        };
+      }};
+}
+
+}  // namespace adversary::casters

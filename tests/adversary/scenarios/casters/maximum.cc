@@ -1,0 +1,19 @@
+#include "tests/adversary/caster_scene.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::casters {
+
+Scenario maximum() {
+  return {.sentence = "The largest value along the ray, through a table of opaque colours.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            return
+                [scene = caster_scene(canvas, {.fragment = caster_fragment_shader(
+                                                   {.before = "  float largest = 0.0;",
+                                                    .each = "    largest = max(largest, value);",
+                                                    .after = "  shown = texture(table, vec2(largest, 0.5));"}),
+                                               .table = opaque_colours()})](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::casters

@@ -1,0 +1,18 @@
+#include "tests/adversary/caster_scene.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::casters {
+
+Scenario unsigned_16() {
+  return {.sentence = "16 bits of which the volume uses 0 to 1300, spread by a factor in the shader.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            return [scene = caster_scene(
+                        canvas, {.fragment = over_caster(
+                                     "", "    colour = texture(table, vec2(value * 65535.0 / 1300.0, 0.5));"),
+                                 .grid = scaled(sampled(48, waves), 1300.0F / 65535),
+                                 .format = {.texel = Texel::unsigned16}})](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::casters

@@ -1,0 +1,17 @@
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario core_under() {
+  return {.sentence = "Slices front to back, with premultiplied colours and destination alpha.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            return
+                [scene = slice_scene(canvas, {.table = premultiplied(soft_colours()),
+                                              .blending = Blending::under,
+                                              .background = {0, 0, 0, 0}})](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::slices

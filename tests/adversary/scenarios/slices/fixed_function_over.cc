@@ -1,0 +1,23 @@
+#include "tests/adversary/old_slices.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::slices {
+
+Scenario fixed_function_over() {
+  return {.sentence = "Fixed function: colours with opacity per voxel, GL_REPLACE, over.",
+          .expectation = Expectation::must_be_substituted,
+          .profile = Profile::compatibility,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            upload_volume(canvas, 0, coloured(sampled(48, waves)), {.shown = Shown::colour});
+            return [&canvas](int frame) {
+              const Camera camera = old_camera(canvas, frame);
+              begin_old_frame(canvas, camera);
+              canvas.gl.Enable(GL_TEXTURE_3D);
+              canvas.gl.TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
+              set_blending(canvas.gl, Blending::over);
+              draw_polygons(canvas.gl, view_aligned_slices(camera, 64));
+            };
+          }};
+}
+
+}  // namespace adversary::slices

@@ -1,0 +1,26 @@
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario nearest_of_16_bits() {
+  return {.sentence = "16 bits without interpolation; samples of exactly 777 are opaque white.",
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
+)",
+                                                                                R"(
+  int stored = int(value * 65535.0 + 0.5);
+  colour = stored == 777 ? vec4(1.0, 1.0, 1.0, 0.5) : texture(table, vec2(float(stored) / 1300.0, 0.5));)"),
+                                              .grid = sampled(48,
+                                                              [](float x, float y, float z) {
+                                                                return x > 0.6F && z > 0.5F
+                                                                           ? 777.0F / 65535
+                                                                           : waves(x, y, z) * 1300 / 65535;
+                                                              }),
+                                              .format = {.texel = Texel::unsigned16, .filter = GL_NEAREST}});
+
+            return [scene](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::slices

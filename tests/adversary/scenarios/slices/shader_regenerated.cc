@@ -1,0 +1,31 @@
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario shader_regenerated() {
+  return {.sentence = "The program is linked again at frame 10, with a shader that tints by place.",
+          .key_frames = {10},
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
+)",
+                                                                                R"(
+)")});
+
+            return [scene](int frame) {
+              scene->program.use();
+              if (frame == 10) {
+                scene->program.link(
+                    {{GL_VERTEX_SHADER, scene->settings.vertex},
+                     {GL_FRAGMENT_SHADER, slice_fragment_shader("", "  colour.rgb *= 0.3 + 0.7 * at;")}});
+                scene->program.use();
+                scene->program.set("volume", 0);
+                scene->program.set("table", 1);
+                scene->program.set("step_length", 0.025F);
+              }
+              scene->draw(frame);
+            };
+          }};
+}
+
+}  // namespace adversary::slices

@@ -1,0 +1,71 @@
+#include "tests/adversary/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace adversary {
+namespace {
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The frames that the nodes drew, by number.
+std::vector<int> substituted_frames(const std::filesystem::path& report) {
+  std::vector<int> frames;
+  const nlohmann::json json = nlohmann::json::parse(contents(report));
+  for (const auto& frame : json.at("frames_detail"))
+    if (frame.at("substituted").get<int>() > 0) frames.push_back(frame.at("frame").get<int>());
+  return frames;
+}
+
+bool is_key(const Scenario& scenario, int frame) {
+  return std::find(scenario.key_frames.begin(), scenario.key_frames.end(), frame) != scenario.key_frames.end();
+}
+
+}  // namespace
+
+Verdict judge(const std::filesystem::path& folder, int frames) {
+  const std::vector<int> substituted = substituted_frames(folder / "report.json");
+  Verdict verdict{.frames = frames, .substituted = static_cast<int>(substituted.size())};
+  for (int frame = 0; frame < frames; ++frame) {
+    const std::string name = fmt::format("frame_{:04}.pam", frame);
+    const TileScore tile = worst_tile(read_image(folder / "under" / name), read_image(folder / "bare" / name),
+                                      read_image(folder / "exact" / name));
+    if (frame == 0 || tile.excess > verdict.worst.excess) verdict.worst = tile, verdict.worst_frame = frame;
+    if (tile.excess <= tile_bound) continue;
+    verdict.wrong_frames.push_back(frame);
+    verdict.wrong_substituted += std::find(substituted.begin(), substituted.end(), frame) != substituted.end();
+  }
+  verdict.facts_differ = contents(folder / "under" / "facts.txt") != contents(folder / "bare" / "facts.txt");
+  return verdict;
+}
+
+std::string what_is_not_met(const Scenario& scenario, const Verdict& verdict) {
+  if (verdict.facts_differ) return "the program was told something else than bare";
+  if (verdict.wrong_frames.size() > 1) return "more than one frame is wrong";
+  for (const int frame : verdict.wrong_frames)
+    if (is_key(scenario, frame))
+      return fmt::format("frame {} is wrong, where the program changed something", frame);
+  if (scenario.expectation == Expectation::must_be_substituted && 2 * verdict.substituted < verdict.frames)
+    return "fewer than half of the frames were substituted";
+  if (scenario.expectation == Expectation::must_be_left && verdict.substituted > 0)
+    return "frames were substituted, whose drawing has effects beside the image";
+  return {};
+}
+
+std::string line_about(const NamedScenario& scenario, const Verdict& verdict) {
+  const std::string failure = what_is_not_met(scenario.scenario, verdict);
+  return fmt::format(
+      "{} | {} | {} of {} substituted | {} wrong [{}] | worst tile {}/255 in frame {} at ({}, {}) | {}",
+      scenario.name, text_of(scenario.scenario.expectation), verdict.substituted, verdict.frames,
+      verdict.wrong_frames.size(), fmt::join(verdict.wrong_frames, " "), verdict.worst.excess,
+      verdict.worst_frame, verdict.worst.x, verdict.worst.y, failure.empty() ? "met" : failure);
+}
+
+}  // namespace adversary

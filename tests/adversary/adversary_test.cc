@@ -45,6 +45,7 @@ class Adversary : public testing::TestWithParam<NamedScenario> {
 
 TEST_P(Adversary, ShowsNoWrongImage) {
   ASSERT_NO_FATAL_FAILURE(draw("bare"));
+  EXPECT_EQ(contents(folder_ / "bare" / "facts.txt").find("OpenGL error"), std::string::npos);
   ASSERT_NO_FATAL_FAILURE(draw("exact", {}, {"--exact"}));
   ASSERT_NO_FATAL_FAILURE(
       draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder_ / "report.json").string(), "--"}));

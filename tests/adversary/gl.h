@@ -15,7 +15,7 @@ namespace adversary {
   X(BindFramebuffer) X(BindImageTexture) X(BindProgramARB) X(BindProgramPipeline) X(BindRenderbuffer) X(BindSampler) \
   X(BindTexture) X(BindVertexArray) X(BlendColor) X(BlendEquation) X(BlendFunc) X(BlendFuncSeparate) \
   X(BlitFramebuffer) X(BufferData) X(BufferSubData) X(CallList) X(CheckFramebufferStatus) X(Clear) \
-  X(ClearBufferuiv) X(ClearBufferfv) X(ClearColor) X(ClearTexSubImage) X(ClientActiveTexture) X(ClipPlane) X(Color3f) X(Color4f) X(ColorMask) \
+  X(ClearBufferuiv) X(ClearBufferfv) X(ClearColor) X(ClearStencil) X(ClearTexSubImage) X(ClientActiveTexture) X(ClipPlane) X(Color3f) X(Color4f) X(ColorMask) \
   X(CompileShader) X(CopyImageSubData) X(CopyTexSubImage2D) X(CopyTexSubImage3D) X(CreateProgram) X(CreateShader) \
   X(CreateShaderProgramv) X(CullFace) X(DeleteLists) X(DeleteShader) X(DetachShader) X(DeleteTextures) X(DepthFunc) X(DepthMask) X(Disable) \
   X(DisableVertexAttribArray) X(DispatchCompute) X(DrawArrays) X(DrawArraysInstanced) X(DrawBuffers) \

@@ -22,6 +22,10 @@ GlslProgram::GlslProgram(const Canvas& canvas, const std::vector<ShaderText>& sh
   link(shaders);
 }
 
+void GlslProgram::bind_outputs(const std::vector<std::string>& names) const {
+  for (GLuint i = 0; i < names.size(); ++i) gl_.BindFragDataLocation(name_, i, names[i].c_str());
+}
+
 void GlslProgram::link(const std::vector<ShaderText>& shaders, const std::vector<std::string>& captured) {
   std::vector<GLuint> names;
   for (const ShaderText& shader : shaders) {

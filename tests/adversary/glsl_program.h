@@ -33,6 +33,8 @@ class GlslProgram {
   void set(const std::string& uniform, const Matrix& value) const {
     gl_.UniformMatrix4fv(location(uniform), 1, GL_FALSE, value.data());
   }
+  /// For the next link: the n-th name is the fragment shader's n-th output.
+  void bind_outputs(const std::vector<std::string>& names) const;
   /// Other shaders under the same name, as a viewer that regenerates its shader.
   void link(const std::vector<ShaderText>& shaders, const std::vector<std::string>& captured = {});
 

@@ -53,7 +53,7 @@ void show_frame(Canvas& canvas, const DrawFrame& draw, int frame, const std::fil
   save(canvas, folder / name);
   canvas.swap();
   if (const GLenum error = canvas.gl.GetError(); error != GL_NO_ERROR)
-    throw std::runtime_error("OpenGL error " + std::to_string(error) + " in frame " + std::to_string(frame));
+    canvas.note("OpenGL error " + std::to_string(error) + " in frame " + std::to_string(frame));
 }
 
 void run(const Arguments& arguments) {

@@ -70,7 +70,8 @@ Camera camera_at(const Orbit& orbit, int frame, float aspect) {
   const float elevation = radians(orbit.elevation);
   const Vector away{std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                     std::cos(elevation) * std::cos(azimuth)};
-  const Vector eye = centre + orbit.distance * away, forward = -1.0F * away;
+  const Vector forward = -1.0F * away, right = normalized(cross(forward, {0, 1, 0}));
+  const Vector eye = centre + orbit.distance * away + orbit.sideways * right;
   const Matrix projection =
       orbit.projection == Projection::perspective ? perspective(0.268F, aspect) : parallel(0.7F, aspect);
   return {eye, forward, projection, looking(eye, forward)};

@@ -44,6 +44,7 @@ struct Orbit {
   float distance = 2.6F;               ///< of the eye from the volume's centre
   float degrees_each_frame = 1;
   Projection projection = Projection::perspective;
+  float sideways = 0;  ///< how far the eye moves to its right without turning
 };
 
 /// Looks at the volume's centre; the volume fills most of the window.

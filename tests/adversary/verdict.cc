@@ -15,6 +15,19 @@ std::string contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Line by line; with both, where one is not what it was bare. Empty: there is none.
+std::string first_difference(const std::filesystem::path& bare, const std::filesystem::path& under) {
+  std::ifstream before(bare), after(under);
+  std::string expected, told;
+  while (true) {
+    const bool more_before = static_cast<bool>(std::getline(before, expected));
+    const bool more_after = static_cast<bool>(std::getline(after, told));
+    if (!more_before && !more_after) return {};
+    if (!more_before || !more_after || expected != told)
+      return fmt::format("\"{}\", bare \"{}\"", more_after ? told : "", more_before ? expected : "");
+  }
+}
+
 /// The frames that the nodes drew, by number.
 std::vector<int> substituted_frames(const std::filesystem::path& report) {
   std::vector<int> frames;
@@ -42,12 +55,12 @@ Verdict judge(const std::filesystem::path& folder, int frames) {
     verdict.wrong_frames.push_back(frame);
     verdict.wrong_substituted += std::find(substituted.begin(), substituted.end(), frame) != substituted.end();
   }
-  verdict.facts_differ = contents(folder / "under" / "facts.txt") != contents(folder / "bare" / "facts.txt");
+  verdict.other_fact = first_difference(folder / "bare" / "facts.txt", folder / "under" / "facts.txt");
   return verdict;
 }
 
 std::string what_is_not_met(const Scenario& scenario, const Verdict& verdict) {
-  if (verdict.facts_differ) return "the program was told something else than bare";
+  if (!verdict.other_fact.empty()) return "OpenGL told the program: " + verdict.other_fact;
   if (verdict.wrong_frames.size() > 1) return "more than one frame is wrong";
   for (const int frame : verdict.wrong_frames)
     if (is_key(scenario, frame))

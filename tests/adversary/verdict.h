@@ -17,7 +17,8 @@ struct Verdict {
   int wrong_substituted = 0;  ///< of the wrong ones, those that were substituted
   TileScore worst;
   int worst_frame = 0;
-  bool facts_differ = false;  ///< a query, a counter or a buffer told the program something else than bare
+  std::string
+      other_fact;  ///< the first that OpenGL told the program (a query, an error), where bare it told another
 };
 
 /// Reads the folders bare/, exact/ and under/ and report.json in `folder`.

@@ -4,13 +4,13 @@
 namespace adversary::slices {
 
 Scenario nearest_of_16_bits() {
-  return {.sentence = "16 bits without interpolation; samples of exactly 777 are opaque white.",
+  return {.sentence = "16 bits without interpolation; samples of exactly 777 are white.",
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 )",
                                                                                 R"(
   int stored = int(value * 65535.0 + 0.5);
-  colour = stored == 777 ? vec4(1.0, 1.0, 1.0, 0.5) : texture(table, vec2(float(stored) / 1300.0, 0.5));)"),
+  colour = stored == 777 ? vec4(1.0, 1.0, 1.0, 0.06) : texture(table, vec2(float(stored) / 1300.0, 0.5));)"),
                                               .grid = sampled(48,
                                                               [](float x, float y, float z) {
                                                                 return x > 0.6F && z > 0.5F

@@ -1,0 +1,22 @@
+#include <string>
+
+#include "tests/adversary/caster_scene.h"
+#include "tests/adversary/scenario.h"
+
+namespace adversary::casters {
+
+Scenario smooth_in() {
+  return {.sentence =
+              "The fragment shader declares its coordinate as `smooth in`, the vertex shader as `smooth out`.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            std::string vertex = caster_vertex_shader, fragment = over_caster();
+            vertex.replace(vertex.find("out vec3 at"), 3, "smooth out");
+            fragment.replace(fragment.find("in vec3 at"), 2, "smooth in");
+            return [scene = caster_scene(canvas, {.fragment = fragment, .vertex = vertex})](int frame) {
+              scene->draw(frame);
+            };
+          }};
+}
+
+}  // namespace adversary::casters

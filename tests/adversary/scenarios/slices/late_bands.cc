@@ -1,0 +1,23 @@
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario late_bands() {
+  return {.sentence = "Bands across z become white where the value is high, from frame 10 on.",
+          .key_frames = {10},
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
+uniform bool banded;)",
+                                                                                R"(
+  if (banded && fract(4.0 * at.z) < 0.4 && value > 0.55) colour.rgb = vec3(1.0);)")});
+
+            return [scene](int frame) {
+              scene->program.use();
+              scene->program.set("banded", frame < 10 ? 0 : 1);
+              scene->draw(frame);
+            };
+          }};
+}
+
+}  // namespace adversary::slices

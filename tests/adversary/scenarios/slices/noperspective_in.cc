@@ -1,0 +1,22 @@
+#include <string>
+
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario noperspective_in() {
+  return {.sentence =
+              "The fragment shader declares its coordinate as `noperspective in`, the vertex shader as "
+              "`noperspective out`.",
+          .start = [](Canvas& canvas) -> DrawFrame {
+            std::string vertex = slice_vertex_shader, fragment = slice_fragment_shader();
+            vertex.replace(vertex.find("out vec3 at"), 3, "noperspective out");
+            fragment.replace(fragment.find("in vec3 at"), 2, "noperspective in");
+            return [scene = slice_scene(canvas, {.fragment = fragment, .vertex = vertex})](int frame) {
+              scene->draw(frame);
+            };
+          }};
+}
+
+}  // namespace adversary::slices

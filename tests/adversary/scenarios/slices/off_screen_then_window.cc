@@ -1,0 +1,25 @@
+#include <memory>
+
+#include "tests/adversary/offscreen.h"
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario off_screen_then_window() {
+  return {.sentence =
+              "Until frame 9 off screen and then shown, from frame 10 on into the window; colours depend on z.",
+          .key_frames = {10},
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto offscreen = std::make_shared<Offscreen>(canvas, GL_RGBA8);
+            auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader("", "  colour.r *= at.z;")});
+            return [offscreen, scene](int frame) {
+              if (frame >= 10) return scene->draw(frame);
+              offscreen->begin(0.1F, 0.12F, 0.2F, 1);
+              scene->draw_slices(scene->camera(frame));
+              offscreen->show();
+            };
+          }};
+}
+
+}  // namespace adversary::slices

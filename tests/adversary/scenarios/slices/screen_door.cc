@@ -1,0 +1,21 @@
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario screen_door() {
+  return {.sentence = "Every other pixel of a chequered pattern is discarded, from frame 10 on.",
+          .key_frames = {10},
+          .start = [](Canvas& canvas) -> DrawFrame {
+            return [scene = slice_scene(canvas,
+                                        {.fragment = slice_fragment_shader("uniform bool injection method;", R"(
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  if (injection method && (pixel.x + pixel.y) % 2 == 0) discard;)")})](int frame) {
+              scene->program.use();
+              scene->program.set("entry", frame < 10 ? 0 : 1);
+              scene->draw(frame);
+            };
+          }};
+}
+
+}  // namespace adversary::slices

@@ -1,0 +1,34 @@
+#include "tests/adversary/odd_tables.h"
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario subroutine_changed() {
+  return {.sentence = "Another subroutine, which tints by place, is chosen at frame 10.",
+          .key_frames = {10},
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = slice_scene(
+                canvas,
+                {.fragment = at_version(430, slice_fragment_shader(R"(
+subroutine vec3 Look(vec3 colour, vec3 place);
+subroutine(Look) vec3 as_it_is(vec3 colour, vec3 place) { return colour; }
+subroutine(Look) vec3 by_place(vec3 colour, vec3 place) { return colour * place.zzx; }
+subroutine uniform Look look;)",
+                                                                   "  colour.rgb = look(colour.rgb, at);"))});
+            return [&canvas, scene](int frame) {
+              canvas.begin(0.1F, 0.12F, 0.2F);
+              const Camera camera = scene->camera(frame);
+              scene->program.use();
+              scene->program.set("clip_from_object", camera.clip_from_object());
+              scene->program.set("eye", camera.eye);
+              set_blending(canvas.gl, scene->settings.blending);
+              const GLuint chosen = canvas.gl.GetSubroutineIndex(scene->program.name(), GL_FRAGMENT_SHADER,
+                                                                 frame < 10 ? "as_it_is" : "by_place");
+              canvas.gl.UniformSubroutinesuiv(GL_FRAGMENT_SHADER, 1, &chosen);
+              scene->vertices.draw(triangles(scene->polygons(camera)));
+            };
+          }};
+}
+
+}  // namespace adversary::slices

@@ -27,8 +27,8 @@ namespace understudy::spu {
 namespace {
 
 constexpr std::array units_by_name = {
-    &driver_description, &remote_description, &null_description,  &pack_description,  &pass_description,
-    &perf_description,   &print_description,  &tile_description,  &tiles_description, &trace_description,
+    &driver_description, &null_description,   &pack_description,  &pass_description,  &perf_description,
+    &print_description,  &remote_description, &tile_description,  &tiles_description, &trace_description,
     &track_description,  &unpack_description, &volume_description};
 
 struct PlannedUnit {

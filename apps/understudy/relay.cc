@@ -104,10 +104,8 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
                             "--secret-file", std::filesystem::absolute(plan.secret_file), "--to",
                             plan.connection_request.to == Destination::gl_server ? "gl-server" : "nodes",
                             "--pixels", layout_names[std::size_t(plan.connection_request.pixels)], "--quality",
-                            std::to_string(plan.connection_request.jpeg_quality),
-                            "with --connect HOST:PORT: JPEG quality of images while the view moves; images of "
-                            "a view at rest are lossless. Default: all images are lossless",
-                            socket, "--figures", folder},
+                            std::to_string(plan.connection_request.jpeg_quality), "--socket", socket,
+                            "--figures", folder},
               .environment = current_environment(),
               .own_group = true});
   const auto until = Clock::now() + patience_with_start;
@@ -147,9 +145,8 @@ void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan) {
       ->type_name("FILE");
   subcommand
       .add_option("--quality", plan.connection_request.jpeg_quality,
-                  "for --connect HOST:PORT: images of a view that moves come as JPEG of this quality, and as "
-                  "they are "
-                  "once it rests; without: always as they are")
+                  "with --connect HOST:PORT: JPEG quality of images while the view moves; images of a view at "
+                  "rest are lossless. Default: all images are lossless")
       ->type_name("1..100")
       ->check(CLI::Range(1, 100));
 }

@@ -14,8 +14,8 @@
 namespace clients {
 namespace {
 
-using understudy::launcher::Image;
 using understudy::launcher::read_image;
+using understudy::launcher::RgbaImage;
 
 const Words one_view = {"--azimuth", "35", "--elevation", "25", "--background", "0.2", "0.1", "0.3"};
 
@@ -26,7 +26,7 @@ std::vector<double> channels(const viewer_test::Image& image) {
 }
 
 /// The composited float frame over the viewer's background; channels 0 to 255.
-std::vector<double> over_background(const Image& frame, const std::vector<double>& background) {
+std::vector<double> over_background(const RgbaImage& frame, const std::vector<double>& background) {
   std::vector<double> result;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x)
@@ -52,7 +52,7 @@ TEST_P(EveryMode, TheImageIsNearerToTheSlicesInDoublePrecisionThanTheViewersOwn)
   const auto background = description.at("background").get<std::vector<double>>();
   const double bare = viewer_test::difference(channels(png("bare.png")), meant).rms;
   const double under = viewer_test::difference(channels(png("under.png")), meant).rms;
-  const Image frame = read_image(file("frames") / "frame_0000.pfm");
+  const RgbaImage frame = read_image(file("frames") / "frame_0000.pfm");
   ASSERT_TRUE(frame.has_alpha);
   const viewer_test::Difference floats = viewer_test::difference(over_background(frame, background), meant);
   fmt::print(
@@ -88,7 +88,7 @@ double largest_difference(const std::filesystem::path& a, const std::filesystem:
   double largest = 0;
   for (int number = 0; number < frames; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
-    const Image first = read_image(a / name), second = read_image(b / name);
+    const RgbaImage first = read_image(a / name), second = read_image(b / name);
     if (!first.has_alpha || !second.has_alpha || first.rgba.size() != second.rgba.size()) return HUGE_VAL;
     for (std::size_t i = 0; i < first.rgba.size(); ++i)
       largest = std::max(largest, std::abs(double{first.rgba[i]} - double{second.rgba[i]}));
@@ -111,7 +111,7 @@ TEST_F(Ranks, AnyNumberOfThemGivesTheSameImages) {
     ASSERT_EQ(report.at("nodes"), count) << outcome.err;
     ASSERT_EQ(report.at("frames_substituted"), frames) << outcome.err;
   }
-  const Image first = read_image(folder(0) / "frame_0000.pfm");
+  const RgbaImage first = read_image(folder(0) / "frame_0000.pfm");
   EXPECT_GT(*std::max_element(first.rgba.begin(), first.rgba.end()), 0.5) << "there is something to see";
   for (std::size_t i = 0; i < ranks.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {

@@ -94,7 +94,7 @@ Json compared(const std::string& described, const std::string& frame, const std:
   const Field field = texture_field(texture, Filter::linear, texels);
   const RenderRequest request = request_of(description);
   const Medium medium = Medium::of_samples(std::get<TransferFunction>(request.classification), 1);
-  const understudy::launcher::Image image = understudy::launcher::read_image(frame);
+  const understudy::launcher::RgbaImage image = understudy::launcher::read_image(frame);
   if (!image.has_alpha) throw std::runtime_error(frame + " has no alpha beside it");
   std::mutex mutex;
   double greatest = 0, sum = 0, brightest = 0;

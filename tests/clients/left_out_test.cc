@@ -15,8 +15,8 @@
 namespace clients {
 namespace {
 
-using understudy::launcher::Image;
 using understudy::launcher::read_image;
+using understudy::launcher::RgbaImage;
 using understudy::spu::Optimization;
 using understudy::spu::optimization_table;
 using understudy::spu::OptimizationText;
@@ -48,7 +48,7 @@ const std::array cases{
     Case{Optimization::unseen_depth, {"--orbit", "10", "--write-depth"}},
 };
 
-double largest_difference(const Image& a, const Image& b) {
+double largest_difference(const RgbaImage& a, const RgbaImage& b) {
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   double most = 0;
   for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i)

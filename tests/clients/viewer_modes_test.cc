@@ -15,8 +15,8 @@
 namespace clients {
 namespace {
 
-using understudy::launcher::Image;
 using understudy::launcher::read_image;
+using understudy::launcher::RgbaImage;
 
 constexpr int frames = 2;
 
@@ -117,7 +117,7 @@ TEST_P(TimeSteps, SendOnlyWhatChanges) {
   }
   for (int number = 0; number < 3; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
-    const Image one = read_image(file("frames0") / name), four = read_image(file("frames4") / name);
+    const RgbaImage one = read_image(file("frames0") / name), four = read_image(file("frames4") / name);
     ASSERT_EQ(one.rgba.size(), four.rgba.size());
     float largest = 0;
     for (std::size_t i = 0; i < one.rgba.size(); ++i)
@@ -161,7 +161,7 @@ TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   double largest = 0, brightest = 0;
   for (int number = 0; number < frames; ++number) {
     const std::string frame = fmt::format("frame_{:04}.pfm", number);
-    const Image one = read_image(file("frames0") / frame), two = read_image(file("frames2") / frame);
+    const RgbaImage one = read_image(file("frames0") / frame), two = read_image(file("frames2") / frame);
     ASSERT_EQ(one.rgba.size(), two.rgba.size());
     for (std::size_t i = 0; i < one.rgba.size(); ++i) {
       // Where a minimum has no sample it is larger than any float framebuffer's colour.

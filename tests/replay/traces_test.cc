@@ -62,7 +62,7 @@ fs::path trace_file(const std::string& name) {
   return fs::path(TRACES) / (name + ".ust");
 }
 
-launcher::Image expected(const std::string& name, int frame) {
+launcher::RgbaImage expected(const std::string& name, int frame) {
   return launcher::read_image(fs::path(EXPECTED) / (name + "_" + std::to_string(frame) + ".png"));
 }
 
@@ -98,7 +98,7 @@ int understudy(const std::string& arguments) {
                      arguments);
 }
 
-launcher::Image saved(const fs::path& folder, int frame) {
+launcher::RgbaImage saved(const fs::path& folder, int frame) {
   return launcher::read_image(folder / ("frame_000" + std::to_string(frame) + ".png"));
 }
 
@@ -137,7 +137,7 @@ emulation::Frame meant(const Trace& trace, int frame, const fs::path& folder) {
   return emulation::viewer_frame(nlohmann::json::parse(std::ifstream(description)));
 }
 
-std::vector<double> colours(const launcher::Image& image) {
+std::vector<double> colours(const launcher::RgbaImage& image) {
   std::vector<double> channels;
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
     if (i % 4 != 3) channels.push_back(image.rgba[i]);
@@ -146,7 +146,8 @@ std::vector<double> colours(const launcher::Image& image) {
 
 constexpr emulation::Rounding bytes = emulation::normalised(8, 8);
 
-void expect_judged_well(const emulation::Image& meant, const launcher::Image& image, const std::string& what) {
+void expect_judged_well(const emulation::Image& meant, const launcher::RgbaImage& image,
+                        const std::string& what) {
   const emulation::Verdict verdict = emulation::judge(meant, colours(image), 3, emulation::ray_termination);
   fmt::print("{}: RMS {:.2e}, max {:.2e}, beyond the bounds by {:.2e}, RMS of the bounds {:.2e}\n", what,
              verdict.rms, verdict.max, verdict.beyond, verdict.width);
@@ -165,7 +166,7 @@ void expect_substituted(const Trace& trace, int nodes) {
   EXPECT_EQ(figures.at("frames_substituted"), trace.substituted ? trace.frames : 0) << figures.dump(1);
   EXPECT_EQ(figures.at("frames_left"), trace.substituted ? 0 : trace.frames);
   for (int frame = 1; frame <= trace.frames; ++frame) {
-    const launcher::Image shown = saved(folder.path(), frame);
+    const launcher::RgbaImage shown = saved(folder.path(), frame);
     if (trace.way.empty()) {
       EXPECT_GE(launcher::difference(shown, expected(trace.name, frame)).psnr(), 35) << "frame " << frame;
     } else {

@@ -115,7 +115,7 @@ TEST_F(Assemble, MakesUnitsInTheirOrder) {
 TEST_F(Assemble, UnknownUnitsAreMetWithThoseThereAre) {
   EXPECT_THAT(error_of("trak driver"),
               StartsWith("chain, character 1: no unit is named trak; did you mean track? "
-                         "There are: driver, link, null, pack, pass, "));
+                         "There are: driver, null, pack, pass, perf, print, remote, tile, "));
   EXPECT_THAT(error_of("track zebra driver"),
               StartsWith("chain, character 7: no unit is named zebra. There are: "));
   EXPECT_THAT(error_of("Track driver"), HasSubstr("did you mean track?"));

@@ -17,7 +17,7 @@ TEST_F(Render, ShowsTheSameFromLittleGpuMemory) {
   ASSERT_EQ(probe.status, 0) << probe.output;
   if (probe.output.find("GL, as asked") == std::string::npos) GTEST_SKIP() << probe.output;
   EXPECT_THAT(probe.output, Not(HasSubstr("by bricks")));
-  const Image all = image(common);
+  const RgbaImage all = image(common);
   // Three and more bricks of 65^3 texels of 16 bits, where each node has twelve or eighteen.
   const std::string little = common + " --gpu-memory 2200K --report " + folder_.file("r.json");
   EXPECT_LE(difference(image(little), all).max, 1e-5);

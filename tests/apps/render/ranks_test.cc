@@ -30,7 +30,7 @@ TEST_F(Render, ANarrowTableShowsTheSameOnOneRankAndOnFour) {
         {"at": 0.598, "colour": [0.2, 0.4, 1], "opacity": 0}, {"at": 0.6, "colour": [1, 0.9, 0.5], "opacity": 0.9},
         {"at": 0.602, "colour": [1, 0.4, 0.2], "opacity": 0}, {"at": 1, "colour": [1, 0.4, 0.2], "opacity": 0}]})");
   for (const char* method : {"post-classified", "pre-integrated"}) {
-    std::vector<Image> floats, bytes;
+    std::vector<RgbaImage> floats, bytes;
     for (const char* ranks : {"1", "4"}) {
       floats.push_back(image(fmt::format("{} --method {} -n {}", common, method, ranks)));
       bytes.push_back(read_image(folder_.file("p.png")));

@@ -60,7 +60,7 @@ class Render : public ::testing::Test {
   }
 
   /// The image before it was rounded, of a rendering that succeeds.
-  Image image(const std::string& arguments) const {
+  RgbaImage image(const std::string& arguments) const {
     const Result result = render(arguments + " --save-float " + folder_.file("f.pfm"));
     EXPECT_EQ(result.status, 0) << arguments << ": " << result.output;
     return read_image(folder_.file("f.pfm"));

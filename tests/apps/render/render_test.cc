@@ -20,14 +20,14 @@ TEST_F(Render, AnImageAndAReportOfAFile) {
   ASSERT_EQ(result.status, 0) << result.output;
   EXPECT_THAT(result.output, AllOf(HasSubstr("40 x 40 x 40 of f64, in this process"), HasSubstr("3 frames"),
                                    HasSubstr("became f32 texels")));
-  const Image image = read_image(folder_.file("p.png"));
+  const RgbaImage image = read_image(folder_.file("p.png"));
   EXPECT_EQ(image.width, 120);
   EXPECT_EQ(image.height, 90);
   const float* middle = image.pixel(60, 45);
   EXPECT_GT(middle[0] + middle[1] + middle[2], 0.5F) << "the ball is to be seen";
   const float* corner = image.pixel(2, 2);
   EXPECT_EQ(corner[0] + corner[1] + corner[2], 0.0F);
-  const Image exact = read_image(folder_.file("f.pfm"));
+  const RgbaImage exact = read_image(folder_.file("f.pfm"));
   EXPECT_TRUE(exact.has_alpha);
   EXPECT_GT(exact.pixel(60, 45)[3], 0.5F);
   EXPECT_EQ(exact.pixel(2, 2)[3], 0.0F);
@@ -53,7 +53,7 @@ TEST_F(Render, AnImageAndAReportOfAFile) {
 
 TEST_F(Render, SmallerStepsComeNearerToOneImage) {
   const std::string file = ball(32);
-  std::vector<Image> images;
+  std::vector<RgbaImage> images;
   for (const char* step : {"2", "1", "0.5", "0.125"}) {
     ASSERT_EQ(render(file + " --transfer-function rainbow --size 60x60 --step " + step + " --save-float " +
                      folder_.file("f.pfm"))
@@ -74,7 +74,7 @@ TEST_F(Render, TheWaysToSayTheSameGiveTheSameImage) {
   const std::string file = ball(24);
   const std::string common = " --size 50x50 --save-float " + folder_.file("f.pfm");
   ASSERT_EQ(render(file + common).status, 0);
-  const Image expected = read_image(folder_.file("f.pfm"));
+  const RgbaImage expected = read_image(folder_.file("f.pfm"));
   // The built-in table in a file, by range and by the raw scalars' hints.
   const std::string control_points =
       folder_.write("grey.json", std::string(R"({"knots": [{"at": 0, "colour": [0, 0, 0], "opacity": 0},
@@ -150,7 +150,7 @@ TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
   const std::string file = ball(48), common = file + " --transfer-function rainbow --size 90x80 --save-float " +
                                               folder_.file("f.pfm") + " --report " + folder_.file("r.json");
   ASSERT_EQ(render(common).status, 0);
-  const Image expected = read_image(folder_.file("f.pfm"));
+  const RgbaImage expected = read_image(folder_.file("f.pfm"));
   for (const int nodes : {1, 2, 4}) {
     const Result result = render(common + " -n " + std::to_string(nodes));
     ASSERT_EQ(result.status, 0) << result.output;

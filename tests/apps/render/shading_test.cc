@@ -30,7 +30,7 @@ std::string cone(const TemporaryFolder& folder, int side) {
 constexpr const char* view = " --size 80x80 --camera 0,0,4";
 
 TEST_F(Render, ASurfaceLiesWhereTheValueIs) {
-  const Image image = this->image(cone(folder_, 40) + " --no-volume --surface 30000,#ff8000" + view);
+  const RgbaImage image = this->image(cone(folder_, 40) + " --no-volume --surface 30000,#ff8000" + view);
   // The ball's half side is 1 / sqrt(3) of the half diagonals in which the eye is 4 away, and the image shows
   // 2 * 4 * tan(15 degrees) of them: half the half side has a silhouette of 10.8 pixels.
   const double half = 0.5 / std::sqrt(3.0);
@@ -47,14 +47,14 @@ TEST_F(Render, ASurfaceLiesWhereTheValueIs) {
 
 TEST_F(Render, APlaceInTheRangeIsAValue) {
   const std::string file = cone(folder_, 20);
-  const Image by_place =
+  const RgbaImage by_place =
       image(file + " --no-volume --surface 40%,c0c0c0,0.5 --report " + folder_.file("r.json") + view);
   const Json surface = report()["image"]["surfaces"][0], values = report()["volume"]["values"];
   EXPECT_NEAR(double(surface["value"]), double(values[0]) + 0.4 * (double(values[1]) - double(values[0])), 0.1);
   EXPECT_EQ(surface["colour"][3], 0.5);
   EXPECT_EQ(report()["image"]["method"], "post-classified");
   EXPECT_EQ(report()["image"]["light"], "none");
-  const Image by_value =
+  const RgbaImage by_value =
       image(file + " --no-volume --surface " + surface["value"].dump() + ",c0c0c0,0.5" + view);
   EXPECT_LE(difference(by_place, by_value).max, 1e-6);
   EXPECT_NEAR(by_place.pixel(40, 40)[3], 0.75, 1e-5) << "in through half of it, and out through half of it";
@@ -62,18 +62,18 @@ TEST_F(Render, APlaceInTheRangeIsAValue) {
 
 TEST_F(Render, LightFallsOnWhatItIsMeantFor) {
   const std::string surface = cone(folder_, 40) + " --no-volume --surface 30000 --material 0.1,0.9,0,1" + view;
-  const Image head_light = image(surface + " --light all");
+  const RgbaImage head_light = image(surface + " --light all");
   EXPECT_GT(head_light.pixel(40, 40)[0], 0.85F) << "it faces the eye";
   EXPECT_LT(head_light.pixel(50, 40)[0], 0.6F) << "it is nearly seen from the side";
-  const Image from_the_right = image(surface + " --light-from 90,0");
+  const RgbaImage from_the_right = image(surface + " --light-from 90,0");
   EXPECT_GT(from_the_right.pixel(48, 40)[0], from_the_right.pixel(41, 40)[0] + 0.3F);
   // The same on both sides: a surface is lit from behind as well.
   EXPECT_NEAR(from_the_right.pixel(48, 40)[0], from_the_right.pixel(31, 40)[0], 0.02);
 
   const std::string both = cone(folder_, 40) + " --transfer-function grey --surface 45000" + view;
-  const Image dark = image(both), surfaces = image(both + " --light surfaces"),
-              all = image(both + " --light all");
-  const auto apart = [](const Image& a, const Image& b, int x) {
+  const RgbaImage dark = image(both), surfaces = image(both + " --light surfaces"),
+                  all = image(both + " --light all");
+  const auto apart = [](const RgbaImage& a, const RgbaImage& b, int x) {
     return std::abs(a.pixel(x, 40)[0] - b.pixel(x, 40)[0]);
   };
   EXPECT_GT(apart(dark, surfaces, 43), 1e-3F) << "before the surface";
@@ -88,8 +88,8 @@ TEST_F(Render, SegmentsNeedFewerStepsThanSamples) {
           {"at": 0.60, "colour": [0, 0, 1], "opacity": 0}, {"at": 0.62, "colour": [0, 0.5, 1], "opacity": 0.6},
           {"at": 0.64, "colour": [0, 0, 1], "opacity": 0}, {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
   const std::string common = cone(folder_, 32) + " --transfer-function " + control_points + view;
-  const Image fine = image(common + " --step 0.02"), samples = image(common + " --step 1"),
-              segments = image(common + " --step 1 --method pre-integrated");
+  const RgbaImage fine = image(common + " --step 0.02"), samples = image(common + " --step 1"),
+                  segments = image(common + " --step 1 --method pre-integrated");
   const double by_samples = difference(samples, fine).rms, by_segments = difference(segments, fine).rms;
   std::printf("rms error of samples %.2e, of segments %.2e\n", by_samples, by_segments);
   EXPECT_LT(by_segments, by_samples / 4);
@@ -100,7 +100,7 @@ TEST_F(Render, SegmentsLeaveATableThatDoesNotSpanTheVolume) {
                                      "knots": [{"at": 30000, "colour": [1, 0.5, 0], "opacity": 0},
                                                {"at": 31000, "colour": [1, 1, 0.5], "opacity": 0.5}]})"));
   const std::string common = cone(folder_, 32) + " --transfer-function " + control_points + view;
-  const Image fine = image(common + " --step 0.02");
+  const RgbaImage fine = image(common + " --step 0.02");
   const double by_samples = difference(image(common + " --step 1"), fine).rms,
                by_segments = difference(image(common + " --step 1 --method pre-integrated"), fine).rms;
   std::printf("rms error of samples %.2e, of segments %.2e\n", by_samples, by_segments);
@@ -115,11 +115,11 @@ TEST_F(Render, AdaptiveStepsAreNearerThanSamplesAsMany) {
           {"at": 1, "colour": [0, 0, 1], "opacity": 0}]})"));
   const std::string common = cone(folder_, 64) + " --transfer-function " + control_points + view +
                              " --report " + folder_.file("r.json");
-  const Image fine = image(common + " --step 0.02");
-  const Image adaptive = image(common + " --step 1 --method adaptive --tolerance 0.01");
+  const RgbaImage fine = image(common + " --step 0.02");
+  const RgbaImage adaptive = image(common + " --step 1 --method adaptive --tolerance 0.01");
   EXPECT_EQ(report()["image"]["method"], "adaptive");
   const double taken = report()["samples_taken"];
-  const Image samples = image(common + " --step 0.1");
+  const RgbaImage samples = image(common + " --step 0.1");
   std::printf("rms error of adaptive steps %.2e with %g samples, of samples %.2e with %g\n",
               difference(adaptive, fine).rms, taken, difference(samples, fine).rms,
               double(report()["samples_taken"]));
@@ -133,7 +133,7 @@ TEST_F(Render, AFirstHitIsOpaqueAndInTheTablesColour) {
           {"at": 1, "colour": [1, 0.5, 0], "opacity": 0.01}]})"));
   const std::string common = cone(folder_, 40) + " --transfer-function " + control_points + view;
   for (const char* const ranks : {"", " -n 4"}) {
-    const Image hit = image(common + " --operator first-hit" + ranks);
+    const RgbaImage hit = image(common + " --operator first-hit" + ranks);
     EXPECT_NEAR(hit.pixel(40, 40)[0], 1, 1e-4);
     EXPECT_NEAR(hit.pixel(40, 40)[1], 0.5, 1e-4);
     EXPECT_EQ(hit.pixel(40, 40)[3], 1);
@@ -183,7 +183,7 @@ TEST_F(Render, ShadingWithoutSenseIsRefusedWithTheNextStep) {
 TEST_F(Render, CutsSegmentsAtBricksWhereAskedTo) {
   const std::string common =
       ball(48) + " --transfer-function rainbow --method pre-integrated --size 90x80 --step 2";
-  const Image seamless = image(common);
+  const RgbaImage seamless = image(common);
   EXPECT_EQ(difference(image(common + " --cut-at-bricks 64"), seamless).max, 0) << "it is one brick";
   const double few = difference(image(common + " --cut-at-bricks 24"), seamless).max,
                many = difference(image(common + " --cut-at-bricks 8"), seamless).max;
@@ -203,7 +203,7 @@ TEST_F(Render, NodesShowTheSameSurfacesLightAndSegments) {
         " --transfer-function vessels --surface 70%,#4060ff,0.4 --surface 20%,#ff8040,0.2 --light surfaces "
         "--step 1.7"}) {
     const std::string common = file + shading + " --size 90x80";
-    const Image expected = image(common);
+    const RgbaImage expected = image(common);
     for (const char* nodes : {" -n 2", " -n 3 --exchange binary-swap"}) {
       const Difference apart = difference(image(common + nodes), expected);
       std::printf("%s%s: rms %.1e, at most %.1e apart\n", shading, nodes, apart.rms, apart.max);

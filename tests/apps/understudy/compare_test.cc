@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-Image grey_image(int width, int height, float value) {
-  Image image;
+RgbaImage grey_image(int width, int height, float value) {
+  RgbaImage image;
   image.width = width;
   image.height = height;
   image.rgba.assign(4 * static_cast<std::size_t>(width) * height, value);
@@ -56,7 +56,7 @@ class CompareFiles : public ::testing::Test {
 };
 
 TEST(Difference, IsZeroAndThePsnrInfiniteForEqualImages) {
-  const Image image = grey_image(7, 3, 0.25F);
+  const RgbaImage image = grey_image(7, 3, 0.25F);
   const Difference found = difference(image, image);
   EXPECT_EQ(found.max, 0);
   EXPECT_EQ(found.rms, 0);
@@ -72,20 +72,20 @@ TEST(Difference, OfAConstantTenthIsATenthAndTwentyDecibels) {
 }
 
 TEST(Difference, OfOnePixelInAHundredIsATenthOfItsSizeInRms) {
-  const Image a = grey_image(10, 10, 0.5F);
-  Image b = a;
+  const RgbaImage a = grey_image(10, 10, 0.5F);
+  RgbaImage b = a;
   for (int channel = 0; channel < 3; ++channel) b.pixel(4, 7)[channel] = 0.75F;
   const Difference found = difference(a, b);
   EXPECT_EQ(found.max, 0.25);
   EXPECT_NEAR(found.rms, 0.025, 1e-12);
-  const Image map = difference_map(a, b);
+  const RgbaImage map = difference_map(a, b);
   EXPECT_EQ(map.pixel(4, 7)[0], 1.0F);
   EXPECT_EQ(map.pixel(7, 4)[0], 0.0F);
 }
 
 TEST(Difference, CountsAlphaOnlyWhereAnImageHasSome) {
-  const Image a = grey_image(4, 4, 0.5F);
-  Image b = a;
+  const RgbaImage a = grey_image(4, 4, 0.5F);
+  RgbaImage b = a;
   for (std::size_t i = 3; i < b.rgba.size(); i += 4) b.rgba[i] = 0.5F;
   EXPECT_EQ(difference(a, b).max, 0);
   b.has_alpha = true;
@@ -98,14 +98,14 @@ TEST(Difference, OfImagesOfTwoSizesIsRefusedWithBothSizes) {
 }
 
 TEST(Difference, OfANumberThatIsNoneIsRefusedWithItsPixel) {
-  Image a = grey_image(3, 3, 0.5F);
+  RgbaImage a = grey_image(3, 3, 0.5F);
   a.pixel(2, 1)[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT([&] { difference(a, grey_image(3, 3, 0.5F)); },
               ThrowsMessage<std::runtime_error>(HasSubstr("pixel 2, 1")));
 }
 
 TEST_F(CompareFiles, PngComesBackAsItWasWrittenToWithinHalfAStep) {
-  Image image = grey_image(33, 17, 0);
+  RgbaImage image = grey_image(33, 17, 0);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) image.pixel(x, y)[1] = static_cast<float>(x + y) / 50.0F;
   }
@@ -118,7 +118,7 @@ TEST_F(CompareFiles, PngComesBackAsItWasWrittenToWithinHalfAStep) {
 TEST_F(CompareFiles, PfmRowsRunBottomUpInEitherByteOrder) {
   const std::vector<float> values{0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F};  // one column of two pixels
   for (const bool little_endian : {true, false}) {
-    const Image image = read_image(pfm("a.pfm", "PF", 1, 2, values, little_endian));
+    const RgbaImage image = read_image(pfm("a.pfm", "PF", 1, 2, values, little_endian));
     EXPECT_EQ(image.pixel(0, 1)[0], 0.1F);
     EXPECT_EQ(image.pixel(0, 0)[2], 0.6F);
     EXPECT_FALSE(image.has_alpha);
@@ -127,7 +127,7 @@ TEST_F(CompareFiles, PfmRowsRunBottomUpInEitherByteOrder) {
 
 TEST_F(CompareFiles, PfmTakesItsAlphaFromTheFileBesideIt) {
   pfm("frame_0003_alpha.pfm", "Pf", 1, 1, {0.75F});
-  const Image image = read_image(pfm("frame_0003.pfm", "PF", 1, 1, {0.1F, 0.2F, 0.3F}));
+  const RgbaImage image = read_image(pfm("frame_0003.pfm", "PF", 1, 1, {0.1F, 0.2F, 0.3F}));
   EXPECT_TRUE(image.has_alpha);
   EXPECT_EQ(image.pixel(0, 0)[3], 0.75F);
 }

@@ -140,7 +140,7 @@ TEST_F(StudyCommand, ThePageShowsInABrowser) {
             folder_.file("profile") + " --window-size=1300,3000 --screenshot=" + screenshot + " file://" +
             folder_.file("out/index.html"));
   ASSERT_EQ(shown.status, 0) << shown.output;
-  const Image page = read_image(screenshot);
+  const RgbaImage page = read_image(screenshot);
   EXPECT_EQ(page.width, 1300);
   // Text is dark, the plots' lines are blue and orange: of each there is plenty.
   std::array<int, 3> pixels{};

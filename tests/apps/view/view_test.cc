@@ -25,18 +25,18 @@ const std::string volume_name = "synthetic:40x36x32:u8:lobes";
 
 class View : public Render {
  protected:
-  Image decoded(const std::string& png) const {
+  RgbaImage decoded(const std::string& png) const {
     const std::string path = folder_.write("shown.png", std::as_bytes(std::span(png)));
     return read_image(path);
   }
-  Image rendered(const std::string& arguments) const {
+  RgbaImage rendered(const std::string& arguments) const {
     const Result result = render(arguments);
     EXPECT_EQ(result.status, 0) << arguments << ": " << result.output;
     return read_image(folder_.file("p.png"));
   }
 };
 
-double greatest_difference(const Image& a, const Image& b) {
+double greatest_difference(const RgbaImage& a, const RgbaImage& b) {
   if (a.width != b.width || a.height != b.height) return 1e300;
   double greatest = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i)
@@ -44,7 +44,7 @@ double greatest_difference(const Image& a, const Image& b) {
   return greatest;
 }
 
-double brightest(const Image& image) {
+double brightest(const RgbaImage& image) {
   double most = 0;
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
     if (i % 4 != 3) most = std::max(most, double(image.rgba[i]));
@@ -66,7 +66,7 @@ TEST_F(View, AtRestABrowserHasTheImageOfRender) {
   EXPECT_EQ(volume.at("nodes"), 0);
   const WebClient::Message first = client.image({});
   EXPECT_EQ(first.json.at("format"), "png");
-  const Image shown = decoded(first.image);
+  const RgbaImage shown = decoded(first.image);
   EXPECT_GT(brightest(shown), 0.2);
   const std::string common = volume_name + " --size 200x150 ";
   EXPECT_EQ(greatest_difference(shown, rendered(common + "--transfer-function rainbow")), 0);
@@ -208,7 +208,7 @@ TEST_F(View, NodesThatDieAreSaidAndReplaced) {
   const ViewProcess process({volume_name, "-n", "2", "--size", "200x150"});
   WebClient client(process.port());
   greeted(client, process);
-  const Image before = decoded(client.image({{"camera", some_camera}}).image);
+  const RgbaImage before = decoded(client.image({{"camera", some_camera}}).image);
   EXPECT_GT(brightest(before), 0.1);
   const std::vector<pid_t> nodes = nodes_of(process.id());
   ASSERT_EQ(nodes.size(), 2U);

@@ -63,6 +63,17 @@ void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
   pipeline.others.erase(slice);
 }
 
+/// Using another program, and then this one again, resets what was chosen.
+bool has_subroutines(const GlContext& context, GLuint program) {
+  if (context.version < 400) return false;
+  const auto count = [&](GLenum stage) {
+    GLint uniforms = 0;
+    context.gl->GetProgramStageiv(program, stage, GL_ACTIVE_SUBROUTINE_UNIFORMS, &uniforms);
+    return uniforms;
+  };
+  return count(GL_FRAGMENT_SHADER) + count(GL_VERTEX_SHADER) > 0;
+}
+
 /// The one 3-D texture and the tables that a program samples, or the slice of a stack; a reason where that is
 /// not the shape of it.
 std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
@@ -86,6 +97,8 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     }
   }
   if (volumes > 1) return "the program samples more than one 3-D texture";
+  if (pipeline.volume.texture != 0 && has_subroutines(context, pipeline.program))
+    return "the program chooses its subroutines, which measuring it would forget";
   if (volumes == 0 && stacks) take_slice(gl, pipeline);
   if (pipeline.volume.texture != 0) {
     if (!record->fragment_source_known) return "the program's fragment shader source is not known";

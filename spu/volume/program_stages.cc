@@ -187,12 +187,13 @@ void describe_fragment_stage(const GlContext& context, const ProgramRecord& reco
       std::array<char, 256> name{};
       gl.GetProgramResourceName(program, GL_PROGRAM_INPUT, GLuint(i), GLsizei(name.size()), nullptr,
                                 name.data());
-      const std::array<GLenum, 2> asked{GL_TYPE, GL_ARRAY_SIZE};
-      std::array<GLint, 2> answer{};
-      gl.GetProgramResourceiv(program, GL_PROGRAM_INPUT, GLuint(i), 2, asked.data(), 2, nullptr, answer.data());
+      const std::array<GLenum, 3> asked{GL_TYPE, GL_ARRAY_SIZE, GL_LOCATION};
+      std::array<GLint, 3> answer{};
+      gl.GetProgramResourceiv(program, GL_PROGRAM_INPUT, GLuint(i), 3, asked.data(), 3, nullptr, answer.data());
       StageInput input;
       input.name = written_name(name.data());
       input.type = GLenum(answer[0]);
+      input.location = answer[2];
       const UniformShape shape = shape_of(input.type);
       if (input.name == "gl_FragCoord" || input.name == "gl_FrontFacing" || input.name == "gl_PointCoord") {
         if (stages.trouble.empty()) stages.trouble = "the fragment shader reads " + input.name;
@@ -316,20 +317,33 @@ ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, 
 
 namespace {
 
-/// The vertex stage of a probe. `smooth` stands before inputs that are interpolated smoothly: drivers want it
-/// where the fragment stage says so.
+/// How the probe's outputs are declared: drivers want what the fragment stage has beside its inputs.
+struct OutputDeclaration {
+  const char* smooth;  ///< of those that are interpolated smoothly
+  bool locations;
+};
+
+constexpr std::array<OutputDeclaration, 4> output_declarations{
+    {{"", false}, {"smooth", false}, {"", true}, {"smooth", true}}};
+
+/// The vertex stage of a probe.
 std::string probe_source(const GlContext& context, const std::vector<StageInput>& inputs,
-                         const std::string& coordinate, const char* smooth) {
+                         const std::string& coordinate, const OutputDeclaration& declaration) {
   std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
+  if (declaration.locations) declarations += "#extension GL_ARB_separate_shader_objects : enable\n";
+  const auto placed = [&](const StageInput& input) {
+    return declaration.locations && input.location >= 0 ? fmt::format("layout(location = {}) ", input.location)
+                                                        : std::string();
+  };
   std::string body;
   int others = 0;
   for (const StageInput& input : inputs) {
     const std::string type = glsl_type(input);
     if (!input.name.starts_with("gl_"))
-      declarations += fmt::format("{} out {} {};\n",
+      declarations += fmt::format("{}{} out {} {};\n", placed(input),
                                   input.integer                  ? "flat"
                                   : !input.interpolation.empty() ? input.interpolation.c_str()
-                                                                 : smooth,
+                                                                 : declaration.smooth,
                                   type, input.name);
     if (input.name == coordinate) {
       body += "  " + input.name +
@@ -365,13 +379,13 @@ GLuint probe_program(const GlContext& context, const ProgramRecord* record,
                      const std::vector<StageInput>& inputs, const std::string& coordinate,
                      std::string& trouble) {
   const DispatchTable& gl = *context.gl;
-  for (const char* smooth : {"", "smooth"}) {
-    const std::string source = probe_source(context, inputs, coordinate, smooth);
+  for (const OutputDeclaration& declaration : output_declarations) {
+    const std::string source = probe_source(context, inputs, coordinate, declaration);
     const GLuint program = gl.CreateProgram();
     compile(gl, GL_VERTEX_SHADER, {source}, program);
     if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
     if (linked(gl, program)) return program;
-    trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
+    if (trouble.empty()) trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
     gl.DeleteProgram(program);
   }
   return 0;

@@ -20,6 +20,7 @@ struct StageInput {
   GLenum type = GL_FLOAT_VEC4;
   int components = 4;
   bool integer = false;
+  int location = -1;            ///< as the driver has placed it, where the fragment stage stands alone
   std::string interpolation{};  ///< "flat", "noperspective"; empty: smooth
   bool written = true;          ///< false: the vertex stage declares it at most, and no colour can depend on it
 };

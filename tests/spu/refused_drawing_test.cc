@@ -91,7 +91,8 @@ std::vector<Drawing> drawings() {
          app.gl().Disable(GL_TEXTURE_3D);
          app.gl().Disable(GL_BLEND);
        }},
-      {"ShadingByTheFieldsGradient", "the colour depends on the field around the sample (gradient, lighting)",
+      {"ShadingByTheFieldsGradient",
+       "the fragment shader: colours depend on a second texel of 'field' at an offset",
        [](GlApplication& app) {
          load_field(app);
          app.gl().UseProgram(program(app,
@@ -109,7 +110,7 @@ std::vector<Drawing> drawings() {
                                      "}\n"));
        },
        cube_in_front},
-      {"PreIntegratedSegmentsThatFadeWithTheirPlace", more_than_the_sample,
+      {"PreIntegratedSegmentsThatFadeWithTheirPlace", "the fragment shader: colours depend on varying front.x",
        [](GlApplication& app) {
          load_field(app);
          app.gl().UseProgram(program(app,

@@ -46,7 +46,7 @@ class Walk {
   /// A component of a uniform is this number.
   void assume(std::string_view name, int component, double value);
 
-  /// Follows the whole stage. Throws TooLarge.
+  /// Follows the whole shader stage. Throws TooLarge.
   StageFacts facts(const TIntermNode& root, int version);
 
  private:

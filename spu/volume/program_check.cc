@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 namespace understudy::spu {
 namespace {
@@ -74,6 +75,16 @@ bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, co
   if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
   // A fade that is decided by a number (PyMOL's fog) is measured as one that is computed from it.
   return influence.target == program::Target::colour && !influence.through_table;
+}
+
+/// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
+/// second one looks for the maximum more closely.
+bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
+  std::set<std::size_t> loops;
+  return std::ranges::any_of(finding.samples, [&](std::size_t index) {
+    const program::Fetch& fetch = facts.fetches[index];
+    return !contains(roles.idle, fetch.sampler) && fetch.loop && !loops.insert(*fetch.loop).second;
+  });
 }
 
 std::string sentence(std::string text) {
@@ -160,11 +171,8 @@ std::string refusal_of_ray_caster(const ProgramFindings& findings) {
   if (!finding.loop) return "no loop of the fragment shader samples the volume";
   if (std::string reason = refusal_of_tables(facts, finding.tables, findings.roles); !reason.empty())
     return reason;
-  // Light and gradients take several samples to colour one.
-  const auto others = std::ranges::count_if(finding.samples, [&](std::size_t fetch) {
-    return !contains(findings.roles.idle, facts.fetches[fetch].sampler);
-  });
-  if (others > 1) return "the fragment shader: a sample's colour depends on several texels of the volume";
+  if (mixes_samples(facts, finding, findings.roles))
+    return "the fragment shader: a sample's colour depends on several texels of the volume";
   if (!finding.data.empty()) return sentence(texts(facts, finding.data).front());
   return {};
 }

@@ -22,13 +22,6 @@ std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
   return changed;
 }
 
-bool any_followed(const VerificationSchedule::Inputs& before, const VerificationSchedule::Inputs& now) {
-  for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
-    if (now[i].effect == VerificationSchedule::Effect::followed && before[i].value != now[i].value) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 bool VerificationSchedule::is_trusted(std::size_t index) const {
@@ -45,7 +38,6 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
     changing_.clear();
     now_changed_.clear();
   }
-  const bool followed = any_followed(inputs_, inputs);
   const std::vector<std::size_t> changed = changes(inputs_, inputs);
   inputs_ = inputs;
   // An image that was not compared leaves its changes to the next.
@@ -56,7 +48,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
   }
   changed_ =
       std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
-  dense_ = !changed.empty() || followed;
+  dense_ = !changed.empty();
   footprint_ = footprint;
   grown_ = double(footprint) > grown_footprint * double(right_footprint_);
   if (native_ms_) {

@@ -4,7 +4,7 @@
 //     until an image that shows something was right; whenever something changed that the model does not
 //     predict; when the volume covers much more of the window than it did; when --verify=K asks for it
 //   sentinels, tiles of 16² pixels at random places of the viewport, in all other frames:
-//     as many as 1 % of the application's own time buys, 10 % while the same input keeps changing
+//     as many as 1 % of the application's own time buys, 10 % while an input that is measured keeps changing
 //
 // An error that covers a share f of the viewport survives n sentinels with the probability (1 - f)^n.
 //

@@ -71,7 +71,19 @@ TEST(VerificationSchedule, FollowsTheCameraBySentinels) {
     sentinels += schedule.sentinels();
     schedule.sentinels_took(schedule.sentinels(), schedule.sentinels() * 1.0);
   }
-  EXPECT_GE(sentinels, 20);
+  EXPECT_GE(sentinels, 15);
+}
+
+TEST(VerificationSchedule, SendsMoreSentinelsWhileWhatIsMeasuredChanges) {
+  VerificationSchedule schedule;
+  for (int image = 0; image < 10; ++image) compared(schedule, {{float(image)}});
+  int sentinels = 0;
+  for (int image = 10; image < 30; ++image) {
+    ASSERT_FALSE(compared(schedule, {{float(image)}}));
+    sentinels += schedule.sentinels();
+    schedule.sentinels_took(schedule.sentinels(), schedule.sentinels() * 2.0);
+  }
+  EXPECT_GE(sentinels, 60);
 }
 
 TEST(VerificationSchedule, ASecondInputIsNotTrustedForTheFirst) {

@@ -66,7 +66,6 @@ void add_fixed(const DispatchTable& gl, const FixedArrayNames& names, GLuint ind
 
 bool is_core(const DispatchTable& gl) {
   if (integer(gl, GL_MAJOR_VERSION) < 3) return false;
-  if ((integer(gl, GL_CONTEXT_FLAGS) & GL_CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT) != 0) return true;
   return (integer(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 }
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include "dispatch/call_words.h"
+#include "spu/stream/bound_buffers.h"
 #include "spu/stream/decode.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
@@ -18,6 +20,21 @@ constexpr std::size_t least_output_bytes = 8;
 
 /// Buffers for feedback, or for selection, of which the driver does not tell that it has let go.
 constexpr std::size_t most_retained = 4;
+
+/// Answers that are as long as a buffer object.
+bool reads_buffer(CallId call) {
+  return std::string_view(call_name(call)).find("BufferSubData") != std::string_view::npos;
+}
+
+std::size_t bytes_of_buffer(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
+  GLint64 bytes = 0;
+  if (std::string_view(call_name(call)).find("Named") == std::string_view::npos) {
+    bytes = GLint64(bound_bytes(gl, GLenum(words[0])));
+  } else if (gl.GetNamedBufferParameteri64v != nullptr) {
+    gl.GetNamedBufferParameteri64v(GLuint(words[0]), GL_BUFFER_SIZE, &bytes);
+  }
+  return std::min(std::size_t(std::max<GLint64>(bytes, 0)), most_linked_output_bytes);
+}
 
 std::uint64_t word_of(const void* pointer) {
   return reinterpret_cast<std::uintptr_t>(pointer);
@@ -52,14 +69,13 @@ std::string Decoder::provide_output(Call& call, std::size_t p, const DispatchTab
     read_image(call, p, gl);
     return {};
   }
-  const std::size_t bytes =
-      pointee_bytes(call.id, p, call.words.data())
-          .value_or(parameter.rule == ExtentRule::unknown ? room_for_answer(call.id, call.words.data(), gl)
-                                                          : most_output_bytes);
-  if (bytes > (linked ? most_linked_output_bytes : most_output_bytes))
+  auto bytes = pointee_bytes(call.id, p, call.words.data());
+  if (!bytes && parameter.rule == ExtentRule::unknown) bytes = room_for_answer(call.id, call.words.data(), gl);
+  const bool buffer = linked && reads_buffer(call.id);
+  if (!bytes || *bytes > (buffer ? bytes_of_buffer(call.id, call.words.data(), gl) : most_output_bytes))
     return in_call(call.id, "claims an answer beyond all reason");
-  call.bytes[p] = bytes;
-  const std::size_t room = std::max(bytes, least_output_bytes);
+  call.bytes[p] = *bytes;
+  const std::size_t room = std::max(*bytes, least_output_bytes);
   if (parameter.rule == ExtentRule::retained) {
     auto& retained = call.id == CallId::SelectBuffer ? selection_ : feedback_;
     if (retained.size() > most_retained) return in_call(call.id, "the driver keeps too many such buffers");

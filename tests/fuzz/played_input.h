@@ -2,6 +2,7 @@
 // and both as what was recorded and as what waits for answers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -27,20 +28,29 @@ inline void play_records(std::span<const std::uint64_t> words, std::span<const s
   }
 }
 
-inline void play_input(std::span<const std::byte> input, const DispatchTable& gl) {
+/// Calls `take(records, payload)` for what the input is as a trace, and for what it is as bare records.
+template <class Take>
+void walk_input(std::span<const std::byte> input, Take take) {
   try {
     TraceReader reader(input);
-    while (const auto block = reader.next()) play_records(block->records, block->payload, gl);
+    while (const auto block = reader.next()) take(block->records, block->payload);
   } catch (const std::runtime_error&) {
     // What is no trace says so.
   }
+  // Memory of its own for each part, so that a sanitizer sees what leads out of it.
   std::vector<std::uint64_t> words(input.size() / 8);
   if (words.empty()) return;
   std::memcpy(words.data(), input.data(), words.size() * 8);
   // The first word says how many words are records; what follows them is the payload.
-  const std::size_t records = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
-  const std::span<const std::uint64_t> all(words);
-  play_records(all.subspan(1, records), all.subspan(1 + records), gl);
+  const std::size_t count = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
+  const auto end_of_records = words.begin() + 1 + std::ptrdiff_t(count);
+  const std::vector<std::uint64_t> records(words.begin() + 1, end_of_records);
+  const std::vector<std::uint64_t> payload(end_of_records, words.end());
+  take(std::span(records), std::span(payload));
+}
+
+inline void play_input(std::span<const std::byte> input, const DispatchTable& gl) {
+  walk_input(input, [&](auto records, auto payload) { play_records(records, payload, gl); });
 }
 
 }  // namespace understudy::spu::testing

@@ -443,7 +443,8 @@ void ReadingDriver::write_output(CallId call, std::size_t p, const std::uint64_t
   if (words[p] == 0 && parameter.null_with == p) return;
   if (parameter.rule == ExtentRule::image_out) {
     const auto image = image_answer(call, words, table_);
-    if (!image) return;
+    // A caller with too little room gets nothing.
+    if (!image || image->bytes == 0) return;
     const auto bytes =
         image->shape ? image_extent(*image->shape, pixel_store(table_, pack_names)) : image->bytes;
     if (bytes) write(in_buffer(GL_PIXEL_PACK_BUFFER, words[p]), *bytes);
@@ -475,7 +476,8 @@ void ReadingDriver::draw(CallId call, const std::uint64_t* words) {
     std::int64_t last =
         array.divisor == 0 ? range->last : first + (range->last_instance - first) / std::int64_t(array.divisor);
     const CallShape& of = call_shape(call);
-    if (const std::uint8_t start = argument_named(of, "start"); start != no_argument && !range->empty()) {
+    if (const std::uint8_t start = argument_named(of, "start");
+        start != no_argument && array.divisor == 0 && !range->empty()) {
       first = std::min<std::int64_t>(first, GLuint(words[start]));
       last = std::max<std::int64_t>(last, GLuint(words[argument_named(of, "end")]));
     }

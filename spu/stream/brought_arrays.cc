@@ -187,8 +187,8 @@ std::string BroughtArrays::check_draw(CallId call, std::uint64_t* words, const D
   return {};
 }
 
-std::string BroughtArrays::check(CallId call, std::uint64_t* words, bool inside_begin,
-                                 const DispatchTable& gl) {
+std::string BroughtArrays::check(CallId call, std::uint64_t* words, bool inside_begin, const DispatchTable& gl,
+                                 bool& left_out) {
   const ArrayUse use = use_of(call);
   if (use.changes) {
     if (active_) return "changes vertex arrays between those of a draw and the draw";
@@ -196,8 +196,8 @@ std::string BroughtArrays::check(CallId call, std::uint64_t* words, bool inside_
   }
   if (use.begins) look(inside_begin, gl);
   if (!use.reads) return {};
-  if (!look(inside_begin, gl)) return "nobody knows where its vertex arrays lie";
-  return check_draw(call, words, gl);
+  left_out = !look(inside_begin, gl);
+  return left_out ? std::string() : check_draw(call, words, gl);
 }
 
 }  // namespace understudy::spu

@@ -26,8 +26,10 @@ class BroughtArrays {
   void end(const DispatchTable& gl, bool restores);
 
   /// What is wrong with a call of a stream from elsewhere, or nothing. Looks before glBegin, since OpenGL
-  /// answers nothing behind it. May narrow the range that glDrawRangeElements claims in `words`.
-  std::string check(CallId call, std::uint64_t* words, bool inside_begin, const DispatchTable& gl);
+  /// answers nothing behind it; a draw about which it answers nothing is to be left out. May narrow the range
+  /// that glDrawRangeElements claims in `words`.
+  std::string check(CallId call, std::uint64_t* words, bool inside_begin, const DispatchTable& gl,
+                    bool& left_out);
   bool active() const { return active_; }
 
  private:

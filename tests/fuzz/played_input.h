@@ -16,15 +16,13 @@
 namespace understudy::spu::testing {
 
 inline void play_records(std::span<const std::uint64_t> words, std::span<const std::uint64_t> payload,
-                         const DispatchTable& gl) {
-  for (const StreamOrigin origin : {StreamOrigin::elsewhere, StreamOrigin::linked}) {
-    Decoder decoder(origin, std::make_shared<ObjectNames>());
-    for (std::size_t at = 0; at < words.size();) {
-      const auto record = record_at(words, at, payload);
-      if (!record) break;
-      decoder.decode(*record, gl);
-      at += record->words.size();
-    }
+                         StreamOrigin origin, const DispatchTable& gl) {
+  Decoder decoder(origin, std::make_shared<ObjectNames>());
+  for (std::size_t at = 0; at < words.size();) {
+    const auto record = record_at(words, at, payload);
+    if (!record) break;
+    decoder.decode(*record, gl);
+    at += record->words.size();
   }
 }
 
@@ -49,8 +47,15 @@ void walk_input(std::span<const std::byte> input, Take take) {
   take(std::span(records), std::span(payload));
 }
 
-inline void play_input(std::span<const std::byte> input, const DispatchTable& gl) {
-  walk_input(input, [&](auto records, auto payload) { play_records(records, payload, gl); });
+/// Each part, from each origin, above a `Driver` of its own: a driver may keep memory of its decoder's.
+template <class Driver>
+void play_input(std::span<const std::byte> input) {
+  walk_input(input, [&](auto records, auto payload) {
+    for (const StreamOrigin origin : {StreamOrigin::elsewhere, StreamOrigin::linked}) {
+      const Driver driver;
+      play_records(records, payload, origin, driver.table());
+    }
+  });
 }
 
 }  // namespace understudy::spu::testing

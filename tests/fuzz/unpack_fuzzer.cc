@@ -5,7 +5,6 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace understudy::spu::testing;
-  ReadingDriver driver;
-  play_input(std::as_bytes(std::span(data, size)), driver.table());
+  play_input<ReadingDriver>(std::as_bytes(std::span(data, size)));
   return 0;
 }

@@ -468,6 +468,7 @@ void ReadingDriver::draw(CallId call, const std::uint64_t* words) {
   const bool was_inside = std::exchange(inside_, false);
   const auto range = element_range(table_, call, words);
   inside_ = was_inside;
+  if (range && range->empty()) return;
   for (const Array& array : arrays_) {
     if (!array.enabled || array.buffer != 0) continue;
     if (!range) wrong(call, "arrays in memory, and nobody knows how much of them");

@@ -122,6 +122,8 @@ std::string BroughtArrays::take(std::span<const std::uint64_t> fields, const Rec
   // Where the element 0 would be, that only the later ones are there for.
   if (brought.elements > 0) brought.pointer = word_of(kept(*data, copies)) - std::uint64_t(first) * bytes;
   point_array(gl, brought.array, GLsizei(bytes), address(brought.pointer));
+  // OpenGL may have refused it, and read elsewhere.
+  if (in_memory_) note_pointer(brought.array, pointer_of(gl, brought.array));
   brought_.push_back(brought);
   return {};
 }
@@ -141,15 +143,28 @@ std::string BroughtArrays::begin(const Record& record, const DispatchTable& gl, 
 }
 
 void BroughtArrays::end(const DispatchTable& gl, bool restores) {
-  in_memory_.reset();
   if (active_) {
     const WithoutArrayBuffer without(gl);
-    for (const Brought& brought : brought_)
+    for (const Brought& brought : brought_) {
       point_array(gl, brought.array, brought.array.stride, restores ? address(brought.array.pointer) : nullptr);
+      if (in_memory_) note_pointer(brought.array, 0);
+    }
   }
   active_ = false;
   brought_.clear();
   copies_used_ = 0;
+}
+
+/// The event changes where arrays point, and nothing else: most need not be looked at again for every draw.
+void BroughtArrays::note_pointer(const ClientArray& array, std::uint64_t pointer) {
+  const auto found = std::find_if(in_memory_->begin(), in_memory_->end(), [&](const ClientArray& known) {
+    return known.role == array.role && known.index == array.index;
+  });
+  if (found == in_memory_->end()) {
+    in_memory_.reset();
+  } else {
+    found->pointer = pointer;
+  }
 }
 
 /// False when it cannot be known now which arrays lie in memory.

@@ -44,6 +44,7 @@ class BroughtArrays {
                    bool copies);
   const std::byte* kept(std::span<const std::byte> data, bool copies);
   bool look(bool inside_begin, const DispatchTable& gl);
+  void note_pointer(const ClientArray& array, std::uint64_t pointer);
   bool covers(const ClientArray& used, const ElementRange& range) const;
   std::string check_draw(CallId call, std::uint64_t* words, const DispatchTable& gl);
 

@@ -277,6 +277,23 @@ void point_array(const DispatchTable& gl, const ClientArray& array, GLsizei stri
   }
 }
 
+std::uint64_t pointer_of(const DispatchTable& gl, const ClientArray& array) {
+  void* pointer = nullptr;
+  const auto fixed = std::find_if(fixed_arrays.begin(), fixed_arrays.end(),
+                                  [&](const FixedArrayNames& names) { return names.role == array.role; });
+  if (fixed == fixed_arrays.end()) {
+    gl.GetVertexAttribPointerv(array.index, GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
+  } else if (array.role != ArrayRole::texture_coordinate) {
+    gl.GetPointerv(fixed->pointer, &pointer);
+  } else {
+    const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+    gl.ClientActiveTexture(GL_TEXTURE0 + array.index);
+    gl.GetPointerv(fixed->pointer, &pointer);
+    gl.ClientActiveTexture(GLenum(active));
+  }
+  return reinterpret_cast<std::uintptr_t>(pointer);
+}
+
 bool draws_arrays(CallId call) noexcept {
   return draw_arguments(call).draw;
 }

@@ -91,6 +91,7 @@ class Playing {
         throw std::runtime_error(
             fmt::format("{}: {}", plan_.trace.string(), in_block(block, "a record is longer than its block")));
       position += record->words.size();
+      if (plan_.played != nullptr) plan_.played->is(record->id);
       const std::string error = player_.play(*record);
       if (spu::event::name_of(record->id) == nullptr) ++calls;
       if (!error.empty()) tell(in_block(block, error), error);
@@ -135,8 +136,12 @@ class Playing {
 };
 
 int play_and_say(const PlayPlan& plan) {
-  play(plan, spu::options_from_environment());
-  return 0;
+  return play_guarded(plan.trace, [&](PlayedRecord& played) {
+    PlayPlan guarded = plan;
+    guarded.played = &played;
+    play(guarded, spu::options_from_environment());
+    return 0;
+  });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "apps/understudy/guarded_player.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {
@@ -27,6 +28,7 @@ struct PlayPlan {
   std::filesystem::path trace;
   FrameRange frames;                  ///< the ones that are saved and counted; playing ends behind them
   std::filesystem::path save_frames;  ///< a folder for images; empty: none are saved
+  PlayedRecord* played = nullptr;     ///< told of every record, where somebody looks after the player
 };
 
 struct Played {

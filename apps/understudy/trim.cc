@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@
 
 namespace understudy::launcher {
 namespace {
+
+/// Different faults of a trace that are said.
+constexpr std::size_t most_faults_told = 20;
 
 /// Calls `take(record, frame)` for every record up to the end of frame `last`; frames count from 1.
 template <class Take>
@@ -81,12 +85,28 @@ class Images {
   std::vector<std::uint64_t> images_;
 };
 
-std::vector<std::uint64_t> images_of(const std::filesystem::path& trace) {
+std::vector<std::uint64_t> images_of(const TrimPlan& plan) {
   Images images;
-  walk(trace, ~std::uint64_t(0),
-       [&](const spu::Record& record, std::uint64_t) { images.player().play(record); });
+  walk(plan.out, ~std::uint64_t(0), [&](const spu::Record& record, std::uint64_t) {
+    if (plan.played != nullptr) plan.played->is(record.id);
+    images.player().play(record);
+  });
   return images.take();
 }
+
+/// Says once what of a trace cannot be played.
+class Faults {
+ public:
+  explicit Faults(const std::filesystem::path& trace) : trace_(trace) {}
+  void tell(const std::string& fault) {
+    if (fault.empty() || told_.size() >= most_faults_told || !told_.insert(fault).second) return;
+    fmt::print(stderr, "understudy: {}: {}; the record is kept as it is\n", trace_.string(), fault);
+  }
+
+ private:
+  const std::filesystem::path& trace_;
+  std::set<std::string> told_;
+};
 
 void write(const TrimPlan& plan, const std::vector<spu::RecordAction>& actions,
            const spu::Records& restoration) {
@@ -113,6 +133,7 @@ void trim(const TrimPlan& plan) {
   {
     Images whole;
     spu::Prefix prefix(whole.player());
+    Faults faults(plan.trace);
     bool cut = false;
     const auto cut_here = [&] {
       cut = true;
@@ -122,12 +143,10 @@ void trim(const TrimPlan& plan) {
     };
     const std::uint64_t frames =
         walk(plan.trace, plan.frames.last, [&](const spu::Record& record, std::uint64_t frame) {
-          if (frame < first) {
-            prefix.play(record);
-          } else {
-            if (!cut) cut_here();
-            whole.player().play(record);
-          }
+          if (plan.played != nullptr) plan.played->is(record.id);
+          if (frame < first) return faults.tell(prefix.play(record));
+          if (!cut) cut_here();
+          faults.tell(whole.player().play(record));
         });
     if (frames < first)
       throw std::runtime_error(fmt::format("{} has only {} frames", plan.trace.string(), frames));
@@ -138,7 +157,7 @@ void trim(const TrimPlan& plan) {
   const spu::Records nothing;
   for (const spu::Records* brought_back : std::initializer_list<const spu::Records*>{&nothing, &restoration}) {
     write(plan, actions, *brought_back);
-    if (images_of(plan.out) == wanted) return;
+    if (images_of(plan) == wanted) return;
   }
   std::filesystem::remove(plan.out);
   std::string why;
@@ -165,11 +184,14 @@ void add_trim(CLI::App& app, std::function<int()>& chosen) {
       std::error_code none;
       if (std::filesystem::equivalent(plan->trace, plan->out, none))
         throw std::runtime_error("the shorter trace needs a name of its own; give another one to -o");
-      trim(*plan);
-      fmt::print(stderr, "understudy: {}: {:.1f} MB of {:.1f} MB\n", plan->out.string(),
-                 double(std::filesystem::file_size(plan->out)) / 1e6,
-                 double(std::filesystem::file_size(plan->trace)) / 1e6);
-      return 0;
+      return play_guarded(plan->trace, [&](PlayedRecord& played) {
+        plan->played = &played;
+        trim(*plan);
+        fmt::print(stderr, "understudy: {}: {:.1f} MB of {:.1f} MB\n", plan->out.string(),
+                   double(std::filesystem::file_size(plan->out)) / 1e6,
+                   double(std::filesystem::file_size(plan->trace)) / 1e6);
+        return 0;
+      });
     };
   });
 }

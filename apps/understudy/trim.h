@@ -12,6 +12,7 @@ struct TrimPlan {
   std::filesystem::path trace;
   FrameRange frames;
   std::filesystem::path out;
+  PlayedRecord* played = nullptr;  ///< told of every record, where somebody looks after the player
 };
 
 /// Writes the shorter trace and plays it against the longer one. Throws std::runtime_error when a frame would

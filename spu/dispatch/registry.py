@@ -2,7 +2,7 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
 # The type of each value as the stream knows it; a type that is missing here stops the generator.
@@ -50,6 +50,7 @@ class Parameter:
     group: str = ""
     object: str = "none"
     extent: Extent = Extent("value")
+    null_with: str = ""  # the argument that is null where this one may be; its own name: it may always be
 
     @property
     def base(self):
@@ -115,9 +116,9 @@ def read_rules(path):
 
 
 def extent(command, parameter, names, rules):
-    if parameter.pointer == 0:
-        return Extent("value")
     for command_pattern, name_pattern, rule, *counted_by in rules:
+        if rule == "or_null" or (parameter.pointer == 0 and rule != "address"):
+            continue
         if fnmatchcase(command, command_pattern) and fnmatchcase(parameter.name, name_pattern):
             argument, factor = (counted_by[0].split("*") + ["1"])[:2] if counted_by else ("", "1")
             if argument.isdigit():
@@ -125,6 +126,8 @@ def extent(command, parameter, names, rules):
             if argument and argument not in names:
                 raise SystemExit(f"arguments.txt: {command} has no argument {argument}")
             return Extent(rule, argument, int(factor))
+    if parameter.pointer == 0:
+        return Extent("value")
     if command in WRONG_LENGTHS and parameter.name == "name":
         return Extent("counted", "len")
     counted = re.fullmatch(r"(\w+?)(?:\s*([*/])\s*(\d+))?", parameter.length)
@@ -139,6 +142,13 @@ def extent(command, parameter, names, rules):
     if parameter.length == "COMPSIZE(pname)" and parameter.input:
         return Extent("parameter_values", "pname" if "pname" in names else "")
     return Extent("unknown")
+
+
+def null_with(command, parameter, rules):
+    for command_pattern, name_pattern, rule, *other in rules:
+        if rule == "or_null" and fnmatchcase(command, command_pattern) and fnmatchcase(parameter.name, name_pattern):
+            return other[0] if other else parameter.name
+    return ""
 
 
 def read_commands(registry, rules=()):
@@ -159,7 +169,7 @@ def read_commands(registry, rules=()):
         for p in elements:
             type = text_before_name(p)
             plain = Parameter(type, p.find("name").text, p.get("len", ""), p.get("group", ""), object_kind(name, p, type))
-            parameters.append(Parameter(**{**vars(plain), "extent": extent(name, plain, names, rules)}))
+            parameters.append(replace(plain, extent=extent(name, plain, names, rules), null_with=null_with(name, plain, rules)))
         result = text_before_name(proto)
         commands.append(Command(name, result, tuple(parameters), object_kind(name, proto, result)))
     return sorted(commands, key=lambda command: command.name)

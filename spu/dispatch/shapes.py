@@ -132,6 +132,9 @@ struct ParameterShape {{
   std::uint8_t counted_by;  ///< argument; no_argument: a fixed count
   std::uint16_t factor;
   std::uint16_t divisor;
+  /// The argument that is null wherever OpenGL gives a null pointer here a meaning, perhaps this one itself;
+  /// no_argument where a null pointer has none.
+  std::uint8_t null_with;
 
   const char* name() const noexcept;
 }};
@@ -204,6 +207,9 @@ def shape_source(commands, enumerants):
         for g in e.groups:
             groups.setdefault(g, len(groups))
 
+    def number(command, name):
+        return next((i for i, p in enumerate(command.parameters) if p.name == name), 255)
+
     def index(command, name):
         for number, p in enumerate(command.parameters):
             if p.name == name and p.pointer == 0:
@@ -232,7 +238,8 @@ def shape_source(commands, enumerants):
                 raise SystemExit(f"arguments.txt: {c.name} {p.name}: {e.argument} is not a value")
             parameters.append(
                 f"{{{texts.at(p.name)}, ValueType::{VALUE_TYPES[p.base]}, {p.pointer}, {str(p.input).lower()}, "
-                f"ObjectKind::{p.object}, {groups.get(p.group, 0)}, ExtentRule::{e.rule}, {counted_by}, {e.factor}, {e.divisor}}}"
+                f"ObjectKind::{p.object}, {groups.get(p.group, 0)}, ExtentRule::{e.rule}, {counted_by}, {e.factor}, {e.divisor}, "
+                f"{number(c, p.null_with) if p.pointer else 255}}}"
             )
     if len({stable_id(c.name) for c in commands}) != len(commands):
         raise SystemExit("two commands share a stable id: another hash is needed")

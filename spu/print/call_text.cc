@@ -164,9 +164,17 @@ bool may_be_read(const ParameterShape& parameter) {
   }
 }
 
+/// An offset, or an address of a process that is not this one.
+void append_number(Text& text, CallId call, std::size_t index, const std::uint64_t* words) {
+  const ParameterShape& parameter = call_shape(call).parameters()[index];
+  const bool texts = parameter.rule == ExtentRule::text || parameter.rule == ExtentRule::text_or_counted;
+  const auto bytes = texts ? std::nullopt : argument_bytes(call, index, words);
+  if (bytes && words[index] < lowest_address) return append(text, "{} bytes at {}", *bytes, words[index]);
+  append(text, "0x{:x}", words[index]);
+}
+
 void append_pointer(Text& text, CallId call, std::size_t index, const std::uint64_t* words) {
   const ParameterShape& parameter = call_shape(call).parameters()[index];
-  if (words[index] == 0) return append(text, "NULL");
   const std::optional<std::size_t> bytes = argument_bytes(call, index, words);
   if (!bytes) return append(text, "0x{:x}", words[index]);
   if (words[index] < lowest_address) return append(text, "{} bytes at {}", *bytes, words[index]);
@@ -215,12 +223,17 @@ bool shows_outcome(CallId call) {
   });
 }
 
-void append_call(fmt::memory_buffer& text, CallId call, const std::uint64_t* words, std::uint64_t result) {
+void append_call(fmt::memory_buffer& text, CallId call, const std::uint64_t* words, std::uint64_t result,
+                 UnreadArguments unread) {
   append(text, "{}(", call_name(call));
   const auto parameters = call_shape(call).parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     append(text, "{}{} = ", i > 0 ? ", " : "", parameters[i].name());
-    if (parameters[i].pointer > 0) {
+    if (parameters[i].pointer > 0 && words[i] == 0) {
+      append(text, "NULL");
+    } else if (parameters[i].pointer > 0 && (unread >> i & 1U) != 0) {
+      append_number(text, call, i, words);
+    } else if (parameters[i].pointer > 0) {
       append_pointer(text, call, i, words);
     } else {
       append_value(text, parameters[i].type, parameters[i].enum_group, words[i]);

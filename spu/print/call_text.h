@@ -17,8 +17,12 @@ namespace understudy::spu {
 /// after the call, otherwise before it, so that the last line of a crash names it.
 bool shows_outcome(CallId call);
 
+/// Pointer arguments that are only shown, and never followed: bit i for argument i.
+using UnreadArguments = std::uint32_t;
+
 /// What lies behind pointers is read only where it must be the application's memory; offsets into buffers are
-/// not followed. `result` is the result's word.
-void append_call(fmt::memory_buffer& text, CallId call, const std::uint64_t* words, std::uint64_t result);
+/// not followed, nor are `unread` pointers. `result` is the result's word.
+void append_call(fmt::memory_buffer& text, CallId call, const std::uint64_t* words, std::uint64_t result,
+                 UnreadArguments unread = 0);
 
 }  // namespace understudy::spu

@@ -56,15 +56,18 @@ RecordText::RecordText(std::function<void(std::string_view)> line,
     : line_(std::move(line)), wants_call_(std::move(wants_call)) {}
 
 std::string RecordText::call_line(const Record& record, const Record* answers) {
-  CallId call{};
-  std::array<std::uint64_t, max_parameters> words{};
-  if (std::string error = decoder_.arguments(record, call, words.data()); !error.empty()) return error;
+  Decoder::ReadCall read;
+  if (std::string error = decoder_.read(record, read); !error.empty()) return error;
+  const CallId call = read.id;
+  auto& words = read.words;
   const CallShape& shape = call_shape(call);
-  std::uint32_t outputs = 0;
+  UnreadArguments outputs = 0;
+  UnreadArguments unread = 0;
   std::size_t at = 2;
   for (std::size_t p = 0; p < shape.parameter_count; ++p) {
     const ParameterShape& parameter = shape.parameters()[p];
-    if (parameter.pointer == 0 || Reference::from(record.words[p + 1]).kind != ReferenceKind::output) continue;
+    if (parameter.pointer != 0 && read.kinds[p] == ReferenceKind::address) unread |= 1U << p;
+    if (parameter.pointer == 0 || read.kinds[p] != ReferenceKind::output) continue;
     words[p] = 0;
     outputs |= 1U << p;
     if (!answers_names(parameter) || answers == nullptr || at >= answers->arguments().size()) continue;
@@ -78,7 +81,7 @@ std::string RecordText::call_line(const Record& record, const Record* answers) {
   const std::uint64_t result =
       number && answers != nullptr && answers->arguments().size() > 1 ? answers->arguments()[1] : 0;
   fmt::memory_buffer text;
-  append_call(text, call, words.data(), result);
+  append_call(text, call, words.data(), result, unread);
   std::string line = with_outputs(fmt::to_string(text), shape, outputs);
   if (!number) line.resize(line.rfind(" = "));
   return line;

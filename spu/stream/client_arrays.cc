@@ -64,6 +64,27 @@ void add_fixed(const DispatchTable& gl, const FixedArrayNames& names, GLuint ind
   arrays.push_back(array);
 }
 
+bool is_core(const DispatchTable& gl) {
+  if (integer(gl, GL_MAJOR_VERSION) < 3) return false;
+  return (integer(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
+}
+
+void add_all_fixed(const DispatchTable& gl, std::vector<ClientArray>& arrays) {
+  const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+  for (const FixedArrayNames& names : fixed_arrays) {
+    if (names.role != ArrayRole::texture_coordinate) {
+      add_fixed(gl, names, 0, arrays);
+      continue;
+    }
+    const GLint units = integer(gl, GL_MAX_TEXTURE_COORDS);
+    for (GLint unit = 0; unit < units; ++unit) {
+      gl.ClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
+      add_fixed(gl, names, GLuint(unit), arrays);
+    }
+    gl.ClientActiveTexture(GLenum(active));
+  }
+}
+
 GLint attribute(const DispatchTable& gl, GLuint index, GLenum name) {
   GLint value = 0;
   gl.GetVertexAttribiv(index, name, &value);
@@ -203,26 +224,12 @@ std::size_t ClientArray::element_bytes() const {
 }
 
 std::vector<ClientArray> client_arrays(const DispatchTable& gl) {
+  return gl.GetString == nullptr || is_core(gl) ? std::vector<ClientArray>() : arrays_without_buffer(gl);
+}
+
+std::vector<ClientArray> arrays_without_buffer(const DispatchTable& gl) {
   std::vector<ClientArray> arrays;
-  if (gl.GetString == nullptr) return arrays;
-  GLint profile = 0;
-  GLint major = 0;
-  gl.GetIntegerv(GL_MAJOR_VERSION, &major);
-  if (major >= 3) gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
-  if ((profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0) return arrays;
-  const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
-  for (const FixedArrayNames& names : fixed_arrays) {
-    if (names.role != ArrayRole::texture_coordinate) {
-      add_fixed(gl, names, 0, arrays);
-      continue;
-    }
-    const GLint units = integer(gl, GL_MAX_TEXTURE_COORDS);
-    for (GLint unit = 0; unit < units; ++unit) {
-      gl.ClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
-      add_fixed(gl, names, GLuint(unit), arrays);
-    }
-    gl.ClientActiveTexture(GLenum(active));
-  }
+  if (!is_core(gl)) add_all_fixed(gl, arrays);
   const GLint attributes = integer(gl, GL_MAX_VERTEX_ATTRIBS);
   for (GLint i = 0; i < attributes; ++i) add_generic(gl, GLuint(i), arrays);
   return arrays;
@@ -268,6 +275,23 @@ void point_array(const DispatchTable& gl, const ClientArray& array, GLsizei stri
       gl.VertexAttribLPointer(array.index, array.size, array.type, stride, pointer);
       break;
   }
+}
+
+std::uint64_t pointer_of(const DispatchTable& gl, const ClientArray& array) {
+  void* pointer = nullptr;
+  const auto fixed = std::find_if(fixed_arrays.begin(), fixed_arrays.end(),
+                                  [&](const FixedArrayNames& names) { return names.role == array.role; });
+  if (fixed == fixed_arrays.end()) {
+    gl.GetVertexAttribPointerv(array.index, GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
+  } else if (array.role != ArrayRole::texture_coordinate) {
+    gl.GetPointerv(fixed->pointer, &pointer);
+  } else {
+    const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+    gl.ClientActiveTexture(GL_TEXTURE0 + array.index);
+    gl.GetPointerv(fixed->pointer, &pointer);
+    gl.ClientActiveTexture(GLenum(active));
+  }
+  return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
 bool draws_arrays(CallId call) noexcept {

@@ -48,9 +48,15 @@ struct ClientArray {
 
 /// The arrays that a draw would read from client memory now. Not between glBegin and glEnd.
 std::vector<ClientArray> client_arrays(const DispatchTable& gl);
+/// Every enabled array without a buffer object. No draw of a core profile reads one, if all is well: a driver
+/// may not look.
+std::vector<ClientArray> arrays_without_buffer(const DispatchTable& gl);
 
 /// Gives OpenGL a new address and stride for an array. The binding of GL_ARRAY_BUFFER must be 0.
 void point_array(const DispatchTable& gl, const ClientArray& array, GLsizei stride, const void* pointer);
+
+/// Where OpenGL says that an array of this role and index points.
+std::uint64_t pointer_of(const DispatchTable& gl, const ClientArray& array);
 
 /// Elements that a draw reads, first and last included.
 struct ElementRange {

@@ -9,17 +9,14 @@
 
 #include "dispatch/call_words.h"
 #include "spu/stream/answers.h"
+#include "spu/stream/bound_buffers.h"
+#include "spu/stream/checked_pointers.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 
 namespace understudy::spu {
 namespace {
-
-/// Answers of calls whose extent nobody knows are smaller than this.
-constexpr std::size_t unknown_output_bytes = std::size_t(64) * 1024;
-/// Answers of a stream from elsewhere are given no more memory than this: a length there is only a claim.
-constexpr std::size_t most_output_bytes = std::size_t(64) << 20;
 
 const std::byte* address(std::uint64_t word) {
   return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
@@ -56,8 +53,13 @@ bool is_shared(ObjectKind kind) {
   }
 }
 
-std::string in_call(CallId call, std::string_view what) {
-  return fmt::format("{}: {}", call_name(call), what);
+bool is_named(CallId call) {
+  return std::string_view(call_name(call)).find("Named") != std::string_view::npos;
+}
+
+/// The buffer object that a call with its target, or its name, as first argument is about.
+GLuint buffer_of(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
+  return is_named(call) ? GLuint(words[0]) : GLuint(ask(gl, binding_of_target(GLenum(words[0]))));
 }
 
 /// Bytes of the mapping that the call has just made.
@@ -65,7 +67,7 @@ std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const Dispatch
   const std::uint8_t length = argument_named(call_shape(call), "length");
   if (length != no_argument) return words[length];
   GLint64 size = 0;
-  if (call == CallId::MapNamedBuffer || call == CallId::MapNamedBufferEXT) {
+  if (is_named(call)) {
     gl.GetNamedBufferParameteri64v(GLuint(words[0]), GL_BUFFER_SIZE, &size);
   } else {
     gl.GetBufferParameteri64v(GLenum(words[0]), GL_BUFFER_SIZE, &size);
@@ -73,7 +75,47 @@ std::size_t mapped_bytes(CallId call, const std::uint64_t* words, const Dispatch
   return std::size_t(std::max<GLint64>(size, 0));
 }
 
+/// Whether the driver still has the mapping, and it may be written to. A mapping ends in many ways, some of
+/// them in other contexts, so the driver is asked.
+bool is_mapped(const ObjectNames::Mapping& mapping, const DispatchTable& gl) {
+  const auto before = asked(gl, GL_ARRAY_BUFFER_BINDING);
+  if (!before || !gl.IsBuffer(mapping.buffer)) return false;
+  gl.BindBuffer(GL_ARRAY_BUFFER, mapping.buffer);
+  void* first = nullptr;
+  GLint access = GL_READ_ONLY;
+  gl.GetBufferPointerv(GL_ARRAY_BUFFER, GL_BUFFER_MAP_POINTER, &first);
+  gl.GetBufferParameteriv(GL_ARRAY_BUFFER, GL_BUFFER_ACCESS, &access);
+  gl.BindBuffer(GL_ARRAY_BUFFER, GLuint(*before));
+  return first == mapping.first && access != GL_READ_ONLY;
+}
+
+/// glPixelStore as images lie in streams, for as long as this lives.
+class TightPixels {
+ public:
+  TightPixels(const DispatchTable& gl, const std::array<GLenum, 8>& names, bool wanted)
+      : gl_(gl), names_(names), wanted_(wanted) {
+    if (!wanted_) return;
+    store_ = pixel_store(gl, names);
+    set_pixel_store(gl, names, store_, tight_pixels);
+  }
+  ~TightPixels() {
+    if (wanted_) set_pixel_store(gl_, names_, tight_pixels, store_);
+  }
+  TightPixels(const TightPixels&) = delete;
+  TightPixels& operator=(const TightPixels&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  const std::array<GLenum, 8>& names_;
+  const bool wanted_;
+  PixelStore store_;
+};
+
 }  // namespace
+
+std::string in_call(CallId call, std::string_view what) {
+  return fmt::format("{}: {}", call_name(call), what);
+}
 
 /// The answer goes to a bound buffer object, where later calls find it.
 bool Decoder::answers_into_buffer(const Call& call) {
@@ -168,63 +210,85 @@ std::string Decoder::read_lists(const Record& record, Call& call, std::size_t p)
   return {};
 }
 
-std::string Decoder::read_arguments(const Record& record, Call& call) {
-  const auto found = find_stable_id(record.id);
-  if (!found) return fmt::format("call id {:#010x} is not in this registry", record.id);
-  call.id = *found;
-  call.shape = &call_shape(call.id);
+std::string Decoder::read_references(const Record& record, Call& call) {
   const auto parameters = call.shape->parameters();
-  if (record.words.size() < parameters.size() + 1)
-    return in_call(call.id,
-                   fmt::format("has {} arguments here, not {}", parameters.size(), record.words.size() - 1));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     call.words[p] = record.words[p + 1];
     if (parameters[p].pointer == 0) continue;
     const Reference reference = Reference::from(record.words[p + 1]);
     call.kinds[p] = reference.kind;
     call.words[p] = reference.kind == ReferenceKind::null ? 0 : reference.value;
+    if (reference.kind > ReferenceKind::lists)
+      return in_call(call.id, fmt::format("{} is no reference", parameters[p].name()));
+    if (!believes() && !may_be(parameters[p], reference.kind))
+      return in_call(
+          call.id, fmt::format("{} is {}", parameters[p].name(), refused_kind(parameters[p], reference.kind)));
     if (reference.kind == ReferenceKind::inside || reference.kind == ReferenceKind::payload) {
       if (std::string error = read_bytes(record, call, p); !error.empty()) return error;
-    } else if (reference.kind > ReferenceKind::lists) {
-      return in_call(call.id, fmt::format("{} is no reference", parameters[p].name()));
     }
   }
-  // These count by other arguments, so they come when those are there.
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  return {};
+}
+
+/// Strings and lists count by other arguments, so they come when those are there.
+std::string Decoder::read_lists_of(const Record& record, Call& call) {
+  for (std::size_t p = 0; p < call.shape->parameter_count; ++p) {
     std::string error;
     if (call.kinds[p] == ReferenceKind::strings) error = read_strings(record, call, p);
     if (call.kinds[p] == ReferenceKind::lists) error = read_lists(record, call, p);
     if (!error.empty()) return error;
   }
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ParameterShape& parameter = parameters[p];
-    if (call.kinds[p] != ReferenceKind::inside && call.kinds[p] != ReferenceKind::payload) continue;
-    const bool text =
-        parameter.rule == ExtentRule::text ||
-        (parameter.rule == ExtentRule::text_or_counted && std::int32_t(call.words[parameter.counted_by]) < 0);
-    if (text) {
-      if (std::memchr(address(call.words[p]), 0, call.bytes[p]) == nullptr)
-        return in_call(call.id, fmt::format("{} does not end", parameter.name()));
-      continue;
-    }
-    const auto needed = parameter.rule == ExtentRule::image
-                            ? image_extent(image_shape(call.id, call.words.data()), tight_pixels)
-                            : pointee_bytes(call.id, p, call.words.data());
-    if (!needed || *needed > call.bytes[p]) {
-      return in_call(call.id, fmt::format("{} needs {} bytes and has {}", parameter.name(),
-                                          needed ? std::to_string(*needed) : "unknown", call.bytes[p]));
-    }
-    call.image_in |= parameter.rule == ExtentRule::image;
+  return {};
+}
+
+/// Whether as much came with the stream as the call reads.
+std::string Decoder::measure(Call& call, std::size_t p) {
+  const ParameterShape& parameter = call.shape->parameters()[p];
+  if (call.kinds[p] == ReferenceKind::null && !believes()) return refuse_null(call, p);
+  if (call.kinds[p] != ReferenceKind::inside && call.kinds[p] != ReferenceKind::payload) return {};
+  const bool text = parameter.rule == ExtentRule::text || (parameter.rule == ExtentRule::text_or_counted &&
+                                                           std::int32_t(call.words[parameter.counted_by]) < 0);
+  if (text) {
+    if (std::memchr(address(call.words[p]), 0, call.bytes[p]) == nullptr)
+      return in_call(call.id, fmt::format("{} does not end", parameter.name()));
+    return {};
+  }
+  const auto needed = parameter.rule == ExtentRule::image
+                          ? image_extent(image_shape(call.id, call.words.data()), tight_pixels)
+                          : pointee_bytes(call.id, p, call.words.data());
+  if (!needed || *needed > call.bytes[p]) {
+    return in_call(call.id, fmt::format("{} needs {} bytes and has {}", parameter.name(),
+                                        needed ? std::to_string(*needed) : "unknown", call.bytes[p]));
+  }
+  call.tight_unpack |=
+      parameter.rule == ExtentRule::image || (!believes() && parameter.rule == ExtentRule::counted_or_unpack);
+  if (!believes()) give_room(call, p);
+  return {};
+}
+
+std::string Decoder::read_arguments(const Record& record, Call& call) {
+  const auto found = find_stable_id(record.id);
+  if (!found) return fmt::format("call id {:#010x} is not in this registry", record.id);
+  call.id = *found;
+  call.shape = &call_shape(call.id);
+  const std::size_t parameters = call.shape->parameter_count;
+  if (record.words.size() < parameters + 1)
+    return in_call(call.id, fmt::format("has {} arguments here, not {}", parameters, record.words.size() - 1));
+  if (std::string error = read_references(record, call); !error.empty()) return error;
+  if (std::string error = read_lists_of(record, call); !error.empty()) return error;
+  for (std::size_t p = 0; p < parameters; ++p) {
+    if (std::string error = measure(call, p); !error.empty()) return error;
   }
   return {};
 }
 
-std::string Decoder::arguments(const Record& record, CallId& id, std::uint64_t* words) {
+std::string Decoder::read(const Record& record, ReadCall& to) {
   scratch_used_ = 0;
   Call call;
   std::string error = read_arguments(record, call);
-  id = call.id;
-  std::copy_n(call.words.begin(), error.empty() ? call.shape->parameter_count : 0, words);
+  to.id = call.id;
+  to.words = call.words;
+  to.kinds = call.kinds;
   return error;
 }
 
@@ -237,8 +301,9 @@ bool Decoder::translate(Call& call) {
       if (parameter.object == ObjectKind::sync) {
         const std::uint64_t here = names(parameter.object).here(parameter.object, call.words[p]);
         if (here == call.words[p]) return false;
+        if (call.id == CallId::DeleteSync) names(parameter.object).forget(parameter.object, call.words[p]);
         call.words[p] = here;
-      } else if (parameter.type == ValueType::address) {
+      } else if (parameter.type == ValueType::address || parameter.rule == ExtentRule::address) {
         return false;
       } else if (parameter.object != ObjectKind::none) {
         call.words[p] = names(parameter.object).here(parameter.object, call.words[p]);
@@ -267,105 +332,6 @@ bool Decoder::translate(Call& call) {
   if (call.id == CallId::UseProgram || call.id == CallId::UseProgramObjectARB)
     own_names_.current_program = call.words[0];
   return true;
-}
-
-/// Answers of a stream from elsewhere are written to memory of ours.
-std::string Decoder::provide_outputs(Call& call, const DispatchTable& gl) {
-  const auto parameters = call.shape->parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ParameterShape& parameter = parameters[p];
-    if (parameter.pointer == 0 || parameter.input) continue;
-    // No driver looks whether there is a place for pixels.
-    if (call.kinds[p] == ReferenceKind::null && parameter.rule == ExtentRule::image_out) call.skip = true;
-    if (call.words[p] == 0) continue;
-    if (call.kinds[p] == ReferenceKind::address && parameter.rule == ExtentRule::image_out)
-      continue;  // an offset
-    if (call.kinds[p] != ReferenceKind::output)
-      return in_call(call.id, fmt::format("{} is no place for an answer", parameter.name()));
-    std::size_t bytes = pointee_bytes(call.id, p, call.words.data()).value_or(unknown_output_bytes);
-    const bool linked = origin_ == StreamOrigin::linked;
-    if (parameter.rule == ExtentRule::image_out) {
-      if (linked) return provide_image(call, p, gl);
-      if (call.id != CallId::ReadPixels) {
-        call.skip = true;
-        return {};
-      }
-      const ImageShape shape = image_shape(call.id, call.words.data());
-      const auto extent = begin_and_end_.inside() ? std::nullopt : image_extent(shape, tight_pixels);
-      if (!extent || *extent > most_output_bytes) {
-        call.skip = true;
-        return {};
-      }
-      read_image_.shape = shape;
-      read_image_.pixels.assign(*extent, std::byte(0));
-      call.words[p] = word_of(read_image_.pixels.data());
-      // Where the sender wanted it does not matter here: it is read as images lie in streams.
-      const PixelStore store = pixel_store(gl, pack_names);
-      set_pixel_store(gl, pack_names, store, tight_pixels);
-      invoke(gl, call.id, call.words.data());
-      set_pixel_store(gl, pack_names, tight_pixels, store);
-      call.skip = true;
-      return {};
-    }
-    if (bytes > (linked ? most_linked_output_bytes : most_output_bytes))
-      return in_call(call.id, "claims an answer beyond all reason");
-    call.bytes[p] = bytes;
-    if (parameter.rule == ExtentRule::retained) {
-      retained_.emplace_back(words_for(std::max<std::size_t>(bytes, 8)));
-      call.words[p] = word_of(retained_.back().data());
-      (call.id == CallId::SelectBuffer ? selection_ : feedback_) = retained_.size();
-    } else {
-      std::uint64_t* const memory = scratch(std::max<std::size_t>(bytes, 8));
-      if (linked) std::memset(memory, std::to_integer<int>(unwritten), std::max<std::size_t>(bytes, 8));
-      call.words[p] = word_of(memory);
-    }
-  }
-  return {};
-}
-
-/// No draw of a stream from elsewhere reads memory that the stream did not bring.
-std::string Decoder::check_arrays(Call& call, const DispatchTable& gl) {
-  const auto parameters = call.shape->parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].rule == ExtentRule::client_array && call.words[p] != 0 && !begin_and_end_.inside() &&
-        ask(gl, GL_ARRAY_BUFFER_BINDING) == 0) {
-      call.words[p] = 0;
-    }
-    // Offsets mean something only while a buffer is bound.
-    const bool offset = call.kinds[p] == ReferenceKind::address && call.words[p] != 0;
-    const ExtentRule rule = parameters[p].rule;
-    const GLenum binding =
-        rule == ExtentRule::indices || rule == ExtentRule::index_lists       ? GL_ELEMENT_ARRAY_BUFFER_BINDING
-        : rule == ExtentRule::indirect                                       ? GL_DRAW_INDIRECT_BUFFER_BINDING
-        : rule == ExtentRule::image || rule == ExtentRule::counted_or_unpack ? GL_PIXEL_UNPACK_BUFFER_BINDING
-        : rule == ExtentRule::image_out                                      ? GL_PIXEL_PACK_BUFFER_BINDING
-                                                                             : GL_NONE;
-    if (offset && binding != GL_NONE && (begin_and_end_.inside() || ask(gl, binding) == 0))
-      return in_call(call.id, fmt::format("{} is an offset, but no buffer is bound", parameters[p].name()));
-    if (offset && rule == ExtentRule::index_lists) call.skip = true;
-  }
-  if (call.id == CallId::EnableClientState || call.id == CallId::EnableVertexAttribArray ||
-      call.id == CallId::EnableVertexAttribArrayARB || call.id == CallId::InterleavedArrays ||
-      call.id == CallId::EnableVertexArrayAttrib || call.id == CallId::EnableClientStateIndexedEXT ||
-      call.id == CallId::PopClientAttrib) {
-    client_memory_ = true;
-  }
-  if (!client_memory_ || !draws_arrays(call.id)) return {};
-  if (begin_and_end_.inside()) {
-    const auto range = element_range(gl, call.id, call.words.data());
-    if (!range || range->first < arrays_range_.first || range->last > arrays_range_.last) call.skip = true;
-    return {};
-  }
-  const std::vector<ClientArray> used = client_arrays(gl);
-  if (used.empty()) return {};
-  const auto range = element_range(gl, call.id, call.words.data());
-  const bool brought =
-      arrays_active_ && range && !range->empty() && range->first >= arrays_range_.first &&
-      range->last <= arrays_range_.last && range->first_instance >= arrays_range_.first_instance &&
-      range->last_instance <= arrays_range_.last_instance &&
-      std::all_of(used.begin(), used.end(), [](const ClientArray& array) { return array.pointer != 0; });
-  call.skip |= !brought;
-  return {};
 }
 
 /// A mapping that ends must not be written to any more.
@@ -400,7 +366,8 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
   answer_ = {.call = call.id, .result = result};
   if (is_location_query(call.id)) answer_.program = call.words[0];
   if (maps_a_buffer(call.id) && result != 0)
-    answer_.mapped_bytes = mapped_bytes(call.id, call.words.data(), gl);
+    answer_.mapped = {reinterpret_cast<std::byte*>(std::uintptr_t(result)),
+                      mapped_bytes(call.id, call.words.data(), gl), buffer_of(call.id, call.words.data(), gl)};
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (!answers_names(parameters[p])) continue;
@@ -413,74 +380,11 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
 
 Decoded Decoder::make(Call& call, const DispatchTable& gl) {
   if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
-  Decoded decoded;
-  if (call.image_in && !begin_and_end_.inside()) {
-    const PixelStore store = pixel_store(gl, unpack_names);
-    set_pixel_store(gl, unpack_names, store, tight_pixels);
-    decoded.result = invoke(gl, call.id, call.words.data());
-    set_pixel_store(gl, unpack_names, tight_pixels, store);
-  } else {
-    decoded.result = invoke(gl, call.id, call.words.data());
-  }
+  const TightPixels unpacked(gl, unpack_names, call.tight_unpack);
+  const TightPixels packed(gl, pack_names, call.tight_pack);
+  const Decoded decoded{invoke(gl, call.id, call.words.data()), {}};
   begin_and_end_.follow(call.id, call.words.data());
   return decoded;
-}
-
-Decoded Decoder::begin_arrays(const Record& record, const DispatchTable& gl) {
-  const auto arguments = record.arguments();
-  const std::uint64_t count = arguments.empty() ? 0 : arguments[0];
-  if (arguments.empty() || count > (arguments.size() - 1) / event::words_per_array)
-    return {0, "vertex arrays: fewer than announced"};
-  arrays_.clear();
-  arrays_range_ = {};
-  const GLint bound = ask(gl, GL_ARRAY_BUFFER_BINDING);
-  if (bound != 0) gl.BindBuffer(GL_ARRAY_BUFFER, 0);
-  std::string error;
-  for (std::uint64_t i = 0; i < count && error.empty(); ++i) {
-    const auto field = arguments.subspan(1 + i * event::words_per_array, event::words_per_array);
-    const auto data = record.bytes(field[9]);
-    ClientArray array{.role = ArrayRole(field[0]),
-                      .index = GLuint(field[1]),
-                      .size = GLint(field[2]),
-                      .type = GLenum(field[3]),
-                      .normalized = field[4] != 0,
-                      .stride = GLsizei(field[5]),
-                      .pointer = Reference::from(field[6]).value,
-                      .divisor = GLuint(field[7])};
-    const auto first = std::int64_t(field[8]);
-    const std::size_t bytes = array.element_bytes();
-    if (field[0] >= array_role_count || !data || first < 0 || first > std::int64_t(1) << 32) {
-      error = "a vertex array leads out of the stream";
-      break;
-    }
-    const std::int64_t elements = bytes == 0 ? 0 : std::int64_t(data->size() / bytes);
-    const std::byte* copy = elements == 0 ? nullptr : data->data() - std::size_t(first) * bytes;
-    point_array(gl, array, GLsizei(bytes), copy);
-    arrays_.push_back(array);
-    if (array.divisor == 0) {
-      const bool sooner = arrays_range_.empty();
-      arrays_range_.first = sooner ? first : std::max(arrays_range_.first, first);
-      arrays_range_.last = sooner ? first + elements - 1 : std::min(arrays_range_.last, first + elements - 1);
-    } else {
-      arrays_range_.first_instance = first;
-      arrays_range_.last_instance = std::max(arrays_range_.last_instance, first + elements * array.divisor - 1);
-    }
-  }
-  if (bound != 0) gl.BindBuffer(GL_ARRAY_BUFFER, GLuint(bound));
-  arrays_active_ = true;
-  return {0, error};
-}
-
-void Decoder::end_arrays(const DispatchTable& gl) {
-  if (!arrays_active_) return;
-  arrays_active_ = false;
-  const GLint bound = ask(gl, GL_ARRAY_BUFFER_BINDING);
-  if (bound != 0) gl.BindBuffer(GL_ARRAY_BUFFER, 0);
-  for (const ClientArray& array : arrays_) {
-    const bool mine = origin_ == StreamOrigin::this_process;
-    point_array(gl, array, array.stride, mine ? address(array.pointer) : nullptr);
-  }
-  if (bound != 0) gl.BindBuffer(GL_ARRAY_BUFFER, GLuint(bound));
 }
 
 Decoded Decoder::take_answers(const Record& record) {
@@ -495,9 +399,7 @@ Decoded Decoder::take_answers(const Record& record) {
         .set_location(answer_.program, std::int32_t(arguments[1]), std::int32_t(answer_.result));
   }
   if (maps_a_buffer(answer_.call)) {
-    names(ObjectKind::buffer)
-        .set_mapping(arguments[1],
-                     {reinterpret_cast<std::byte*>(std::uintptr_t(answer_.result)), answer_.mapped_bytes});
+    names(ObjectKind::buffer).set_mapping(arguments[1], answer_.mapped);
   }
   std::size_t at = 2;
   std::size_t output = 0;
@@ -516,46 +418,59 @@ Decoded Decoder::take_answers(const Record& record) {
   return {};
 }
 
-Decoded Decoder::write_mapped(const Record& record) {
+Decoded Decoder::write_mapped(const Record& record, const DispatchTable& gl) {
   const auto arguments = record.arguments();
   if (arguments.size() < 3) return {0, "write into a mapped buffer: too short"};
   const auto data = record.bytes(arguments[2]);
   const ObjectNames::Mapping mapping = names(ObjectKind::buffer).mapping(arguments[0]);
   if (!data) return {0, "write into a mapped buffer: the data lead out of the stream"};
-  if (mapping.first == nullptr) return {};
+  if (mapping.first == nullptr || !is_mapped(mapping, gl)) return {};
   if (arguments[1] > mapping.bytes || data->size() > mapping.bytes - arguments[1])
     return {0, "write into a mapped buffer: beyond its end"};
   std::memcpy(mapping.first + arguments[1], data->data(), data->size());
   return {};
 }
 
+Decoded Decoder::decode_event(const Record& record, const DispatchTable& gl) {
+  if (record.id == event::arrays) return {0, arrays_.begin(record, gl, !believes())};
+  if (record.id == event::answers) return take_answers(record);
+  if (record.id == event::mapped_write) return write_mapped(record, gl);
+  arrays_.end(gl, believes());
+  return {};
+}
+
+/// A call of a stream from elsewhere.
+Decoded Decoder::decode_unbelieved(Call& call, const DispatchTable& gl) {
+  answer_ = {};
+  const bool linked = origin_ == StreamOrigin::linked;
+  if ((!linked && only_asks(call.id) && !answers_into_buffer(call)) || !translate(call)) return {};
+  if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
+  if (std::string error = check_pointers(call, gl); !error.empty()) return {0, std::move(error)};
+  if (call.skip) return {};
+  if (std::string error = arrays_.check(call.id, call.words.data(), begin_and_end_.inside(), gl, call.skip);
+      !error.empty())
+    return {0, in_call(call.id, error)};
+  if (call.skip) return {};
+  if (std::string error = provide_outputs(call, gl); !error.empty()) return {0, std::move(error)};
+  if (call.skip) return {};
+  forget_mappings(call, gl);
+  Decoded decoded = linked ? make_and_answer(call, gl) : make(call, gl);
+  forget_retained(call.id, gl);
+  if (!linked && decoded.error.empty() && names_something(call.id)) remember_answer(call, decoded.result, gl);
+  return decoded;
+}
+
 Decoded Decoder::decode(const Record& record, const DispatchTable& gl) {
   scratch_used_ = 0;
   if (!read_image_.pixels.empty()) read_image_.pixels.clear();
   call_answer_ = {};
-  if (record.id == event::arrays) return begin_arrays(record, gl);
-  if (record.id == event::arrays_end) {
-    end_arrays(gl);
-    return {};
+  if (record.id == event::arrays || record.id == event::arrays_end || record.id == event::answers ||
+      record.id == event::mapped_write) {
+    return decode_event(record, gl);
   }
-  if (record.id == event::answers) return take_answers(record);
-  if (record.id == event::mapped_write) return write_mapped(record);
   Call call;
   if (std::string error = read_arguments(record, call); !error.empty()) return {0, std::move(error)};
-  if (origin_ == StreamOrigin::this_process) return make(call, gl);
-  answer_ = {};
-  const bool linked = origin_ == StreamOrigin::linked;
-  if ((!linked && only_asks(call.id) && !answers_into_buffer(call)) || !translate(call)) return {};
-  if (std::string error = check_arrays(call, gl); !error.empty()) return {0, std::move(error)};
-  if (call.skip) return {};
-  if (slot(gl, call.id) == nullptr) return {0, in_call(call.id, "the driver here does not have it")};
-  if (std::string error = provide_outputs(call, gl); !error.empty()) return {0, std::move(error)};
-  if (call.skip) return {};
-  forget_mappings(call, gl);
-  if (linked) return make_and_answer(call, gl);
-  Decoded decoded = make(call, gl);
-  if (decoded.error.empty() && names_something(call.id)) remember_answer(call, decoded.result, gl);
-  return decoded;
+  return believes() ? make(call, gl) : decode_unbelieved(call, gl);
 }
 
 }  // namespace understudy::spu

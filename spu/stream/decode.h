@@ -1,9 +1,12 @@
 // From records back to calls.
 //
 // A stream of this process (pack and unpack in one chain) may hold addresses of this process; one from a file
-// or another machine may not, and nothing in it is believed: every length is checked against what OpenGL would
-// read for the arguments at hand, names of objects are translated, answers go to memory of our own. Where the
-// other end waits for the answers (a linked stream), they are kept for it, and names are the ones given here.
+// or another machine may not, and nothing in it is believed. A pointer in it is one of three things: bytes that
+// came with it, measured against what the call reads; memory of ours for answers; or an offset into a buffer
+// object, measured against the buffer's size (checked_pointers.cc, brought_arrays.h, provided_outputs.cc).
+// Anything else is an error that names the call, and the call is not made. Names of objects are translated.
+// Where the other end waits for the answers (a linked stream), they are kept for it, and names are the ones
+// given here.
 #pragma once
 
 #include <array>
@@ -16,8 +19,9 @@
 #include "dispatch/call_shape.h"
 #include "dispatch/table.h"
 #include "spu/stream/begin_and_end.h"
+#include "spu/stream/bound_buffers.h"
+#include "spu/stream/brought_arrays.h"
 #include "spu/stream/call_answer.h"
-#include "spu/stream/client_arrays.h"
 #include "spu/stream/object_names.h"
 #include "spu/stream/pixels.h"
 #include "spu/stream/record.h"
@@ -48,9 +52,16 @@ class Decoder {
   /// caller's: they are an error here.
   Decoded decode(const Record& record, const DispatchTable& gl);
 
-  /// The call that a record holds, as words whose pointers lead into the record or to memory of the decoder
-  /// that the next decode() reuses. For readers that print or count; makes no call.
-  std::string arguments(const Record& record, CallId& call, std::uint64_t* words);
+  /// The call that a record holds.
+  struct ReadCall {
+    CallId id{};
+    /// Pointers lead into the record, or to memory of the decoder that the next decode() reuses, where `kinds`
+    /// says so: all but those of kind address and output, which are numbers to be shown and never followed.
+    std::array<std::uint64_t, max_parameters> words{};
+    std::array<ReferenceKind, max_parameters> kinds{};
+  };
+  /// For readers that print or count; makes no call. Answers what is wrong with the record.
+  std::string read(const Record& record, ReadCall& call);
 
   /// Pixels that the last call read into memory of the decoder (glReadPixels of a stream from elsewhere); empty
   /// when it read none.
@@ -67,43 +78,54 @@ class Decoder {
   struct Call;
 
   static bool answers_into_buffer(const Call& call);
+  bool believes() const { return origin_ == StreamOrigin::this_process; }
   ObjectNames& names(ObjectKind kind);
   std::string read_arguments(const Record& record, Call& call);
+  std::string read_references(const Record& record, Call& call);
+  std::string read_lists_of(const Record& record, Call& call);
   std::string read_bytes(const Record& record, Call& call, std::size_t parameter);
   std::string read_strings(const Record& record, Call& call, std::size_t parameter);
   std::string read_lists(const Record& record, Call& call, std::size_t parameter);
+  std::string measure(Call& call, std::size_t parameter);
+  static std::string refuse_null(const Call& call, std::size_t parameter);
+  void give_room(Call& call, std::size_t parameter);
   bool translate(Call& call);
+  std::string check_pointers(Call& call, const DispatchTable& gl);
+  std::string check_pointer(Call& call, std::size_t parameter, const DispatchTable& gl);
+  std::string check_offset(Call& call, std::size_t parameter, GLenum target, const DispatchTable& gl);
+  std::string check_memory(Call& call, std::size_t parameter);
   std::string provide_outputs(Call& call, const DispatchTable& gl);
+  std::string provide_output(Call& call, std::size_t parameter, const DispatchTable& gl);
   std::string provide_image(Call& call, std::size_t parameter, const DispatchTable& gl);
+  void read_image(Call& call, std::size_t parameter, const DispatchTable& gl);
+  void forget_retained(CallId call, const DispatchTable& gl);
   Decoded make_and_answer(Call& call, const DispatchTable& gl);
   void answer_result(const Call& call, std::uint64_t result);
   void answer_outputs(const Call& call);
-  void answer_feedback(const Call& call, GLint mode);
-  std::string check_arrays(Call& call, const DispatchTable& gl);
+  bool tells_address_of_ours(const Call& call) const;
+  void answer_feedback(const Call& call, GLint mode, const DispatchTable& gl);
   Decoded make(Call& call, const DispatchTable& gl);
+  Decoded decode_event(const Record& record, const DispatchTable& gl);
+  Decoded decode_unbelieved(Call& call, const DispatchTable& gl);
   void forget_mappings(const Call& call, const DispatchTable& gl);
   void remember_answer(const Call& call, std::uint64_t result, const DispatchTable& gl);
-  Decoded begin_arrays(const Record& record, const DispatchTable& gl);
-  void end_arrays(const DispatchTable& gl);
   Decoded take_answers(const Record& record);
-  Decoded write_mapped(const Record& record);
+  Decoded write_mapped(const Record& record, const DispatchTable& gl);
   /// Memory that lasts until the next record.
   std::uint64_t* scratch(std::size_t bytes);
 
   const StreamOrigin origin_;
   BeginAndEnd begin_and_end_;
-  bool client_memory_ = false;  ///< an array was pointed at the sender's memory
-  std::vector<ClientArray> arrays_;
-  std::vector<std::uint64_t> array_words_;  ///< copies of the elements that arrays_ point at
-  ElementRange arrays_range_;
+  BroughtArrays arrays_;
+  bool query_buffer_ = false;  ///< one was bound: answers to queries may go there
   std::vector<std::vector<std::uint64_t>> scratch_;
   std::size_t scratch_used_ = 0;
-  std::vector<std::vector<std::uint64_t>> retained_;
-  std::size_t feedback_ = 0;   ///< number, from 1, of what glFeedbackBuffer was given last
-  std::size_t selection_ = 0;  ///< the same of glSelectBuffer
+  /// What glFeedbackBuffer and glSelectBuffer were given, the last one at the end; the driver may keep an
+  /// earlier one when it refuses a call.
+  std::vector<std::vector<std::uint64_t>> feedback_;
+  std::vector<std::vector<std::uint64_t>> selection_;
   std::shared_ptr<ObjectNames> shared_names_;
   ObjectNames own_names_;  ///< of kinds that contexts do not share
-  bool arrays_active_ = false;
   ReadImage read_image_;
   CallAnswer call_answer_;
 
@@ -112,7 +134,7 @@ class Decoder {
     CallId call{};
     std::uint64_t result = 0;
     std::uint64_t program = 0;  ///< for locations
-    std::size_t mapped_bytes = 0;
+    ObjectNames::Mapping mapped;
     std::vector<std::vector<std::uint32_t>> names;  ///< of every output that names objects
   } answer_;
 };

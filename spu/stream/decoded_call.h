@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 #include "dispatch/call_shape.h"
 #include "spu/stream/decode.h"
@@ -11,6 +13,8 @@
 
 namespace understudy::spu {
 
+/// Answers of a stream from elsewhere are given no more memory than this: a length there is only a claim.
+constexpr std::size_t most_output_bytes = std::size_t(64) << 20;
 /// Answers to the sender of a linked stream: images and buffers of applications may be large.
 constexpr std::size_t most_linked_output_bytes = std::size_t(1) << 30;
 /// What fills memory before OpenGL writes answers into it, so that what it wrote is seen.
@@ -22,8 +26,13 @@ struct Decoder::Call {
   std::array<std::uint64_t, max_parameters> words{};
   std::array<ReferenceKind, max_parameters> kinds{};
   std::array<std::size_t, max_parameters> bytes{};  ///< there are behind a pointer
-  bool skip = false;  ///< has no meaning here: an address of another process, a question
-  bool image_in = false;
+  bool skip = false;          ///< has no meaning here: an address of another process, a question
+  bool into_buffer = false;   ///< what it writes goes to a bound buffer object
+  bool tight_unpack = false;  ///< what it reads lies as images lie in streams, whatever GL_UNPACK_* says
+  bool tight_pack = false;    ///< the same of what it writes, and GL_PACK_*
 };
+
+/// "glClear: " and what is wrong with it.
+std::string in_call(CallId call, std::string_view what);
 
 }  // namespace understudy::spu

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "spu/stream/bound_buffers.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
@@ -15,26 +16,6 @@
 namespace understudy::spu {
 
 namespace {
-
-/// A batch of array names with several bindings to ask for.
-GLenum binding_of(ExtentRule rule) {
-  switch (rule) {
-    case ExtentRule::image:
-    case ExtentRule::counted_or_unpack:
-      return GL_PIXEL_UNPACK_BUFFER_BINDING;
-    case ExtentRule::image_out:
-      return GL_PIXEL_PACK_BUFFER_BINDING;
-    case ExtentRule::client_array:
-      return GL_ARRAY_BUFFER_BINDING;
-    case ExtentRule::indices:
-    case ExtentRule::index_lists:
-      return GL_ELEMENT_ARRAY_BUFFER_BINDING;
-    case ExtentRule::indirect:
-      return GL_DRAW_INDIRECT_BUFFER_BINDING;
-    default:
-      return GL_NONE;
-  }
-}
 
 const std::byte* address(std::uint64_t word) {
   return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
@@ -90,12 +71,12 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   const ParameterShape& pointer = shape.parameters()[parameter];
   const std::uint64_t word = words[parameter];
   Argument argument;
-  const GLenum binding = binding_of(pointer.rule);
-  if (binding == GL_NONE && word == 0) return argument;
+  const auto point = buffer_point(pointer.rule);
+  if (!point && word == 0) return argument;
   // Calls that need a binding are errors between glBegin and glEnd: OpenGL reads nothing.
-  if (binding != GL_NONE) {
+  if (point) {
     if (inside_begin()) return argument;
-    if (ask(binding) != 0) {
+    if (ask(point->binding) != 0) {
       argument.reference = {ReferenceKind::address, word};
       return argument;
     }
@@ -135,7 +116,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   }
   if (const auto bytes = pointee_bytes(call, parameter, words)) {
     hold(*bytes);
-  } else {
+  } else if (!tells_by_enumerant(pointer.rule)) {
     argument.reference = {ReferenceKind::address, told(word)};
   }
   return argument;

@@ -115,7 +115,8 @@ std::optional<std::size_t> map_points(const CallShape& shape, const std::uint64_
   return std::size_t(values) * value;
 }
 
-/// What glDraw*Indirect reads from client memory.
+/// What glDraw*Indirect reads. Where a buffer holds the number of draws, the call says how many there are at
+/// most.
 std::size_t indirect_bytes(const CallShape& shape, const std::uint64_t* words) {
   const bool elements = shape.parameter_count > 2 && std::string_view(shape.parameters()[1].name()) == "type";
   const std::size_t one = elements ? 20 : 16;
@@ -123,11 +124,28 @@ std::size_t indirect_bytes(const CallShape& shape, const std::uint64_t* words) {
   std::int64_t stride = 0;
   for (std::size_t p = 0; p < shape.parameter_count; ++p) {
     const std::string_view name = shape.parameters()[p].name();
-    if (name == "drawcount" || name == "primcount") draws = std::int32_t(words[p]);
+    const bool number = shape.parameters()[p].type == ValueType::int32;
+    if (number && (name == "drawcount" || name == "primcount" || name == "maxdrawcount"))
+      draws = std::int32_t(words[p]);
     if (name == "stride") stride = std::int32_t(words[p]);
   }
   if (draws < 1 || stride < 0) return 0;
   return std::size_t(draws - 1) * (stride != 0 ? std::size_t(stride) : one) + one;
+}
+
+/// The argument that a rule counts by, with the bits that OpenGL sees of its word; 1 without one.
+std::int64_t counted_by(const CallShape& shape, const ParameterShape& pointer, const std::uint64_t* words) {
+  if (pointer.counted_by == no_argument) return 1;
+  const std::uint64_t word = words[pointer.counted_by];
+  switch (shape.parameters()[pointer.counted_by].type) {
+    case ValueType::int32:
+      return std::int32_t(word);
+    case ValueType::uint32:
+    case ValueType::enumeration:
+      return std::uint32_t(word);
+    default:
+      return std::int64_t(word);
+  }
 }
 
 }  // namespace
@@ -180,17 +198,24 @@ std::size_t component_size(GLenum type) noexcept {
   }
 }
 
+bool tells_by_enumerant(ExtentRule rule) noexcept {
+  return rule == ExtentRule::image || rule == ExtentRule::one_texel || rule == ExtentRule::list_names ||
+         rule == ExtentRule::map_points || rule == ExtentRule::indices;
+}
+
+std::optional<std::size_t> least_pointee_bytes(CallId call, std::size_t parameter, const std::uint64_t* words) {
+  const CallShape& shape = call_shape(call);
+  const ParameterShape& pointer = shape.parameters()[parameter];
+  const bool text = pointer.rule == ExtentRule::text ||
+                    (pointer.rule == ExtentRule::text_or_counted && counted_by(shape, pointer, words) < 0);
+  return text ? 1 : pointee_bytes(call, parameter, words);
+}
+
 std::optional<std::size_t> pointee_bytes(CallId call, std::size_t parameter, const std::uint64_t* words) {
   const CallShape& shape = call_shape(call);
   const ParameterShape& pointer = shape.parameters()[parameter];
   const std::size_t value = pointer.pointer > 1 ? sizeof(void*) : value_size(pointer.type);
-  std::int64_t count = 1;
-  if (pointer.counted_by != no_argument) {
-    const ValueType type = shape.parameters()[pointer.counted_by].type;
-    count = type == ValueType::int32 || type == ValueType::uint32 || type == ValueType::enumeration
-                ? std::int64_t(std::int32_t(words[pointer.counted_by]))
-                : std::int64_t(words[pointer.counted_by]);
-  }
+  const std::int64_t count = counted_by(shape, pointer, words);
   const auto* text = reinterpret_cast<const char*>(static_cast<std::uintptr_t>(words[parameter]));
   switch (pointer.rule) {
     case ExtentRule::counted:

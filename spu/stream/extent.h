@@ -16,6 +16,12 @@ namespace understudy::spu {
 /// pointers as addresses; strings are measured, so theirs must be readable.
 std::optional<std::size_t> pointee_bytes(CallId call, std::size_t parameter, const std::uint64_t* words);
 
+/// Rules under which the extent is unknown only where OpenGL does not know an enumerant, and so reads nothing.
+bool tells_by_enumerant(ExtentRule rule) noexcept;
+
+/// The same as pointee_bytes, without looking at strings: the least that a string has is its zero.
+std::optional<std::size_t> least_pointee_bytes(CallId call, std::size_t parameter, const std::uint64_t* words);
+
 /// Bytes of one vertex array component or index of this type; 0 for types that OpenGL does not have.
 std::size_t component_size(GLenum type) noexcept;
 

@@ -68,8 +68,9 @@ std::optional<ImageAnswer> pixel_map(const DispatchTable& gl, GLenum map, std::s
 }
 
 std::optional<ImageAnswer> whole_answer(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
-  const Level by_target{gl, false, GLuint(words[0]), GLint(words[1])};
-  const Level by_name{gl, true, GLuint(words[0]), GLint(words[1])};
+  const auto level = GLint(call_shape(call).parameter_count > 1 ? words[1] : 0);
+  const Level by_target{gl, false, GLuint(words[0]), level};
+  const Level by_name{gl, true, GLuint(words[0]), level};
   switch (call) {
     case CallId::ReadPixels:
     case CallId::ReadnPixels:

@@ -58,7 +58,6 @@ std::vector<std::byte> contents_before(CallId call, const std::uint64_t* words, 
 
 std::string Decoder::provide_image(Call& call, std::size_t p, const DispatchTable& gl) {
   call.skip = true;
-  if (begin_and_end_.inside()) return {};
   const auto image = image_answer(call.id, call.words.data(), gl);
   if (!image) return {};
   if (image->bytes > most_linked_output_bytes)
@@ -76,6 +75,17 @@ std::string Decoder::provide_image(Call& call, std::size_t p, const DispatchTabl
   return {};
 }
 
+/// Pointers that OpenGL answers are offsets that the sender gave it, but for these.
+bool Decoder::tells_address_of_ours(const Call& call) const {
+  if (arrays_.active()) return true;
+  const std::string_view name = call_name(call.id);
+  if (name.find("VertexA") != std::string_view::npos) return false;
+  const auto what = GLenum(call.words[0]);
+  const bool array = what >= GL_VERTEX_ARRAY_POINTER && what <= GL_EDGE_FLAG_ARRAY_POINTER;
+  const bool later_array = what == GL_FOG_COORD_ARRAY_POINTER || what == GL_SECONDARY_COLOR_ARRAY_POINTER;
+  return !name.starts_with("glGetPointer") || !(array || later_array);
+}
+
 void Decoder::answer_outputs(const Call& call) {
   const auto parameters = call.shape->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -88,6 +98,7 @@ void Decoder::answer_outputs(const Call& call) {
     std::size_t bytes = call.bytes[p];
     while (bytes > 0 && first[bytes - 1] == unwritten) --bytes;
     if (bytes == 0) continue;
+    if (parameter.pointer > 1 && tells_address_of_ours(call)) continue;
     // Values end where one does; of untyped data nobody knows what the last byte may be.
     const std::size_t value = parameter.pointer > 1 ? sizeof(void*) : value_size(parameter.type);
     // (Where the call does not say how much it writes, it is the text of a program.)
@@ -120,14 +131,17 @@ void Decoder::answer_result(const Call& call, std::uint64_t result) {
 }
 
 /// What was written into the application's feedback or selection buffer while it could not see it.
-void Decoder::answer_feedback(const Call& call, GLint mode) {
-  if (call.id != CallId::RenderMode) return;
-  const std::size_t number = mode == GL_FEEDBACK ? feedback_ : mode == GL_SELECT ? selection_ : 0;
-  if (number == 0) return;
-  const std::vector<std::uint64_t>& buffer = retained_[number - 1];
-  const auto* first = reinterpret_cast<const std::byte*>(buffer.data());
-  call_answer_.outputs.push_back(
-      {AnsweredOutput::feedback, std::nullopt, {first, first + buffer.size() * sizeof(std::uint64_t)}});
+void Decoder::answer_feedback(const Call& call, GLint mode, const DispatchTable& gl) {
+  if (call.id != CallId::RenderMode || (mode != GL_FEEDBACK && mode != GL_SELECT)) return;
+  const bool feedback = mode == GL_FEEDBACK;
+  void* used = nullptr;
+  gl.GetPointerv(feedback ? GL_FEEDBACK_BUFFER_POINTER : GL_SELECTION_BUFFER_POINTER, &used);
+  for (const std::vector<std::uint64_t>& buffer : feedback ? feedback_ : selection_) {
+    if (buffer.data() != used) continue;
+    const auto* first = reinterpret_cast<const std::byte*>(buffer.data());
+    call_answer_.outputs.push_back(
+        {AnsweredOutput::feedback, std::nullopt, {first, first + buffer.size() * sizeof(std::uint64_t)}});
+  }
 }
 
 Decoded Decoder::make_and_answer(Call& call, const DispatchTable& gl) {
@@ -141,12 +155,12 @@ Decoded Decoder::make_and_answer(Call& call, const DispatchTable& gl) {
   if (!decoded.error.empty()) return decoded;
   answer_outputs(call);
   answer_result(call, decoded.result);
-  answer_feedback(call, mode);
+  answer_feedback(call, mode, gl);
   if (maps && decoded.result != 0) {
     remember_answer(call, decoded.result, gl);
     call_answer_.outputs.push_back({AnsweredOutput::mapped, std::nullopt, std::move(contents)});
     // So that the other end knows how much there is to map, with or without contents.
-    call_answer_.result = answer_.mapped_bytes;
+    call_answer_.result = answer_.mapped.bytes;
   }
   return decoded;
 }

@@ -26,6 +26,8 @@ class ObjectNames {
     if (kind != ObjectKind::none && kind != ObjectKind::display_list) names_[std::size_t(kind)][there] = here;
   }
 
+  void forget(ObjectKind kind, std::uint64_t there) { names_[std::size_t(kind)].erase(there); }
+
   /// Uniform locations belong to a program (its name here). Elements of an array follow its first one.
   std::int32_t location_here(std::uint64_t program, std::int32_t there) const {
     const auto found = locations_.upper_bound({program, there});
@@ -44,6 +46,7 @@ class ObjectNames {
   struct Mapping {
     std::byte* first = nullptr;
     std::size_t bytes = 0;
+    std::uint32_t buffer = 0;  ///< its name here
   };
   void set_mapping(std::uint64_t there, Mapping mapping) { mappings_[there] = mapping; }
   Mapping mapping(std::uint64_t there) const {

@@ -138,6 +138,10 @@ std::optional<Layout> layout_of(const ImageShape& shape, const PixelStore& store
   if (layout.row_step > most_image_bytes ||
       rows > most_image_bytes / std::max<std::uint64_t>(layout.row_step, 1))
     return std::nullopt;
+  if (shape.dimensions > 1 &&
+      std::uint64_t(store.skip_rows) > most_image_bytes / std::max<std::uint64_t>(layout.row_step, 1)) {
+    return std::nullopt;
+  }
   layout.image_step = layout.row_step * rows;
   if (std::uint64_t(shape.depth) + std::uint64_t(store.skip_images) >
       most_image_bytes / std::max<std::uint64_t>(layout.image_step, 1)) {

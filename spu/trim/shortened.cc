@@ -76,8 +76,15 @@ std::optional<std::vector<std::uint32_t>> list_names(const Record& record) {
   return names;
 }
 
+/// Whether all arguments of its call are there.
+bool is_whole(const Record& record) {
+  const auto call = find_stable_id(record.id);
+  return call && record.words.size() > call_shape(*call).parameter_count;
+}
+
 /// The upload makes room, and brings nothing.
 void copy_without_data(const Record& record, Records& to) {
+  if (!is_whole(record)) return;
   const auto call = find_stable_id(record.id);
   const auto parameters = call_shape(*call).parameters();
   to.begin(record.id);
@@ -155,7 +162,7 @@ void Shortened::expand_list(std::uint32_t name, int depth) {
   while (const auto record = record_at(list.words(), position, list.payload())) {
     position += record->words.size();
     const auto call = find_stable_id(record->id);
-    if (!call) continue;
+    if (!is_whole(*record)) continue;
     switch (role_of(*call)) {
       case CallRole::call_list:
         expand(*record, depth + 1);
@@ -172,6 +179,7 @@ void Shortened::expand_list(std::uint32_t name, int depth) {
 }
 
 void Shortened::expand(const Record& record, int depth) {
+  if (!is_whole(record)) return;
   if (find_stable_id(record.id) == CallId::CallList) {
     expand_list(std::uint32_t(record.words[1]), depth);
     return;

@@ -19,6 +19,7 @@ const DispatchTable& before_question(GLenum name) {
   switch (name) {
     case GL_ARRAY_BUFFER_BINDING:
     case GL_ELEMENT_ARRAY_BUFFER_BINDING:
+    case GL_DRAW_INDIRECT_BUFFER_BINDING:
     case GL_CLIENT_ACTIVE_TEXTURE:
     case GL_PIXEL_UNPACK_BUFFER_BINDING:
     case GL_PIXEL_PACK_BUFFER_BINDING:
@@ -63,6 +64,13 @@ void APIENTRY get_attribute(GLuint index, GLenum name, GLint* value) {
 void APIENTRY get_attribute_pointer(GLuint index, GLenum name, void** value) {
   before_question(GL_VERTEX_ARRAY).GetVertexAttribPointerv(index, name, value);
 }
+// How far a draw may read; no run gives buffers another size.
+void APIENTRY get_buffer(GLenum target, GLenum name, GLint* value) {
+  before_question(GL_ARRAY_BUFFER_BINDING).GetBufferParameteriv(target, name, value);
+}
+void APIENTRY get_buffer_64(GLenum target, GLenum name, GLint64* value) {
+  before_question(GL_ARRAY_BUFFER_BINDING).GetBufferParameteri64v(target, name, value);
+}
 
 void APIENTRY bind_buffer(GLenum target, GLuint buffer) {
   VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
@@ -101,6 +109,8 @@ void fill_array_calls(DispatchTable& table) {
   table.IsEnabled = is_enabled;
   table.GetVertexAttribiv = get_attribute;
   table.GetVertexAttribPointerv = get_attribute_pointer;
+  if (table.GetBufferParameteriv != nullptr) table.GetBufferParameteriv = get_buffer;
+  if (table.GetBufferParameteri64v != nullptr) table.GetBufferParameteri64v = get_buffer_64;
   table.BindBuffer = bind_buffer;
   table.ClientActiveTexture = client_active_texture;
   table.VertexPointer = vertex_pointer;

@@ -2,6 +2,7 @@
 // and both as what was recorded and as what waits for answers.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -15,32 +16,46 @@
 namespace understudy::spu::testing {
 
 inline void play_records(std::span<const std::uint64_t> words, std::span<const std::uint64_t> payload,
-                         const DispatchTable& gl) {
-  for (const StreamOrigin origin : {StreamOrigin::elsewhere, StreamOrigin::linked}) {
-    Decoder decoder(origin, std::make_shared<ObjectNames>());
-    for (std::size_t at = 0; at < words.size();) {
-      const auto record = record_at(words, at, payload);
-      if (!record) break;
-      decoder.decode(*record, gl);
-      at += record->words.size();
-    }
+                         StreamOrigin origin, const DispatchTable& gl) {
+  Decoder decoder(origin, std::make_shared<ObjectNames>());
+  for (std::size_t at = 0; at < words.size();) {
+    const auto record = record_at(words, at, payload);
+    if (!record) break;
+    decoder.decode(*record, gl);
+    at += record->words.size();
   }
 }
 
-inline void play_input(std::span<const std::byte> input, const DispatchTable& gl) {
+/// Calls `take(records, payload)` for what the input is as a trace, and for what it is as bare records.
+template <class Take>
+void walk_input(std::span<const std::byte> input, Take take) {
   try {
     TraceReader reader(input);
-    while (const auto block = reader.next()) play_records(block->records, block->payload, gl);
+    while (const auto block = reader.next()) take(block->records, block->payload);
   } catch (const std::runtime_error&) {
     // What is no trace says so.
   }
+  // Memory of its own for each part, so that a sanitizer sees what leads out of it.
   std::vector<std::uint64_t> words(input.size() / 8);
   if (words.empty()) return;
   std::memcpy(words.data(), input.data(), words.size() * 8);
   // The first word says how many words are records; what follows them is the payload.
-  const std::size_t records = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
-  const std::span<const std::uint64_t> all(words);
-  play_records(all.subspan(1, records), all.subspan(1 + records), gl);
+  const std::size_t count = std::min<std::size_t>(words[0] & 0xffff, words.size() - 1);
+  const auto end_of_records = words.begin() + 1 + std::ptrdiff_t(count);
+  const std::vector<std::uint64_t> records(words.begin() + 1, end_of_records);
+  const std::vector<std::uint64_t> payload(end_of_records, words.end());
+  take(std::span(records), std::span(payload));
+}
+
+/// Each part, from each origin, above a `Driver` of its own: a driver may keep memory of its decoder's.
+template <class Driver>
+void play_input(std::span<const std::byte> input) {
+  walk_input(input, [&](auto records, auto payload) {
+    for (const StreamOrigin origin : {StreamOrigin::elsewhere, StreamOrigin::linked}) {
+      const Driver driver;
+      play_records(records, payload, origin, driver.table());
+    }
+  });
 }
 
 }  // namespace understudy::spu::testing

@@ -1,4 +1,4 @@
-// Writes a corpus to begin with: records of all commands, a few to a file.
+// Writes a corpus to begin with: records of all commands, a few to a file, and scenes.
 //
 //     seeds FOLDER
 #include <filesystem>
@@ -6,12 +6,23 @@
 #include <random>
 
 #include "spu/stream/encode.h"
+#include "tests/fuzz/scenes.h"
 #include "tests/spu/stream/any_call.h"
 #include "tests/spu/stream/stateful_driver.h"
 
-int main(int count, char** arguments) {
-  using namespace understudy::spu;
-  if (count != 2) return 2;
+namespace {
+
+using namespace understudy::spu;
+
+void write(const std::filesystem::path& path, const Records& records) {
+  std::ofstream file(path, std::ios::binary);
+  const std::uint64_t words = records.words().size();
+  file.write(reinterpret_cast<const char*>(&words), sizeof words);
+  for (const auto part : {records.words(), records.payload()})
+    file.write(reinterpret_cast<const char*>(part.data()), std::streamsize(part.size_bytes()));
+}
+
+void write_commands(const std::filesystem::path& folder) {
   testing::StatefulDriver driver;
   std::mt19937 random(1);
   constexpr std::size_t calls_per_file = 60;
@@ -20,12 +31,15 @@ int main(int count, char** arguments) {
     Encoder encoder(driver.table(), [] {});
     for (std::size_t i = first; i < std::min(first + calls_per_file, call_count); ++i)
       encoder.encode(CallId(i), testing::AnyCall(CallId(i), random).words(), records);
-    std::ofstream file(std::filesystem::path(arguments[1]) / ("calls_" + std::to_string(first)),
-                       std::ios::binary);
-    const std::uint64_t words = records.words().size();
-    file.write(reinterpret_cast<const char*>(&words), sizeof words);
-    file.write(reinterpret_cast<const char*>(records.words().data()), std::streamsize(words * 8));
-    file.write(reinterpret_cast<const char*>(records.payload().data()),
-               std::streamsize(records.payload().size() * 8));
+    write(folder / ("calls_" + std::to_string(first)), records);
   }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) return 2;
+  const std::filesystem::path folder = arguments[1];
+  write_commands(folder);
+  for (const auto& [name, records] : testing::scenes()) write(folder / name, records);
 }

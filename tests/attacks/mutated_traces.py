@@ -1,0 +1,141 @@
+"""Mutated traces through replay, trim and print: no crash of ours, no hang.
+
+    mutated_traces.py UNDERSTUDY COUNT SEED TRACE...
+
+A driver that crashes says so by status 5 and the call (apps/understudy/guarded_player.h); such runs are counted and
+listed. Anything else but success and a refusal fails.
+"""
+
+import collections
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from trace_blocks import Trace
+
+LIMIT_S = 120  # for a hang; nothing here takes a second
+REFUSED = (0, 1, 2)
+DRIVER_CRASHED = 5
+
+EXTREMES = [0, 1, 2, 3, 2**64 - 1, 2**31 - 1, 2**31, 2**32 - 1, 2**63 - 1, 2**63, 2**32, 2**20, 2**16, 65535, 4096, 16384, 2**40,
+            *(kind << 56 for kind in range(1, 7)), 0x0DE1, 0x806F, 0x1401, 0x1406, 0x8892, 0x88EC]
+
+
+def bytes_changed(data, chance):
+    changed = bytearray(data)
+    for _ in range(chance.choice([1, 2, 8, 64])):
+        changed[chance.randrange(len(changed))] = chance.randrange(256)
+    if chance.random() < 0.3:
+        del changed[chance.randrange(len(changed)):]
+    return bytes(changed)
+
+
+def other_word(word, chance):
+    return chance.choice([
+        chance.choice(EXTREMES), word ^ 1 << chance.randrange(64), word + chance.choice([-1, 1, 2, -2, 100, -100]),
+        word * chance.choice([2, 3, 16, 1000])]) % 2**64
+
+
+def change_argument(block, records, chance):
+    first, length = chance.choice(records)
+    if length > 1:
+        at = first + 1 + chance.randrange(min(length - 1, 12))
+        block.words[at] = other_word(block.words[at], chance)
+
+
+def change_id(block, records, chance):
+    first, other = chance.choice(records)[0], chance.choice(records)[0]
+    block.words[first] = block.words[first] >> 32 << 32 | block.words[other] & 0xFFFFFFFF
+
+
+def change_length(block, records, chance):
+    first, length = chance.choice(records)
+    wrong = length + chance.choice([-1, 1, 2, 1000, 0xFFFFFFF]) & 0xFFFFFFFF
+    block.words[first] = block.words[first] & 0xFFFFFFFF | wrong << 32
+
+
+def remove_record(block, records, chance):
+    first, length = chance.choice(records)
+    del block.words[first : first + length]
+    block.record_words -= length
+
+
+def repeat_record(block, records, chance):
+    first, length = chance.choice(records)
+    at = chance.choice(records)[0]
+    block.words[at:at] = block.words[first : first + length]
+    block.record_words += length
+
+
+def change_word(block, records, chance):
+    at = chance.randrange(len(block.words))
+    block.words[at] = other_word(block.words[at], chance)
+
+
+CHANGES = [(change_argument, 45), (change_id, 10), (change_length, 7), (remove_record, 6), (repeat_record, 7), (change_word, 25)]
+
+
+def mutated(data, chance):
+    if chance.random() < 0.12:
+        return bytes_changed(data, chance)
+    trace = Trace(data)
+    block = chance.choice(trace.blocks)
+    for _ in range(chance.choice([1, 1, 1, 2, 4, 16])):
+        records = block.records()
+        if not records:
+            break
+        change, = chance.choices([c for c, _ in CHANGES], [w for _, w in CHANGES])
+        change(block, records, chance)
+    return trace.packed()
+
+
+def ending(program, command):
+    # LeakSanitizer would tell of the driver's leaks; what it is asked for here are crashes.
+    environment = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0:intercept_tls_get_addr=0"}
+    try:
+        ended = subprocess.run([program, *command], capture_output=True, timeout=LIMIT_S, env=environment)
+    except subprocess.TimeoutExpired:
+        return "hangs", ""
+    said = ended.stderr.decode(errors="replace")
+    if "AddressSanitizer" in said or "runtime error" in said:
+        return "sanitizer", said
+    return ended.returncode, said
+
+
+def play(program, data, seed, folder):
+    """(command, ending, what was said) of the three commands."""
+    chance = random.Random(seed)
+    trace, out = folder / f"{seed}.ust", folder / f"{seed}.out"
+    trace.write_bytes(mutated(data, chance))
+    commands = [["replay", "--native", trace], ["trim", trace, "--frames", "2-2", "-o", out], ["print", trace]]
+    endings = [(seed, command[0], *ending(program, command)) for command in commands]
+    trace.unlink()
+    out.unlink(missing_ok=True)
+    return endings
+
+
+def main():
+    program, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    traces = [Path(name).read_bytes() for name in sys.argv[4:]]
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(2) as pool:
+        folder = Path(name)
+        jobs = [pool.submit(play, program, traces[i % len(traces)], seed + i, folder) for i in range(count)]
+        endings = [ended for job in jobs for ended in job.result()]
+    totals = collections.Counter((command, status) for _, command, status, _ in endings)
+    for (command, status), number in sorted(totals.items(), key=str):
+        print(f"{command}: {number} times {status}")
+    for number, command, status, said in endings:
+        if status == DRIVER_CRASHED:
+            print(f"seed {number}, {command}: {next(line for line in said.splitlines() if 'by signal' in line)}")
+    wrong = [ended for ended in endings if ended[2] not in (*REFUSED, DRIVER_CRASHED)]
+    for number, command, status, said in wrong[:5]:
+        print(f"seed {number}, {command}: {status}\n{said[-4000:]}")
+    if wrong:
+        raise SystemExit(f"{len(wrong)} of {len(endings)} runs ended as none should")
+
+
+main()

@@ -207,7 +207,7 @@ bool set_option(Options& options, std::string_view environment, const std::strin
 Options options_from_environment() {
   Options options;
   for (const Row& row : rows) {
-    const char* text = std::getenv(row.text.environment);
+    const char* text = ::secure_getenv(row.text.environment);
     if (text == nullptr || row.set(options, text)) continue;
     std::fprintf(stderr, "understudy: %s=%s is not a value this option takes (%s); using %s\n",
                  row.text.environment, text, row.text.help,

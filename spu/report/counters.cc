@@ -30,7 +30,7 @@ ProcessCounters& counters_in_memory() {
 }
 
 void map_file_of_this_process() {
-  const char* folder = std::getenv("UNDERSTUDY_RUN_DIR");
+  const char* folder = ::secure_getenv("UNDERSTUDY_RUN_DIR");
   if (folder == nullptr || *folder == '\0') return;
   std::array<char, 4096> path{};
   const int length =

@@ -125,7 +125,9 @@ int serve(const ServeArguments& arguments) {
   const std::filesystem::path socket = arguments.socket.empty() || !arguments.folder.empty()
                                            ? folder.path() / "nodes.sock"
                                            : std::filesystem::absolute(arguments.socket);
-  const NodeGroupPlan plan{placement, socket, folder.path(), arguments.choices};
+  NodeChoices choices = arguments.choices;
+  for (std::string& data : choices.data) data = std::filesystem::absolute(data);
+  const NodeGroupPlan plan{placement, socket, folder.path(), choices};
   NodeGroup nodes(installation, plan);
   Frontends injection_methods = open_entries(installation, arguments, plan);
   bool announced = false;
@@ -176,6 +178,12 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->add_option("--folder", arguments->folder,
                    "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
       ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--data", arguments->choices.data,
+                   "folders that clients may load volumes from (understudy render, view); without: none, "
+                   "clients send what is drawn")
+      ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory);
   add_exchange_options(*subcommand, arguments->choices);
   add_polygons_option(*subcommand, arguments->polygons);

@@ -71,10 +71,11 @@ struct OwnOutcome : Outcome {
 class Node {
  public:
   Node(Communicator& communicator, const ExchangeSettings& exchange,
-       const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance)
+       const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
+       const volume::ReadableFiles& files)
       : communicator_(communicator),
         renderer_(communicator.rank(), communicator.size(), make_renderer),
-        loads_(renderer_, communicator.rank()),
+        loads_(renderer_, communicator.rank(), files),
         memories_(communicator, exchange.gather),
         compositing_(communicator, exchange),
         overlap_(exchange.overlap) {
@@ -628,8 +629,9 @@ std::vector<std::uint64_t> Node::sum_histograms() {
 
 bool run_node(Communicator& communicator, const std::string& control_path,
               std::chrono::milliseconds stall_patience, const ExchangeSettings& exchange,
-              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance) {
-  Node node(communicator, exchange, make_renderer, balance);
+              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
+              const volume::ReadableFiles& files) {
+  Node node(communicator, exchange, make_renderer, balance, files);
   if (communicator.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

@@ -74,6 +74,10 @@ int main(int argc, char** argv) {
   bool any_file = false;
   app.add_flag("--any-file", any_file, "Applications may load every file that this user may read");
   app.add_option("--data", data, "Folders that applications may load volumes from; none: they send them");
+  int image_ms = 0;
+  app.add_option("--image-time", image_ms,
+                 "Milliseconds of one image, where applications are pending clients to each other; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
 
   MpiCommunicator communicator(argc, argv);
@@ -105,7 +109,8 @@ int main(int argc, char** argv) {
   };
   try {
     const volume::ReadableFiles files = any_file ? volume::ReadableFiles() : volume::ReadableFiles(data);
-    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance, files)
+    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance, files,
+                    client_limits(communicator.ranks_on_this_machine(), std::chrono::milliseconds(image_ms)))
                ? 0
                : 1;
   } catch (const std::exception& error) {

@@ -17,6 +17,7 @@ struct NodeChoices {
   std::string balance = "off";    ///< who gets how much of a volume
   std::vector<std::string> data;  ///< folders that clients may load volumes from
   bool any_file = false;          ///< clients are this user's own commands
+  int image_ms = 0;               ///< that one image may take; 0: as long as its client waits
 
   std::vector<std::string> words() const {
     std::vector<std::string> all{"--exchange",   exchange,   "--pixels",  pixels,  "--gather",  gather,
@@ -24,6 +25,7 @@ struct NodeChoices {
                                  "--gpu-memory", gpu_memory, "--balance", balance};
     for (const std::string& folder : data) all.insert(all.end(), {"--data", folder});
     if (any_file) all.emplace_back("--any-file");
+    all.insert(all.end(), {"--image-time", std::to_string(image_ms)});
     return all;
   }
 };

@@ -22,6 +22,7 @@
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "compositor/service/limits.h"
 #include "compositor/service/runtime_folder.h"
 #include "compositor/tcp/secret.h"
 #include "spu/options.h"
@@ -156,6 +157,7 @@ int serve(const ServeArguments& arguments) {
 
 void add_serve(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<ServeArguments>();
+  arguments->choices.image_ms = int(compositor::limits::image_time.count());
   // A name that others could guess needs a folder that they cannot write into.
   if (const auto runtime = compositor::private_runtime_folder())
     arguments->socket = *runtime / "understudy-nodes.sock";
@@ -185,6 +187,11 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
                    "clients send what is drawn")
       ->type_name("FOLDER")
       ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--image-time", arguments->choices.image_ms,
+                   "how long one image may take, in milliseconds; 0: as long as its client waits for it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   add_exchange_options(*subcommand, arguments->choices);
   add_polygons_option(*subcommand, arguments->polygons);
   CLI::Option* secret_file =

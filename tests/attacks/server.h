@@ -1,4 +1,4 @@
-// `understudy serve` with one node, at a socket in the test's folder.
+// `understudy serve` with one node, or as many as are asked for, at a socket in the test's folder.
 #pragma once
 
 #include <memory>
@@ -13,9 +13,9 @@ namespace attacks {
 class Server {
  public:
   /// In the folder of a clients::Stage. Throws std::runtime_error when it does not start.
-  explicit Server(const std::filesystem::path& folder, const clients::Words& options = {})
+  explicit Server(const std::filesystem::path& folder, const clients::Words& options = {}, int nodes = 1)
       : socket_(folder / "nodes.sock"),
-        process_({command(options), {{"XDG_RUNTIME_DIR", folder / "runtime"}}}, own_folder(folder)) {
+        process_({command(options, nodes), {{"XDG_RUNTIME_DIR", folder / "runtime"}}}, own_folder(folder)) {
     const bool there = clients::comes_true(
         [this] { return !process_.running() || process_.out().find("nodes at ") != std::string::npos; });
     if (!there || !process_.running()) throw std::runtime_error("no server: " + process_.err());
@@ -31,8 +31,9 @@ class Server {
   }
 
  private:
-  clients::Words command(const clients::Words& options) const {
-    clients::Words words{(clients::programs / "understudy").string(), "serve", "-n", "1", "--socket", socket_};
+  clients::Words command(const clients::Words& options, int nodes) const {
+    clients::Words words{
+        (clients::programs / "understudy").string(), "serve", "-n", std::to_string(nodes), "--socket", socket_};
     words.insert(words.end(), options.begin(), options.end());
     return words;
   }

@@ -151,6 +151,9 @@ void NodeGroup::start() {
 
 void NodeGroup::start_on(const Placement& placement) {
   if (!placement.hosts.empty()) std::ofstream(own_hostfile(plan_.folder)) << hostfile_text(placement.hosts);
+  // What a group that was killed has left there goes, and not only with the run.
+  std::filesystem::remove_all(shared_memory_folder(plan_.folder));
+  std::filesystem::create_directory(shared_memory_folder(plan_.folder));
   log_start_ = size_of(log_of(plan_));
   why_ended_.clear();
   started_at_ = Clock::now();

@@ -102,6 +102,14 @@ double most_samples(const RenderRequest& request) {
   return a_ray * double(intersection(request.window, request.viewport).pixels());
 }
 
+void refuse_excess(const RenderRequest& request) {
+  if (const double samples = most_samples(request); samples > double(limits::max_image_samples))
+    throw RequestRefused(fmt::format(
+        "an image of up to {:.3g} samples is over the limit of {:.3g} of these nodes: ask for fewer "
+        "pixels, or for fewer samples along a ray",
+        samples, double(limits::max_image_samples)));
+}
+
 }  // namespace
 
 RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits)
@@ -261,11 +269,6 @@ void RankRenderer::draw(Volume& volume, const RenderRequest& request, Image& ima
                         Occlusion* occlusion) {
   const auto draws = [&] { volume.renderer->render(request, image, counts, occlusion); };
   if (!image_until_) return draws();
-  if (const double samples = most_samples(request); samples > double(limits::max_image_samples))
-    throw RequestRefused(fmt::format(
-        "an image of up to {:.3g} samples is over the limit of {:.3g} of these nodes: ask for fewer "
-        "pixels, or for fewer samples along a ray",
-        samples, double(limits::max_image_samples)));
   if (done_until(*image_until_, draws)) return;
   // What it keeps of a classification may be half made.
   volume.renderer = make_renderer_(volume.bricks);
@@ -285,6 +288,8 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     if (request.window.pixels() > limits::max_window_pixels)
       throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", request.window.pixels(),
                                        limits::max_window_pixels));
+    // Before memory is asked for.
+    if (image_until_) refuse_excess(request);
     const Rect everything = request.optimizations.footprints
                                 ? footprint(request, description, volume.tree.box(rank_))
                                 : intersection(request.window, request.viewport);

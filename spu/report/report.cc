@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -521,8 +522,11 @@ void replace_file(const std::filesystem::path& path, const std::string& text) {
     throw std::runtime_error(
         fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
   };
-  const std::string beside = fmt::format("{}.{}.part", path.string(), getpid());
-  std::FILE* file = std::fopen(beside.c_str(), "we");
+  // A report may be wanted where others can write: a name that they cannot guess, and no connection of theirs.
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
+  const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
+  std::FILE* file = std::fopen(beside.c_str(), "wxe");
   if (file == nullptr) fail("write");
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   const bool closed = std::fclose(file) == 0;

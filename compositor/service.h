@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volume/image.h"
@@ -19,7 +20,14 @@ namespace understudy::compositor {
 /// what happened, where, and what happens next, in one line without a full stop.
 class ServiceLost : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ServiceLost(const std::string& what, std::string reason = "the render nodes did not answer")
+      : std::runtime_error(what), reason_(std::move(reason)) {}
+
+  /// The same in few words, for the summary.
+  const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
 };
 
 /// The service understood the request and refuses it (unknown volume, singular matrix, over a limit). Asking

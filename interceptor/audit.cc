@@ -27,8 +27,8 @@ void set_folder(const char* folder) {
 }
 
 void find_stubs() {
-  const char* given = getenv("UNDERSTUDY_ENTRY_DIR");
-  if (given == nullptr) given = getenv(understudy::spu::former_entry_folder_variable);
+  const char* given = secure_getenv("UNDERSTUDY_ENTRY_DIR");
+  if (given == nullptr) given = secure_getenv(understudy::spu::former_entry_folder_variable);
   char folder[PATH_MAX];
   Dl_info self;
   if (given != nullptr && *given != '\0') {
@@ -66,6 +66,6 @@ AUDIT_INTERFACE char* la_objsearch(const char* name, uintptr_t* cookie, unsigned
   if (!answered_now) return const_cast<char*>(name);
   const auto* asker = reinterpret_cast<const struct link_map*>(*cookie);
   const bool real = asker != nullptr && asker->l_name != nullptr &&
-                    may_have_the_real_one(asker->l_name, getenv("UNDERSTUDY_DRIVER_DIR"));
+                    may_have_the_real_one(asker->l_name, secure_getenv("UNDERSTUDY_DRIVER_DIR"));
   return real ? const_cast<char*>(name) : stubs.path[stub];
 }

@@ -49,7 +49,7 @@ void leave_counters(const char* folder) {
 [[gnu::destructor]] void at_library_end() {
   // A child after fork has its parent's count, and nothing to say of its own.
   if (calls.load() == 0 || caller.load() != getpid() || core_is_out() || core() != nullptr) return;
-  const char* folder = getenv("UNDERSTUDY_RUN_DIR");
+  const char* folder = secure_getenv("UNDERSTUDY_RUN_DIR");
   if (folder != nullptr && *folder != '\0') leave_counters(folder);
 }
 

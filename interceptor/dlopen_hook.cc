@@ -76,7 +76,7 @@ bool stub_answers(int stub, const char* name, int& mode) {
 bool caller_may_have_the_real_one(const void* caller) {
   Dl_info info;
   return dladdr(caller, &info) != 0 && info.dli_fname != nullptr &&
-         may_have_the_real_one(info.dli_fname, getenv("UNDERSTUDY_DRIVER_DIR"));
+         may_have_the_real_one(info.dli_fname, secure_getenv("UNDERSTUDY_DRIVER_DIR"));
 }
 
 }  // namespace

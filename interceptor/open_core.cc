@@ -53,7 +53,7 @@ __attribute__((constructor)) void watch_forks() {
 }
 
 bool switched_off() {
-  const char* value = getenv("UNDERSTUDY_DISABLE");
+  const char* value = secure_getenv("UNDERSTUDY_DISABLE");
   return value != nullptr && *value != '\0' && strcmp(value, "0") != 0;
 }
 

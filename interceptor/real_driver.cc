@@ -108,7 +108,7 @@ bool open_from(const char* folder, DriverLibrary& library) {
 /// The folder of the C library: the one folder that is certainly right for this process's architecture.
 bool libc_folder(char (&folder)[PATH_MAX]) {
   Dl_info info;
-  if (dladdr(reinterpret_cast<void*>(&getenv), &info) == 0 || info.dli_fname == nullptr) return false;
+  if (dladdr(reinterpret_cast<void*>(&secure_getenv), &info) == 0 || info.dli_fname == nullptr) return false;
   const char* slash = strrchr(info.dli_fname, '/');
   if (slash == nullptr || slash - info.dli_fname >= PATH_MAX) return false;
   memcpy(folder, info.dli_fname, static_cast<std::size_t>(slash - info.dli_fname));
@@ -146,7 +146,7 @@ enum class Failure { said, silent };
 
 bool open_driver(DriverLibrary& library, Failure failure) {
   const char* const or_classic = library.file_without_glvnd != nullptr ? " or libGL.so.1" : "";
-  if (const char* folder = getenv("UNDERSTUDY_DRIVER_DIR"); folder != nullptr && *folder != '\0') {
+  if (const char* folder = secure_getenv("UNDERSTUDY_DRIVER_DIR"); folder != nullptr && *folder != '\0') {
     if (open_from(folder, library)) return true;
     // A folder for a driver of GLX or EGL need not have an OSMesa too.
     if (library.system != WindowSystem::osmesa) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <vector>
 
 #include "spu/chain_json.h"
@@ -111,7 +112,9 @@ std::optional<std::string> assemble(Chain& chain, std::string_view description,
         chain.add(unit.description->make({chain, unit.options, session}));
       }
     }
-  } catch (const ChainError& error) {
+  } catch (const std::exception& error) {
+    // Units before the one that cannot be made count on those behind them.
+    chain.remove_units();
     return error.what();
   }
   return std::nullopt;

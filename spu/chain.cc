@@ -41,6 +41,12 @@ void Chain::add(std::unique_ptr<Unit> unit) {
   units_.push_back({tag, std::move(unit)});
 }
 
+void Chain::remove_units() {
+  replacements_.clear();
+  while (!units_.empty()) units_.pop_back();
+  for (auto& tables : tables_) tables.clear();
+}
+
 void Chain::build(Phase phase) const {
   auto& tables = tables_[std::size_t(phase)];
   tables.resize(units_.size());

@@ -93,6 +93,9 @@ class Chain {
     return reference;
   }
   void add(std::unique_ptr<Unit> unit);
+  /// Takes all units away, the last one first, so that calls go straight to the driver. Not while the chain is
+  /// current on any thread.
+  void remove_units();
 
   /// The chain whose context is current on this thread; null when none is.
   static Chain* current() { return current_; }

@@ -94,17 +94,17 @@ std::vector<std::string> with_present_options(const std::vector<std::string>& ar
 }
 
 std::optional<std::string> environment_value(const char* variable) {
-  if (const char* text = std::getenv(variable)) return text;
+  if (const char* text = ::secure_getenv(variable)) return text;
   for (const RenamedOption& option : renamed_options) {
     if (option.variable == nullptr || std::string_view(option.variable) != variable) continue;
-    if (const char* text = std::getenv(option.former_variable)) return present_value(option, text);
+    if (const char* text = ::secure_getenv(option.former_variable)) return present_value(option, text);
   }
   return std::nullopt;
 }
 
 void rename_former_variables() {
   for (const RenamedOption& option : renamed_options) {
-    if (option.variable == nullptr || std::getenv(option.former_variable) == nullptr) continue;
+    if (option.variable == nullptr || ::secure_getenv(option.former_variable) == nullptr) continue;
     setenv(option.variable, environment_value(option.variable)->c_str(), 1);
     unsetenv(option.former_variable);
   }

@@ -70,6 +70,14 @@ int main(int argc, char** argv) {
           throw CLI::ValidationError("--balance", "there is no '" + name + "'");
       },
       "Who gets how much of a volume: off, muller or predicted");
+  std::vector<std::string> data;
+  bool any_file = false;
+  app.add_flag("--any-file", any_file, "Applications may load every file that this user may read");
+  app.add_option("--data", data, "Folders that applications may load volumes from; none: they send them");
+  int image_ms = 0;
+  app.add_option("--image-time", image_ms,
+                 "Milliseconds of one image, where applications are pending clients to each other; 0: no limit")
+      ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
 
   MpiCommunicator communicator(argc, argv);
@@ -100,8 +108,11 @@ int main(int argc, char** argv) {
     std::fflush(stderr);
   };
   try {
-    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance) ? 0
-                                                                                                         : 1;
+    const volume::ReadableFiles files = any_file ? volume::ReadableFiles() : volume::ReadableFiles(data);
+    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance, files,
+                    client_limits(communicator.ranks_on_this_machine(), std::chrono::milliseconds(image_ms)))
+               ? 0
+               : 1;
   } catch (const std::exception& error) {
     communicator.abandon(error.what());
   }

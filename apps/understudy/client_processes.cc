@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 
 #include "compositor/service/limits.h"
 #include "compositor/service/socket.h"
+#include "compositor/service/socket_file.h"
 
 namespace understudy::launcher {
 namespace {
@@ -70,13 +70,13 @@ void listen_for_clients(const std::string& socket, const std::string& who,
                         const std::function<int(compositor::FileDescriptor)>& work) {
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
   compositor::FileDescriptor listener = compositor::listen_at(socket);
+  const compositor::SocketFile file(socket);
   ClientProcesses clients;
   while (!asked_to_end(inbox, clients)) {
     std::array<pollfd, 2> waiting = {{{listener.get(), POLLIN, 0}, {inbox.descriptor(), POLLIN, 0}}};
     ::poll(waiting.data(), waiting.size(), -1);
     if (waiting[0].revents == 0) continue;
-    compositor::FileDescriptor client(
-        ::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    compositor::FileDescriptor client = compositor::accept_from(listener);
     if (!client) continue;
     if (clients.count() >= compositor::limits::max_clients) {
       fmt::print(stderr, "understudy: {}: {} applications are here already; sent one more away\n", who,
@@ -88,7 +88,6 @@ void listen_for_clients(const std::string& socket, const std::string& who,
       return work(std::move(client));
     });
   }
-  ::unlink(socket.c_str());
 }
 
 }  // namespace understudy::launcher

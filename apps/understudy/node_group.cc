@@ -80,6 +80,15 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
   return command;
 }
 
+/// An image that nobody waits for any longer may take its time, and the ranks do not hang.
+compositor::BrokerPatience patience_with(const NodeChoices& choices) {
+  compositor::BrokerPatience patience;
+  // Below what a rank can tell.
+  constexpr std::chrono::milliseconds most(compositor::limits::max_unwanted_ms - 5000);
+  patience.unwanted = std::min(patience.unwanted + std::chrono::milliseconds(choices.image_ms), most);
+  return patience;
+}
+
 bool is_on_path(const std::string& program) {
   return program.find('/') != std::string::npos ? std::filesystem::exists(program)
                                                 : program_on_path(program).has_value();
@@ -108,13 +117,18 @@ std::vector<std::string> backend_choices(const std::filesystem::path& folder) {
 }
 
 NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan)
-    : installation_(installation), plan_(plan), broker_(plan.socket, [this](const std::string& line) {
-        // The loss of the group is told once, with its reason, when mpirun has ended.
-        if (broker_.lost())
-          why_lost_ = line;
-        else
-          say(line);
-      }) {
+    : installation_(installation),
+      plan_(plan),
+      broker_(
+          plan.socket,
+          [this](const std::string& line) {
+            // The loss of the group is told once, with its reason, when mpirun has ended.
+            if (broker_.lost())
+              why_lost_ = line;
+            else
+              say(line);
+          },
+          patience_with(plan.choices)) {
   start();
 }
 
@@ -137,6 +151,9 @@ void NodeGroup::start() {
 
 void NodeGroup::start_on(const Placement& placement) {
   if (!placement.hosts.empty()) std::ofstream(own_hostfile(plan_.folder)) << hostfile_text(placement.hosts);
+  // What a group that was killed has left there goes, and not only with the run.
+  std::filesystem::remove_all(shared_memory_folder(plan_.folder));
+  std::filesystem::create_directory(shared_memory_folder(plan_.folder));
   log_start_ = size_of(log_of(plan_));
   why_ended_.clear();
   started_at_ = Clock::now();
@@ -221,18 +238,19 @@ void NodeGroup::look_after_children() {
   const std::string words = why_ended_.empty() ? last_words(log_of(plan_), log_start_) : why_ended_;
   const std::string what =
       fmt::format("the render nodes are gone ({})", words.empty() ? "mpirun " + ending->text() : words);
-  if (restarts_ == max_restarts) {
+  const auto pause = restarts_.after(Clock::now() - started_at_);
+  if (!pause) {
     broker_.turn_away(what);
-    say(fmt::format("{}; no more attempts after {} restarts, the viewer goes on by itself", what, restarts_));
+    say(fmt::format("{}; no more attempts after {} restarts, the viewer goes on by itself", what,
+                    restarts_.count()));
     return;
   }
-  next_start_ = Clock::now() + first_pause * (1 << restarts_);
-  ++restarts_;
+  next_start_ = Clock::now() + *pause;
   const std::string where = plan_.placement.launch == Launch::remote_shell
                                 ? "again on the hosts that answer"
                                 : fmt::format("{} again", plan_.placement.ranks);
-  say(fmt::format("{}; starting {} ({} of {}), the viewer draws by itself meanwhile", what, where, restarts_,
-                  max_restarts));
+  say(fmt::format("{}; starting {} ({} of {}), the viewer draws by itself meanwhile", what, where,
+                  restarts_.count(), max_restarts));
 }
 
 }  // namespace understudy::launcher

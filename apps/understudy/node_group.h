@@ -19,12 +19,11 @@
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/node_choices.h"
+#include "apps/understudy/restarts.h"
 #include "compositor/service/broker.h"
 
 namespace understudy::launcher {
 
-constexpr int max_restarts = 5;
-constexpr std::chrono::milliseconds first_pause{200};  ///< before a restart; doubles each time
 /// From mpirun's start to rank 0's hello, where other hosts take part.
 constexpr std::chrono::seconds patience_with_start{60};
 
@@ -81,7 +80,7 @@ class NodeGroup {
   std::string why_ended_;         ///< if the group had to be ended from here
   std::uintmax_t log_start_ = 0;  ///< where the present group's lines begin
   Clock::time_point lost_at_;
-  int restarts_ = 0;
+  Restarts restarts_;
   std::optional<Clock::time_point> next_start_;
 };
 

@@ -53,11 +53,12 @@ std::vector<std::string> with_own_nodes(
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
   const RunFolder folder;
   const std::string socket = folder.path() / "nodes.sock";
+  NodeChoices choices = own.choices;
+  choices.any_file = true;  // the only client is this command
   std::optional<NodeGroup> group;
   group.emplace(
       installation,
-      NodeGroupPlan{
-          .placement = own.placement, .socket = socket, .folder = folder.path(), .choices = own.choices});
+      NodeGroupPlan{.placement = own.placement, .socket = socket, .folder = folder.path(), .choices = choices});
 
   const FileDescriptor job_over = checked(eventfd(0, EFD_CLOEXEC));
   const FileDescriptor events = either({inbox.descriptor(), job_over.get()});

@@ -27,6 +27,7 @@
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/relay.h"
+#include "apps/understudy/run_figures.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
 #include "apps/understudy/trace_option.h"
@@ -211,19 +212,16 @@ std::string with_the_launchers(const std::string& report, const std::vector<std:
   return json.dump(1, ' ') + "\n";
 }
 
-void tell_what_happened(const spu::Options& options, const RunFolder& folder) {
+void tell_what_happened(const spu::Options& options, const RunFolder& folder, const RunFigures& figures) {
   const nlohmann::ordered_json connection = connection_figures(folder.path());
-  const std::vector<spu::MappedCounters> counters = spu::read_counters(folder.path());
-  std::vector<const spu::ProcessCounters*> processes;
-  processes.reserve(counters.size());
-  for (const spu::MappedCounters& process : counters) processes.push_back(process.get());
+  const spu::Processes processes = figures.processes();
   const std::vector<std::string> backends = backend_choices(folder.path());
   if (options.explain) {
     std::fputs(spu::explanation_text(processes).c_str(), stderr);
     for (const std::string& choice : backends) say(choice);
     if (!connection.is_null()) say(connection_text(connection));
   }
-  std::fprintf(stderr, "%s\n", spu::summary_line(processes).c_str());
+  std::fprintf(stderr, "%s\n", figures.summary().c_str());
   if (options.report.empty()) return;
   try {
     spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, connection));
@@ -256,6 +254,10 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   std::string viewer_chain = remote_chain;
   if (arguments.remote && stands_in_viewer(options.chain))
     viewer_chain = std::exchange(options.chain, spu::Options().chain);
+  if (!arguments.remote && arguments.injection && stands_in_viewer(options.chain)) {
+    say("a chain that ends in connection is for viewers whose calls are made elsewhere; add --remote");
+    return usage_error;
+  }
   if (arguments.remote && options.disable) {
     say("--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
         "unset one of them");
@@ -359,8 +361,9 @@ int run(const RunArguments& arguments, const std::vector<std::string>& command) 
   if (server) server->end(server_patience_ms);
   if (relay) relay->end(server_patience_ms);
   nodes.reset();
-  tell_what_happened(options, folder);
-  return ending.exit_status();
+  const RunFigures figures(folder.path());
+  tell_what_happened(options, folder, figures);
+  return arguments.required ? figures.required_status(ending.exit_status()) : ending.exit_status();
 }
 
 void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments,
@@ -429,6 +432,9 @@ void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::functio
       "--remote", arguments->remote,
       "run a viewer without OpenGL: a GL server beside the nodes executes its calls and sends images to its "
       "windows; with --connect HOST:PORT on that machine (understudy serve --gl-server)");
+  subcommand->add_flag("--require", arguments->required,
+                       "exit with status 3 when no frame was substituted, with 4 when the GL server of "
+                       "--remote was lost, unless the viewer's own status tells of a failure");
   subcommand->callback([arguments, &viewer, &chosen] {
     chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
   });

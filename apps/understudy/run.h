@@ -1,6 +1,6 @@
 // `understudy run [options] -- viewer args…`: the viewer as a child process with the entry library under it,
 // nodes behind it when asked for, and the figures of the run at its end. The exit status is the viewer's own
-// (128 + signal when killed).
+// (128 + signal when killed), and with --require one that tells what was missing.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -41,6 +41,7 @@ struct RunArguments {
   std::filesystem::path hostfile;   ///< where the nodes are; empty: on this machine
   ConnectionPlan connection;        ///< how to get at --connect HOST:PORT
   bool remote = false;              ///< the viewer's calls are made by a GL server, not in its process
+  bool required = false;            ///< a run without substituted frames is a failure
 };
 
 /// Runs the program with nodes behind it when they are asked for, and tells what happened. Returns its exit

@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <ctime>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "compositor/service/runtime_folder.h"
 
 namespace understudy::launcher {
 namespace {
@@ -38,14 +40,8 @@ void remove_folders_of_dead_launchers(const std::filesystem::path& parent) {
 
 }  // namespace
 
-std::filesystem::path runtime_directory() {
-  const char* own = std::getenv("XDG_RUNTIME_DIR");
-  if (own != nullptr && *own == '/' && access(own, W_OK | X_OK) == 0) return own;
-  return "/tmp";
-}
-
 RunFolder::RunFolder() {
-  const std::filesystem::path parent = runtime_directory();
+  const std::filesystem::path parent = compositor::runtime_folder();
   remove_folders_of_dead_launchers(parent);
   std::string name = parent / (std::string(prefix) + "XXXXXX");
   if (mkdtemp(name.data()) == nullptr) {
@@ -57,6 +53,13 @@ RunFolder::RunFolder() {
 }
 
 RunFolder::RunFolder(std::filesystem::path made_for_it) : path_(std::move(made_for_it)) {
+  struct stat about {};
+  // What is in it is removed at the end: nothing of it may be anybody else's.
+  if (lstat(path_.c_str(), &about) != 0 || !S_ISDIR(about.st_mode) || about.st_uid != geteuid() ||
+      (about.st_mode & 07777) != 0700 || !std::filesystem::is_empty(path_))
+    throw std::runtime_error("--folder " + path_.string() +
+                             ": it is removed at the end, so it must be an empty folder of yours that nobody "
+                             "else may enter (mode 0700)");
   lock();
 }
 

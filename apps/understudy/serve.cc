@@ -22,6 +22,8 @@
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "compositor/service/limits.h"
+#include "compositor/service/runtime_folder.h"
 #include "compositor/tcp/secret.h"
 #include "spu/options.h"
 
@@ -32,7 +34,7 @@ struct ServeArguments {
   std::optional<int> nodes;
   std::filesystem::path hostfile;
   NodeChoices choices;
-  std::string socket;
+  std::string socket;       ///< empty: in the folder
   std::string folder;       ///< empty: one of its own
   pid_t while_process = 0;  ///< 0: until asked to end
   std::string listen;       ///< host:port for clients of other machines; empty: none
@@ -121,9 +123,12 @@ int serve(const ServeArguments& arguments) {
     fmt::print(stderr, "understudy: {}\n", obstacle);
     return 1;
   }
-  const std::filesystem::path socket =
-      arguments.folder.empty() ? std::filesystem::absolute(arguments.socket) : folder.path() / "nodes.sock";
-  const NodeGroupPlan plan{placement, socket, folder.path(), arguments.choices};
+  const std::filesystem::path socket = arguments.socket.empty() || !arguments.folder.empty()
+                                           ? folder.path() / "nodes.sock"
+                                           : std::filesystem::absolute(arguments.socket);
+  NodeChoices choices = arguments.choices;
+  for (std::string& data : choices.data) data = std::filesystem::absolute(data);
+  const NodeGroupPlan plan{placement, socket, folder.path(), choices};
   NodeGroup nodes(installation, plan);
   Frontends frontends = open_frontends(installation, arguments, plan);
   bool announced = false;
@@ -152,7 +157,10 @@ int serve(const ServeArguments& arguments) {
 
 void add_serve(CLI::App& app, std::function<int()>& chosen) {
   const auto arguments = std::make_shared<ServeArguments>();
-  arguments->socket = runtime_directory() / "understudy-nodes.sock";
+  arguments->choices.image_ms = int(compositor::limits::image_time.count());
+  // A name that others could guess needs a folder that they cannot write into.
+  if (const auto runtime = compositor::private_runtime_folder())
+    arguments->socket = *runtime / "understudy-nodes.sock";
   CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
   subcommand
       ->add_option("-n,--nodes", arguments->nodes,
@@ -163,12 +171,26 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   add_backend_option(*subcommand, arguments->choices.backend);
   add_gpu_memory_option(*subcommand, arguments->choices.gpu_memory);
   add_balance_option(*subcommand, arguments->choices.balance);
-  subcommand->add_option("--socket", arguments->socket, "where viewers find them")->capture_default_str();
+  subcommand
+      ->add_option("--socket", arguments->socket,
+                   "where viewers find them; without XDG_RUNTIME_DIR: in a private folder, which is told")
+      ->capture_default_str();
   subcommand
       ->add_option("--folder", arguments->folder,
-                   "take over DIR, with the socket in it, and remove it at the end")
+                   "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--data", arguments->choices.data,
+                   "folders that clients may load volumes from (understudy render, view); without: none, "
+                   "clients send what is drawn")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--image-time", arguments->choices.image_ms,
+                   "how long one image may take, in milliseconds; 0: as long as its client waits for it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   add_exchange_options(*subcommand, arguments->choices);
   add_tiles_option(*subcommand, arguments->tiles);
   CLI::Option* secret_file =

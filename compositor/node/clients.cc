@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -18,6 +19,7 @@ Clients::Clients(const std::string& control_path, int ranks, std::chrono::millis
 
 Clients::Event Clients::next() {
   heartbeat_->end();
+  end_turn();
   for (;;) {
     if (!departed_.empty()) {
       const Departed departed{departed_.front()};
@@ -28,9 +30,11 @@ Clients::Event Clients::next() {
     std::vector<pollfd> fds{{launcher_.fd(), POLLIN, 0}};
     std::vector<std::uint64_t> numbers;
     bool unfinished = false;
-    // In turn, beginning behind the application that was heard last.
+    // In turn, beginning behind the application that was heard last, but for those that rest.
+    const Deadline now = Clock::now();
     const auto add = [&](auto first, auto last) {
       for (; first != last; ++first) {
+        if (turns_.rests_until(first->first) > now) continue;
         fds.push_back({first->second.fd(), POLLIN, 0});
         numbers.push_back(first->first);
         unfinished |= first->second.unfinished();
@@ -40,14 +44,14 @@ Clients::Event Clients::next() {
     add(behind, clients_.end());
     add(clients_.begin(), behind);
 
-    // A message may be stalled for up to twice the patience before that is seen.
-    ::poll(fds.data(), fds.size(), unfinished ? int(stall_patience_.count()) : -1);
+    ::poll(fds.data(), fds.size(), wait_at_most(unfinished, now));
     if (fds.front().revents != 0 && !hear_launcher()) return Ended{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       Connection& connection = clients_.at(numbers[i]);
       if (fds[i + 1].revents != 0) {
         if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
+          turn_began_ = Clock::now();
           // A step of a load takes what it takes.
           const auto* request = std::get_if<Request>(&*event);
           if (request == nullptr || (request->message.type != MessageType::load_volume &&
@@ -60,6 +64,22 @@ Clients::Event Clients::next() {
       }
     }
   }
+}
+
+void Clients::end_turn() {
+  if (turn_began_ == Deadline()) return;
+  if (clients_.contains(last_heard_)) turns_.served(last_heard_, turn_began_, Clock::now());
+  turn_began_ = {};
+}
+
+// In milliseconds, for poll(): until somebody has rested, or may have stalled; -1: until something happens.
+int Clients::wait_at_most(bool unfinished, Deadline now) const {
+  // A message may be stalled for up to twice the patience before that is seen.
+  Deadline until = unfinished ? now + stall_patience_ : Deadline::max();
+  for (const auto& [number, connection] : clients_)
+    if (const Deadline rested = turns_.rests_until(number); rested > now) until = std::min(until, rested);
+  if (until == Deadline::max()) return -1;
+  return int(std::chrono::ceil<std::chrono::milliseconds>(until - now).count());
 }
 
 // Takes in the applications that the launcher hands over; false when it has gone.
@@ -149,6 +169,7 @@ void Clients::drop(std::uint64_t number, const std::string& why) {
   if (!why.empty()) fmt::print(stderr, "understudy-node: dropped application {}: {}\n", number, why);
   heartbeat_->end();
   clients_.erase(number);
+  turns_.forget(number);
   departed_.push_back(number);
 }
 

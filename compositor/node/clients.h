@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "compositor/node/heartbeat.h"
+#include "compositor/node/turns.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/image_buffer.h"
 
@@ -51,6 +52,8 @@ class Clients {
   std::optional<Event> hear(std::uint64_t number, Connection& connection);
   static ImageBuffer take_image_buffer(Connection& connection, Message message);
   void drop(std::uint64_t number, const std::string& why);
+  void end_turn();
+  int wait_at_most(bool unfinished, Deadline now) const;
 
   Connection launcher_;
   std::optional<Heartbeat> heartbeat_;  // begins behind the hello
@@ -60,6 +63,8 @@ class Clients {
   std::uint64_t last_number_ = 0;  // numbers are never used twice
   std::uint64_t last_heard_ = 0;   // the next turn begins behind this one
   std::deque<std::uint64_t> departed_;
+  Turns turns_;
+  Deadline turn_began_{};  // of the application that was heard last; zero: its turn has ended
 };
 
 }  // namespace understudy::compositor

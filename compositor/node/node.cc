@@ -71,10 +71,11 @@ struct OwnOutcome : Outcome {
 class Node {
  public:
   Node(Communicator& communicator, const ExchangeSettings& exchange,
-       const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance)
+       const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
+       const volume::ReadableFiles& files, const ClientLimits& limits)
       : communicator_(communicator),
-        renderer_(communicator.rank(), communicator.size(), make_renderer),
-        loads_(renderer_, communicator.rank()),
+        renderer_(communicator.rank(), communicator.size(), make_renderer, limits),
+        loads_(renderer_, communicator.rank(), files),
         memories_(communicator, exchange.gather),
         compositing_(communicator, exchange),
         overlap_(exchange.overlap) {
@@ -499,6 +500,7 @@ std::vector<Outcome> Node::perform(const Order& order, Bytes payload) {
 
 // What all ranks know of the image before they draw it.
 void Node::begin_image(std::uint64_t client) {
+  renderer_.begin_image();
   rendered_ = {client, request_.volume};
   task_ = {client,
            request_.op,
@@ -628,8 +630,9 @@ std::vector<std::uint64_t> Node::sum_histograms() {
 
 bool run_node(Communicator& communicator, const std::string& control_path,
               std::chrono::milliseconds stall_patience, const ExchangeSettings& exchange,
-              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance) {
-  Node node(communicator, exchange, make_renderer, balance);
+              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
+              const volume::ReadableFiles& files, const ClientLimits& limits) {
+  Node node(communicator, exchange, make_renderer, balance, files, limits);
   if (communicator.rank() == 0) return node.lead(control_path, stall_patience);
   node.follow();
   return true;

@@ -9,7 +9,9 @@
 #include "compositor/exchange/communicator.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/node/rebalancer.h"
+#include "compositor/service/client_limits.h"
 #include "compositor/service/limits.h"
+#include "volume/file/readable_files.h"
 #include "volume/raycast/brick_renderer.h"
 
 namespace understudy::compositor {
@@ -19,7 +21,7 @@ namespace understudy::compositor {
 /// reached: that has been said on stderr, and the other ranks return as well.
 ///
 /// Each rank draws its bricks with what `make_renderer` makes; who gets which bricks is balanced as `balance`
-/// says.
+/// says. Applications may load `files`, and ask for what is within `limits`.
 ///
 /// What one rank cannot do (memory, a senseless request) all ranks learn before anything depends on it, and the
 /// application gets a refusal. Applications that pause for longer than
@@ -30,6 +32,7 @@ bool run_node(Communicator& communicator, const std::string& control_path,
               std::chrono::milliseconds stall_patience = limits::stall_patience,
               const ExchangeSettings& exchange = {},
               const volume::BrickRendererFactory& make_renderer = volume::cpu_renderer,
-              const BalanceSettings& balance = {});
+              const BalanceSettings& balance = {}, const volume::ReadableFiles& files = {},
+              const ClientLimits& limits = client_limits(1, {}));
 
 }  // namespace understudy::compositor

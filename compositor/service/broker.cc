@@ -1,8 +1,6 @@
 #include "compositor/service/broker.h"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -31,19 +29,8 @@ bool stirs(const Connection& connection) {
 }  // namespace
 
 Broker::Broker(std::string path, Say say, const BrokerPatience& patience)
-    : path_(std::move(path)), say_(std::move(say)), patience_(patience), listener_(listen_at(path_)) {
+    : say_(std::move(say)), patience_(patience), listener_(listen_at(path)), file_(std::move(path)) {
   if (!say_) say_ = [](const std::string& line) { fmt::print(stderr, "understudy: {}\n", line); };
-  struct stat file {};
-  if (::lstat(path_.c_str(), &file) == 0) {
-    device_ = file.st_dev;
-    inode_ = file.st_ino;
-  }
-}
-
-Broker::~Broker() {
-  struct stat file {};
-  if (::lstat(path_.c_str(), &file) == 0 && file.st_dev == device_ && file.st_ino == inode_)
-    ::unlink(path_.c_str());
 }
 
 void Broker::poll_fds(std::vector<pollfd>& fds) const {
@@ -67,12 +54,12 @@ void Broker::step(std::chrono::milliseconds timeout) {
 
 void Broker::accept_all() {
   while (Clock::now() >= accept_again_) {
-    FileDescriptor peer(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    FileDescriptor peer = accept_from(listener_);
     if (!peer) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
       // Out of descriptors or memory: the caller of connect() stays in the queue, and asking again at once
       // would spin.
-      say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", path_,
+      say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", path(),
                        std::strerror(errno)));
       accept_again_ = Clock::now() + std::chrono::seconds(1);
       return;
@@ -95,13 +82,13 @@ void Broker::hear_newcomers() {
       else if (Clock::now() < peer.hello_until)
         still_new.push_back(std::move(peer));
       else
-        say_(fmt::format("dropped a connection at '{}' that did not say what it is", path_));
+        say_(fmt::format("dropped a connection at '{}' that did not say what it is", path()));
     } catch (const ConnectionLost& error) {
       // Who connects and leaves without a word only wanted to know whether somebody is here.
       if (peer.connection.unfinished())
-        say_(fmt::format("dropped a connection at '{}': {}", path_, error.what()));
+        say_(fmt::format("dropped a connection at '{}': {}", path(), error.what()));
     } catch (const std::runtime_error& error) {
-      say_(fmt::format("dropped a connection at '{}': {}", path_, error.what()));
+      say_(fmt::format("dropped a connection at '{}': {}", path(), error.what()));
     }
   }
   newcomers_ = std::move(still_new);

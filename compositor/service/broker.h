@@ -8,13 +8,13 @@
 #pragma once
 
 #include <poll.h>
-#include <sys/types.h>
 
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "compositor/service/connection.h"
+#include "compositor/service/socket_file.h"
 
 namespace understudy::compositor {
 
@@ -32,12 +32,10 @@ class Broker {
   /// Listens at `path` (mode 0600). `say` gets one line about everything that goes wrong later; by default it
   /// is written to stderr. Throws std::runtime_error when the path is taken or cannot be.
   explicit Broker(std::string path, Say say = {}, const BrokerPatience& patience = {});
-  /// Closes all connections, which ends the node group, and removes the socket file.
-  ~Broker();
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return file_.path(); }
 
   /// Adds the descriptors to wait for, for a caller with a poll loop of its own, which then calls step(0).
   void poll_fds(std::vector<pollfd>& fds) const;
@@ -73,12 +71,10 @@ class Broker {
   void hand_over();
   void lose_nodes(const std::string& why);
 
-  std::string path_;
   Say say_;
   BrokerPatience patience_;
   FileDescriptor listener_;
-  dev_t device_ = 0;  // of the socket file, so that only our own is removed
-  ino_t inode_ = 0;
+  SocketFile file_;
   Deadline accept_again_{};
   std::vector<Peer> newcomers_;      // have not said hello
   std::vector<Connection> waiting_;  // applications

@@ -23,6 +23,8 @@ constexpr std::size_t max_clip_planes = 64;
 constexpr int max_ray_offsets = 1 << 20;
 constexpr std::size_t max_integrals = 4096;  ///< pixels of one question
 constexpr double max_integral_ms = 2000;
+constexpr std::uint64_t max_image_samples =
+    std::uint64_t(1) << 41;  ///< of nodes that pending clients share: 8192 x 8192 pixels of 32768 each
 constexpr std::size_t max_table_entries = std::size_t(1) << 20;
 constexpr int max_kept_pre_integration_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 
@@ -61,6 +63,10 @@ constexpr milliseconds send_patience{
     30'000};  ///< until some more of a message has left, over a connection, too
 constexpr milliseconds reply_patience{30'000};   ///< an answer to anything but a request for an image
 constexpr milliseconds render_patience{20'000};  ///< an image
+constexpr milliseconds image_time{4'000};     ///< of nodes that pending clients share: what one may take of it
+constexpr milliseconds short_request{20};     ///< after which a client need not rest
+constexpr milliseconds active_within{2'000};  ///< others whose requests are so recent have a share of the nodes
+constexpr milliseconds longest_rest{10'000};  ///< below render_patience
 constexpr milliseconds server_patience{
     120'000};  ///< a call that a GL server makes, with all that went before it
 constexpr milliseconds connection_patience{20'000};  ///< with a connection over TCP whose other end is silent

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "compositor/service/loading_service.h"
 #include "compositor/service/rank_renderer.h"
+#include "volume/file/readable_files.h"
 #include "volume/file/texel_stream.h"
 
 namespace understudy::compositor {
@@ -18,8 +20,9 @@ class Loads {
   /// So much of a file is read in one go.
   static constexpr std::size_t part_bytes = std::size_t(16) << 20;
 
-  /// Texels go to `renderer`, as rank `rank` of it.
-  Loads(RankRenderer& renderer, int rank) : renderer_(renderer), rank_(rank) {}
+  /// Texels go to `renderer`, as rank `rank` of it, from `files` alone.
+  Loads(RankRenderer& renderer, int rank, volume::ReadableFiles files = {})
+      : renderer_(renderer), rank_(rank), files_(std::move(files)) {}
 
   bool knows(VolumeKey key) const { return loads_.contains(key); }
   /// Begins the volume, and opens its file. Throws RequestRefused and volume::FileError.
@@ -43,6 +46,7 @@ class Loads {
 
   RankRenderer& renderer_;
   int rank_;
+  volume::ReadableFiles files_;
   std::map<VolumeKey, Load> loads_;
 };
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +14,7 @@
 #include "compositor/crop.h"
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
+#include "compositor/service/time_limit.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
@@ -68,11 +69,12 @@ auto refusing(Call call) {
   }
 }
 
-std::uint64_t physical_memory() {
-  return std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
+/// What one of `ranks` ranks has of the stored texels.
+std::uint64_t share_of(const VolumeDescription& description, int ranks) {
+  return texels_in(description.stored) * bytes_per_texel(description.type) / std::uint64_t(ranks);
 }
 
-void keep_limits(const VolumeDescription& description, int ranks) {
+void keep_limits_of_one(const VolumeDescription& description) {
   std::array<std::uint64_t, 3> stored{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int64_t extent = std::int64_t(description.stored.high[axis]) - description.stored.low[axis];
@@ -86,19 +88,33 @@ void keep_limits(const VolumeDescription& description, int ranks) {
     throw RequestRefused(fmt::format(
         "volume {} of {} x {} x {} texels is over the limit of {} MiB a slice or {} GiB", description.id,
         stored[0], stored[1], stored[2], limits::max_slice_bytes >> 20, limits::max_volume_bytes >> 30));
-  // Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
-  const std::uint64_t share = slice * stored[2] / std::uint64_t(ranks);
-  if (const std::uint64_t here = physical_memory(); share > here / 3 * 2)
+}
+
+/// The most samples that an image can have.
+double most_samples(const RenderRequest& request) {
+  double a_ray = request.planes.count;
+  if (request.steps) {
+    const Vec3 across = subtract(request.region.high, request.region.low);
+    a_ray = 1;
+    for (std::size_t i = 0; i < 9; ++i) a_ray += std::abs(request.steps->metric[i] * across[i % 3]);
+  }
+  constexpr double most_parts = 16;
+  if (request.method == Method::adaptive) a_ray *= most_parts;
+  return a_ray * double(intersection(request.window, request.viewport).pixels());
+}
+
+void refuse_excess(const RenderRequest& request) {
+  if (const double samples = most_samples(request); samples > double(limits::max_image_samples))
     throw RequestRefused(fmt::format(
-        "a node's share of volume {} is {} MiB and half as much again in bricks, but this machine has {} "
-        "MiB: use more nodes",
-        description.id, share >> 20, here >> 20));
+        "an image of up to {:.3g} samples is over the limit of {:.3g} of these nodes: ask for fewer "
+        "pixels, or for fewer samples along a ray",
+        samples, double(limits::max_image_samples)));
 }
 
 }  // namespace
 
-RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer)
-    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)) {}
+RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits)
+    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)), limits_(limits) {}
 RankRenderer::~RankRenderer() = default;
 
 RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
@@ -117,9 +133,34 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
   return volume;
 }
 
+// Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
+void RankRenderer::keep_limits(VolumeKey key, const VolumeDescription& description) const {
+  std::uint64_t in_all = 0;
+  std::uint64_t of_client = 0;
+  for (const auto& [held, volume] : volumes_) {
+    if (held == key) continue;  // makes room for this one
+    const std::uint64_t share = share_of(volume->bricks.description(), ranks_);
+    in_all += share;
+    if (held.client == key.client) of_client += share;
+  }
+  const std::uint64_t share = share_of(description, ranks_);
+  if (of_client + share > limits_.bytes_of_client)
+    throw RequestRefused(
+        fmt::format("a node's share of volume {} is {} MiB, and of this client it holds {} MiB and may hold {} "
+                    "MiB: use more "
+                    "nodes, or forget a volume first",
+                    description.id, share >> 20, of_client >> 20, limits_.bytes_of_client >> 20));
+  if (in_all + share > limits_.bytes_in_all)
+    throw RequestRefused(fmt::format(
+        "a node's share of volume {} is {} MiB, and it holds {} MiB for all its clients and may hold {} MiB: "
+        "use more nodes, or try again when others have gone",
+        description.id, share >> 20, in_all >> 20, limits_.bytes_in_all >> 20));
+}
+
 void RankRenderer::begin(std::uint64_t client, const VolumeDescription& description) {
-  keep_limits(description, ranks_);
+  keep_limits_of_one(description);
   const VolumeKey key{client, description.id};
+  keep_limits(key, description);
   const auto held =
       std::ranges::count_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
   if (!volumes_.contains(key) && std::size_t(held) >= limits::max_volumes_per_client)
@@ -222,6 +263,23 @@ void RankRenderer::forget_client(std::uint64_t client) {
   std::erase_if(volumes_, [&](const auto& entry) { return entry.first.client == client; });
 }
 
+void RankRenderer::begin_image() {
+  if (limits_.image_time.count() > 0) image_until_ = Clock::now() + limits_.image_time;
+}
+
+void RankRenderer::draw(Volume& volume, const RenderRequest& request, Image& image, FrameCounts& counts,
+                        Occlusion* occlusion) {
+  const auto draws = [&] { volume.renderer->render(request, image, counts, occlusion); };
+  if (!image_until_) return draws();
+  if (done_until(*image_until_, draws)) return;
+  // What it keeps of a classification may be half made.
+  volume.renderer = make_renderer_(volume.bricks);
+  throw RequestRefused(
+      fmt::format("an image took longer than {} ms, the limit of these nodes: ask for fewer pixels or samples, "
+                  "or use more nodes",
+                  limits_.image_time.count()));
+}
+
 Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts,
                            Occlusion* occlusion, const std::optional<Rect>& part) {
   const auto start = std::chrono::steady_clock::now();
@@ -232,11 +290,13 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     if (request.window.pixels() > limits::max_window_pixels)
       throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", request.window.pixels(),
                                        limits::max_window_pixels));
+    // Before memory is asked for.
+    if (image_until_) refuse_excess(request);
     const Rect everything = request.optimizations.footprints
                                 ? footprint(request, description, volume.tree.box(rank_))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
-    volume.renderer->render(request, result, counts, occlusion);
+    draw(volume, request, result, counts, occlusion);
     return result;
   });
   if (request.optimizations.footprints) crop_to_content(image, request.op);

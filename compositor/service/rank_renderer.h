@@ -12,7 +12,9 @@
 #include <span>
 #include <vector>
 
+#include "compositor/service/client_limits.h"
 #include "compositor/service/integral_parts.h"
+#include "compositor/service/socket.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/histogram.h"
 #include "volume/image.h"
@@ -34,8 +36,9 @@ struct VolumeKey {
 /// sense; what had been there before is then as it was.
 class RankRenderer {
  public:
-  /// Rank `rank` of `ranks`, whose bricks are drawn by what `make_renderer` makes.
-  RankRenderer(int rank, int ranks, volume::BrickRendererFactory make_renderer = volume::cpu_renderer);
+  /// Rank `rank` of `ranks`, whose bricks are drawn by what `make_renderer` makes, within `limits`.
+  RankRenderer(int rank, int ranks, volume::BrickRendererFactory make_renderer = volume::cpu_renderer,
+               const ClientLimits& limits = client_limits(1, {}));
   ~RankRenderer();
 
   void begin(std::uint64_t client, const volume::VolumeDescription& description);
@@ -58,6 +61,9 @@ class RankRenderer {
   void forget(VolumeKey key);
   void forget_client(std::uint64_t client);
   std::size_t volumes() const { return volumes_.size(); }
+
+  /// What render() draws from now on is one image: its limit of time begins.
+  void begin_image();
 
   /// This rank's image, cropped to what shows, of the pixels in `part` alone where one is given; adds to
   /// `counts`, time included. Of what `occlusion` hides, nothing need be there.
@@ -82,12 +88,17 @@ class RankRenderer {
  private:
   struct Volume;
 
+  void keep_limits(VolumeKey key, const volume::VolumeDescription& description) const;
+  void draw(Volume& volume, const volume::RenderRequest& request, volume::Image& image,
+            volume::FrameCounts& counts, volume::Occlusion* occlusion);
   Volume& find(VolumeKey key) const;
   Volume& find_complete(std::uint64_t client, const volume::RenderRequest& request) const;
 
   int rank_;
   int ranks_;
   volume::BrickRendererFactory make_renderer_;
+  ClientLimits limits_;
+  std::optional<Deadline> image_until_;
   std::map<VolumeKey, std::unique_ptr<Volume>> volumes_;
 };
 

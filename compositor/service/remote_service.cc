@@ -14,6 +14,7 @@
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loading_service.h"
+#include "compositor/service/peer.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/sent_pre_integration_tables.h"
 #include "volume/brick/texel_box.h"
@@ -31,6 +32,8 @@ class RemoteRenderService : public LoadingService {
     const Deadline deadline = Clock::now() + patience_.connect;
     try {
       connection_.emplace(connect_to(address_, deadline));
+    } catch (const ForeignListener& error) {
+      throw ServiceLost(error.what(), "another user listens where the render nodes should");
     } catch (const std::runtime_error& error) {
       throw ServiceLost(
           fmt::format("{}: start the launcher again; the application draws by itself", error.what()));

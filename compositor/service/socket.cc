@@ -2,15 +2,20 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
+
+#include "compositor/service/peer.h"
 
 namespace understudy::compositor {
 
@@ -19,7 +24,7 @@ namespace {
 sockaddr_un address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  constexpr std::size_t longest = sizeof address.sun_path - 2;  // and one that listen_at() appends
+  constexpr std::size_t longest = sizeof address.sun_path - 1;
   if (path.empty() || path.size() > longest)
     throw std::runtime_error(
         fmt::format("'{}' cannot name a socket: 1 to {} characters are possible", path, longest));
@@ -33,8 +38,34 @@ FileDescriptor new_socket() {
   return result;
 }
 
+[[noreturn]] void cannot_listen(const std::string& path) {
+  throw std::runtime_error(fmt::format("cannot listen at '{}': {}: name a path in a folder that is yours", path,
+                                       std::strerror(errno)));
+}
+
+/// Beside `path`, and nobody's guess.
+std::string name_beside(const std::string& path) {
+  std::uint32_t random = 0;
+  if (::getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) cannot_listen(path);
+  return std::filesystem::path(path).replace_filename(fmt::format(".{:08x}", random));
+}
+
 int try_to_connect(int fd, const sockaddr_un& address) {
   return ::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
+}
+
+/// Throws where the path is taken.
+void remove_dead_socket(const std::string& path) {
+  const sockaddr_un address = address_of(path);
+  struct stat existing {};
+  if (::lstat(path.c_str(), &existing) != 0) return;
+  if (!S_ISSOCK(existing.st_mode))
+    throw std::runtime_error(fmt::format("'{}' exists and is no socket: name another path", path));
+  if (existing.st_uid != ::geteuid())
+    throw std::runtime_error(fmt::format("'{}' is another user's socket: name another path", path));
+  if (try_to_connect(new_socket().get(), address) != ECONNREFUSED)
+    throw std::runtime_error(fmt::format("'{}' is in use by another launcher: name another path", path));
+  ::unlink(path.c_str());
 }
 
 }  // namespace
@@ -52,28 +83,31 @@ bool wait_until_ready(int fd, short events, Deadline deadline) {
 }
 
 FileDescriptor listen_at(const std::string& path) {
-  const sockaddr_un address = address_of(path);
-  struct stat existing {};
-  if (::lstat(path.c_str(), &existing) == 0) {
-    if (!S_ISSOCK(existing.st_mode))
-      throw std::runtime_error(fmt::format("'{}' exists and is no socket: name another path", path));
-    if (try_to_connect(new_socket().get(), address) != ECONNREFUSED)
-      throw std::runtime_error(fmt::format("'{}' is in use by another launcher: name another path", path));
-  }
+  remove_dead_socket(path);
   FileDescriptor result = new_socket();
   // A socket that has a name refuses connections until somebody listens at it, as one does whose listener is
   // gone. So it gets its name then.
-  sockaddr_un unfinished = address;
-  unfinished.sun_path[path.size()] = '~';
-  ::unlink(unfinished.sun_path);
+  const std::string unfinished = name_beside(path);
+  const sockaddr_un address = address_of(unfinished);
   // On Linux the socket's own mode becomes that of its file, so that there is no moment in which others may
   // connect.
   ::fchmod(result.get(), 0600);
-  if (::bind(result.get(), reinterpret_cast<const sockaddr*>(&unfinished), sizeof unfinished) != 0 ||
-      ::listen(result.get(), SOMAXCONN) != 0 || ::rename(unfinished.sun_path, path.c_str()) != 0)
-    throw std::runtime_error(fmt::format("cannot listen at '{}': {}: name a path in a folder that is yours",
-                                         path, std::strerror(errno)));
+  if (::bind(result.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    cannot_listen(path);
+  // A connection, unlike a rename, takes nobody's place.
+  const bool listens = ::listen(result.get(), SOMAXCONN) == 0 && ::link(unfinished.c_str(), path.c_str()) == 0;
+  const int reason = errno;
+  ::unlink(unfinished.c_str());
+  errno = reason;
+  if (!listens) cannot_listen(path);
   return result;
+}
+
+FileDescriptor accept_from(const FileDescriptor& listener) {
+  for (;;) {
+    FileDescriptor peer(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!peer || is_of_same_user(peer.get())) return peer;
+  }
 }
 
 FileDescriptor connect_to(const std::string& path, Deadline deadline) {
@@ -81,7 +115,10 @@ FileDescriptor connect_to(const std::string& path, Deadline deadline) {
   FileDescriptor result = new_socket();
   for (;;) {
     const int error = try_to_connect(result.get(), address);
-    if (error == 0) return result;
+    if (error == 0) {
+      require_listener_of(::geteuid(), result.get(), path);
+      return result;
+    }
     // The listener's queue is full: there is nothing to poll for.
     const bool busy = error == EAGAIN || error == EINTR;
     if (!busy || Clock::now() >= deadline)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
@@ -38,6 +39,11 @@ Secret read_secret(const std::filesystem::path& file) {
   if (!S_ISREG(status.st_mode))
     throw std::runtime_error(
         fmt::format("the secret '{}' is no file; name the one that holds it", file.string()));
+  if (status.st_uid != ::geteuid())
+    throw std::runtime_error(
+        fmt::format("the secret '{0}' is user {1}'s, who can change it; use a copy of your own: cp {0} "
+                    "~/understudy.secret",
+                    file.string(), status.st_uid));
   if ((status.st_mode & 077) != 0)
     throw std::runtime_error(
         fmt::format("others may read the secret '{0}'; keep it to yourself: chmod 600 {0}", file.string()));
@@ -56,8 +62,8 @@ Secret read_or_make_secret(const std::filesystem::path& file, bool& made) {
   made = false;
   if (::access(file.c_str(), F_OK) == 0) return read_secret(file);
   if (::sodium_init() < 0) throw std::runtime_error("this machine has no random numbers for secrets");
-  const std::filesystem::path fresh = file.string() + fmt::format(".{}", ::getpid());
-  const FileDescriptor opened(::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  std::string fresh = file.string() + ".XXXXXX";
+  const FileDescriptor opened(::mkostemp(fresh.data(), O_CLOEXEC));
   std::array<unsigned char, 32> contents{};
   ::randombytes_buf(contents.data(), contents.size());
   bool written = opened && ::write(opened.get(), contents.data(), contents.size()) == ssize_t(contents.size());

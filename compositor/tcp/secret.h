@@ -23,7 +23,8 @@ class Secret {
   std::array<unsigned char, 32> key_{};
 };
 
-/// Throws std::runtime_error, with what to do: no such file, others may read it, too short to be a secret.
+/// Throws std::runtime_error, with what to do: no such file, another user's, others may read it, too short to
+/// be a secret.
 Secret read_secret(const std::filesystem::path& file);
 
 /// The same; makes the file where there is none, with mode 0600 and 32 random bytes. True in `made` then.

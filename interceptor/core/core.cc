@@ -281,7 +281,7 @@ extern "C" [[gnu::visibility("default")]] const understudy::interceptor::CoreSer
       std::atexit(at_program_end);
     }
   } catch (const std::exception& error) {
-    const char* remote = std::getenv("UNDERSTUDY_REMOTE");
+    const char* remote = ::secure_getenv("UNDERSTUDY_REMOTE");
     const bool has_driver = remote == nullptr || *remote == '\0';
     fmt::print(stderr, "understudy: {}{}\n", error.what(),
                has_driver ? "; calls go straight to the driver" : "");

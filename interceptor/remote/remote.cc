@@ -17,7 +17,7 @@ bool is_remote() {
   static constinit std::atomic<int> known = -1;
   int is = known.load(std::memory_order_relaxed);
   if (is < 0) {
-    const char* address = getenv("UNDERSTUDY_REMOTE");
+    const char* address = secure_getenv("UNDERSTUDY_REMOTE");
     is = address != nullptr && *address != '\0' ? 1 : 0;
     known.store(is, std::memory_order_relaxed);
   }

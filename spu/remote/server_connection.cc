@@ -108,6 +108,10 @@ void ServerConnection::lose(const std::string& why) {
     {
       const std::scoped_lock lock(replies_);
       lost_ = true;
+      if (!ended_) {
+        counters().lost = 1;
+        counters().frames_lost += frames_.size();
+      }
     }
     replied_.notify_all();
     ::shutdown(connection_->fd(), SHUT_RDWR);
@@ -247,9 +251,12 @@ std::vector<CallAnswer> ServerConnection::ask_all(std::span<const Records> quest
 
 void ServerConnection::show_frame(const Records& records, const FrontDrawable& drawable) {
   const std::scoped_lock sending(sending_);
-  if (lost_) return;
   {
     const std::scoped_lock lock(replies_);
+    if (lost_) {
+      ++counters().frames_lost;
+      return;
+    }
     frames_.push_back(drawable);
     pending_.erase(drawable.number);
   }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -29,18 +30,26 @@ ProcessCounters& counters_in_memory() {
   return *std::launder(reinterpret_cast<ProcessCounters*>(memory.data()));
 }
 
+void say_that_figures_are_lost(const char* path, int reason) {
+  std::fprintf(stderr, "understudy: the figures of this process cannot be kept in %s: %s\n", path,
+               std::strerror(reason));
+}
+
 void map_file_of_this_process() {
-  const char* folder = std::getenv("UNDERSTUDY_RUN_DIR");
+  const char* folder = ::secure_getenv("UNDERSTUDY_RUN_DIR");
   if (folder == nullptr || *folder == '\0') return;
   std::array<char, 4096> path{};
   const int length =
       std::snprintf(path.data(), path.size(), "%s/%d.counters", folder, static_cast<int>(getpid()));
   if (length < 0 || static_cast<std::size_t>(length) >= path.size()) return;
   const int file = open(path.data(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (file < 0) return;
-  // The space is claimed now: a full disk must cost the figures, not a SIGBUS in the viewer.
-  if (posix_fallocate(file, 0, static_cast<off_t>(whole_pages)) == 0) {
-    // Where this fails the zero pages stay, and the counting goes on in private.
+  if (file < 0) return say_that_figures_are_lost(path.data(), errno);
+  // The space is claimed now: a full disk must cost the figures, not a SIGBUS in the viewer. Where this fails
+  // the zero pages stay, the counting goes on in private, and the empty file tells the launcher.
+  if (const int reason = posix_fallocate(file, 0, static_cast<off_t>(whole_pages)); reason != 0) {
+    say_that_figures_are_lost(path.data(), reason);
+    if (ftruncate(file, 0) != 0) unlink(path.data());
+  } else {
     (void)mmap(memory.data(), whole_pages, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file, 0);
   }
   close(file);

@@ -17,7 +17,7 @@
 
 namespace understudy::spu {
 
-constexpr std::uint32_t counters_magic = 0x55444332;  // "UDC2"
+constexpr std::uint32_t counters_magic = 0x55444333;  // "UDC3"
 constexpr int max_counted_volumes = 32;
 constexpr int max_counted_reasons = 8;
 constexpr int max_counted_done_reasons = 4;
@@ -127,6 +127,8 @@ struct RemoteCounters {
   std::atomic<std::uint64_t> round_trips;
   std::atomic<std::uint64_t> bytes_up;
   std::atomic<std::uint64_t> bytes_down;
+  std::atomic<std::uint32_t> lost;         ///< 1: the GL server went away before the process did
+  std::atomic<std::uint64_t> frames_lost;  ///< ended and never shown, as it was gone
 };
 
 /// Of a GL server whose windows are drawn in tiles.

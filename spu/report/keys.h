@@ -25,6 +25,8 @@ constexpr const char* round_trips = "round_trips";
 constexpr const char* bytes_up = "bytes_up";
 constexpr const char* bytes_down = "bytes_down";
 constexpr const char* per_frame = "per_frame";
+constexpr const char* lost = "lost";                ///< whether the GL server went away before the viewer did
+constexpr const char* frames_lost = "frames_lost";  ///< ended, and never shown for that
 
 // tiles: null unless --tiles on, on this machine.
 constexpr const char* tiles = "tiles";

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -316,6 +317,17 @@ bool has_a_gl_server(Processes processes) {
   });
 }
 
+bool only_a_stage_elsewhere_knows(Processes processes) {
+  return frames_from_a_gl_server(processes) > 0 && totals_of(processes).frames == 0 &&
+         !has_a_gl_server(processes);
+}
+
+std::uint64_t frames_lost(Processes processes) {
+  std::uint64_t frames = 0;
+  for (const ProcessCounters* process : processes) frames += process->remote.frames_lost.load();
+  return frames;
+}
+
 Json server_connection(Processes processes) {
   if (!is_remote(processes)) return nullptr;
   const std::uint64_t frames = frames_from_a_gl_server(processes);
@@ -334,6 +346,8 @@ Json server_connection(Processes processes) {
           {report_key::round_trips, round_trips},
           {report_key::bytes_up, up},
           {report_key::bytes_down, down},
+          {report_key::lost, lost_server(processes)},
+          {report_key::frames_lost, frames_lost(processes)},
           {report_key::per_frame,
            {{report_key::round_trips, a_frame(round_trips)},
             {report_key::bytes_up, a_frame(up)},
@@ -354,6 +368,12 @@ Json tiles(Processes processes) {
 
 std::string counted(std::uint64_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// What of the windows was never shown, behind the summary; empty where nothing is missing.
+std::string loss(Processes processes) {
+  if (!lost_server(processes)) return {};
+  return fmt::format("; the GL server was lost: {} not shown", counted(frames_lost(processes), "frame"));
 }
 
 std::string listed(const ReasonCounts& reasons) {
@@ -393,6 +413,25 @@ std::vector<MappedCounters> read_counters(const std::filesystem::path& folder) {
   return found;
 }
 
+std::size_t processes_without_figures(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    count +=
+        entry.path().extension() == ".counters" && entry.is_regular_file(error) && entry.file_size(error) == 0;
+  return count;
+}
+
+bool lost_server(Processes processes) {
+  return std::any_of(processes.begin(), processes.end(),
+                     [](const ProcessCounters* process) { return process->remote.lost.load() != 0; });
+}
+
+std::optional<bool> has_substituted(Processes processes) {
+  if (only_a_stage_elsewhere_knows(processes)) return {};
+  return totals_of(processes).frames_substituted > 0;
+}
+
 std::string report_json(Processes processes) {
   const Totals totals = totals_of(processes);
   Json report{{report_key::frames, totals.frames},
@@ -428,12 +467,13 @@ std::string report_json(Processes processes) {
 }
 
 std::string summary_line(Processes processes) {
-  const Totals totals = totals_of(processes);
-  if (const std::uint64_t frames = frames_from_a_gl_server(processes);
-      frames > 0 && totals.frames == 0 && !has_a_gl_server(processes))
+  if (only_a_stage_elsewhere_knows(processes))
     return fmt::format(
-        "understudy: {} came from a GL server on another machine, which knows what of them was substituted",
-        counted(frames, "frame"));
+               "understudy: {} came from a GL server on another machine, which knows what of them was "
+               "substituted",
+               counted(frames_from_a_gl_server(processes), "frame")) +
+           loss(processes);
+  const Totals totals = totals_of(processes);
   // Who draws is known once somebody did.
   std::string where;
   if (totals.nodes > 0) {
@@ -445,6 +485,7 @@ std::string summary_line(Processes processes) {
                                  counted(totals.volumes, "volume"), counted(totals.frames, "frame"),
                                  totals.frames_substituted, where, totals.frames_left);
   if (!totals.reasons.empty()) line += ": " + listed(totals.reasons);
+  line += loss(processes);
   for (const std::string& budget : totals.budgets) line += "\nunderstudy: " + budget;
   return line;
 }
@@ -492,8 +533,11 @@ void replace_file(const std::filesystem::path& path, const std::string& text) {
     throw std::runtime_error(
         fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
   };
-  const std::string beside = fmt::format("{}.{}.part", path.string(), getpid());
-  std::FILE* file = std::fopen(beside.c_str(), "we");
+  // A report may be wanted where others can write: a name that they cannot guess, and no connection of theirs.
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
+  const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
+  std::FILE* file = std::fopen(beside.c_str(), "wxe");
   if (file == nullptr) fail("write");
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
   const bool closed = std::fclose(file) == 0;

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +29,16 @@ constexpr std::size_t max_counted_processes = 4096;  ///< of one run; later ones
 /// counters (too short, another version) are passed over.
 std::vector<MappedCounters> read_counters(const std::filesystem::path& folder);
 
+/// How many processes could not keep their figures in the launcher's folder: they have left an empty file.
+std::size_t processes_without_figures(const std::filesystem::path& folder);
+
 using Processes = std::span<const ProcessCounters* const>;
+
+/// Whether the GL server of one of them went away.
+bool lost_server(Processes processes);
+
+/// Whether a frame was substituted; nothing where only a GL server on another machine knows.
+std::optional<bool> has_substituted(Processes processes);
 
 /// The report as JSON, indented, with a closing newline. Processes that neither drew nor called OpenGL are left
 /// out.

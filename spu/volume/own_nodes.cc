@@ -13,12 +13,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include "compositor/service/runtime_folder.h"
 
 namespace understudy::spu {
 namespace {
@@ -92,9 +93,7 @@ bool socket_appears(const std::filesystem::path& socket) {
 }  // namespace
 
 std::string start_own_nodes(int nodes) {
-  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  std::string folder =
-      fmt::format("{}/understudy-run-XXXXXX", runtime != nullptr && *runtime == '/' ? runtime : "/tmp");
+  std::string folder = compositor::runtime_folder() / "understudy-run-XXXXXX";
   if (mkdtemp(folder.data()) == nullptr) {
     fmt::print(stderr, "understudy: no render nodes: cannot make {}: {}\n", folder, std::strerror(errno));
     return {};

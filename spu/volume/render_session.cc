@@ -27,7 +27,7 @@ compositor::RenderService& RenderSession::service() {
   if (ended_) throw std::runtime_error("the program is ending");
   if (service_) return *service_;
   if (std::chrono::steady_clock::now() < not_before_) {
-    throw compositor::ServiceLost("waiting for a new group of render nodes");
+    throw compositor::ServiceLost("waiting for a new group of render nodes", why_lost_);
   }
   try {
     service_ = with_last_image(connect(), !disabled_optimizations(Optimization::unchanged_images),
@@ -42,6 +42,7 @@ compositor::RenderService& RenderSession::service() {
     if (!connected_once_ && !launcher_tells()) {
       fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());
     }
+    why_lost_ = unreachable.reason();
     not_before_ = std::chrono::steady_clock::now() + retry_after;
     connected_once_ = true;  // whoever was not there after 30 s is not waited for again
     throw;
@@ -85,18 +86,19 @@ void RenderSession::forget(volume::VolumeId id) {
   try {
     service_->forget_volume(id);
   } catch (const compositor::ServiceLost& gone) {
-    lost(gone.what());
+    lost(gone);
   }
 }
 
-void RenderSession::lost(const std::string& what) {
+void RenderSession::lost(const compositor::ServiceLost& loss) {
   // Every frame that finds no service says so; the next attempt must not move away before it.
   if (!service_) return;
   if (!launcher_tells()) {
-    fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", what);
+    fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", loss.what());
   }
   pipeline_ = nullptr;
   service_.reset();
+  why_lost_ = loss.reason();
   not_before_ = std::chrono::steady_clock::now() + retry_after;
 }
 

@@ -52,7 +52,7 @@ class RenderSession {
   bool take_behind() { return behind_shown_.exchange(false); }
 
   /// The service failed: explained once, and the next call of service() connects anew. Needs the lock.
-  void lost(const std::string& what);
+  void lost(const compositor::ServiceLost& loss);
 
   /// The service need not keep the volume any longer; a service that is lost has forgotten it anyway. Needs the
   /// lock.
@@ -83,6 +83,7 @@ class RenderSession {
   bool connected_once_ = false;
   std::atomic<bool> ended_ = false;
   std::chrono::steady_clock::time_point not_before_{};
+  std::string why_lost_;  ///< in few words, for frames until then
 };
 
 }  // namespace understudy::spu

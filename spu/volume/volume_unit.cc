@@ -276,9 +276,9 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& closed) {
     leave(texture, refused.what());
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
-    session_->lost(lost.what());
+    session_->lost(lost);
     // Said once by whoever started the nodes, or by the session.
-    leave(texture, "the render nodes did not answer", false);
+    leave(texture, lost.reason(), false);
   } catch (const std::exception& error) {
     leave(texture, error.what());
   }

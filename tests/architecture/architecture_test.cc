@@ -104,6 +104,19 @@ TEST(Architecture, VolumeAndCompositorKnowNoOpenGlStream) {
               IsEmpty());
 }
 
+// Under a program with more rights than its user, the user's environment is not to be believed.
+TEST(Architecture, WhatLivesInAViewerReadsItsEnvironmentSecurely) {
+  const std::regex insecure(
+      "(^|[^_a-z])"
+      "getenv"
+      "[^a-z_]");
+  for (const SourceFile& file : files()) {
+    const std::string_view module = module_of(file.path);
+    if (!is_code(file) || module == "apps" || module == "tests") continue;
+    EXPECT_FALSE(std::regex_search(file.text, insecure)) << file.path << ": use secure_getenv()";
+  }
+}
+
 TEST(Architecture, EveryModuleAndEveryProgramSaysWhatItIs) {
   const fs::path root = UNDERSTUDY_SOURCE_DIR;
   for (const std::string_view module : modules) EXPECT_TRUE(fs::exists(root / module / "README.md")) << module;

@@ -85,6 +85,12 @@ TEST_F(Assemble, KnowsItsUnitsByName) {
   }
 }
 
+// Where no server connection is, link cannot be made, and pack before it would have nobody to hand calls to.
+TEST_F(Assemble, MakesAChainWholeOrNotAtAll) {
+  EXPECT_THAT(error_of("pack remote"), HasSubstr("understudy run --remote"));
+  EXPECT_THAT(error_of("perf(file=calls.json) pack remote"), HasSubstr("understudy run --remote"));
+}
+
 TEST_F(Assemble, EveryUnitStandsAboveTheDriver) {
   for (const UnitDescription* unit : unit_table()) {
     if (unit->position == UnitPosition::last) continue;

@@ -1,6 +1,5 @@
 #include "volume/file/byte_source.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,10 +31,7 @@ struct Descriptor {
 
 class PlainFile : public ByteSource {
  public:
-  explicit PlainFile(std::string path)
-      // Whoever opens a pipe would wait for its other end.
-      : path_(std::move(path)), file_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-    if (file_.number < 0) fail();
+  PlainFile(std::string path, const ReadableFiles& files) : path_(std::move(path)), file_(files.open(path_)) {
     struct stat about {};
     if (::fstat(file_.number, &about) != 0) fail();
     if (S_ISDIR(about.st_mode))
@@ -76,12 +72,12 @@ class PlainFile : public ByteSource {
 
 }  // namespace
 
-std::unique_ptr<ByteSource> open_file(const std::string& path) {
-  return std::make_unique<PlainFile>(path);
+std::unique_ptr<ByteSource> open_file(const std::string& path, const ReadableFiles& files) {
+  return std::make_unique<PlainFile>(path, files);
 }
 
-std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path) {
-  std::unique_ptr<ByteSource> file = open_file(path);
+std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path, const ReadableFiles& files) {
+  std::unique_ptr<ByteSource> file = open_file(path, files);
   if (!has_extension(path, ".gz")) return file;
   return std::make_unique<GzipSource>(std::move(file), 0);
 }

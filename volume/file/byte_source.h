@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 
+#include "volume/file/readable_files.h"
+
 namespace understudy::volume {
 
 /// All functions throw FileError.
@@ -26,10 +28,10 @@ class ByteSource {
 };
 
 /// A plain file, of which no byte is read that was not asked for.
-std::unique_ptr<ByteSource> open_file(const std::string& path);
+std::unique_ptr<ByteSource> open_file(const std::string& path, const ReadableFiles& files = {});
 
 /// The same, or what is in it when its name ends with .gz.
-std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path);
+std::unique_ptr<ByteSource> open_file_or_gzip(const std::string& path, const ReadableFiles& files = {});
 
 /// Whether `path` ends so, capitals aside.
 bool has_extension(const std::string& path, std::string_view extension);

@@ -100,9 +100,9 @@ bool is_nifti(const std::string& path) {
   return is_part(path, ".nii") || is_part(path, ".hdr") || is_part(path, ".img");
 }
 
-std::unique_ptr<VolumeFile> open_nifti(const std::string& path) {
+std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFiles& files) {
   const std::string header_path = is_part(path, ".img") ? with_part(path, ".img", ".hdr") : path;
-  std::unique_ptr<ByteSource> file = open_file_or_gzip(header_path);
+  std::unique_ptr<ByteSource> file = open_file_or_gzip(header_path, files);
   const Header header(*file);
 
   // dim[0] is the number of axes, dim[1] ... their lengths.
@@ -150,8 +150,8 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path) {
                              scalars.offset));
     scalars.bytes = std::move(file);
   } else {
-    scalars.bytes =
-        open_file_or_gzip(is_part(header_path, ".hdr") ? with_part(header_path, ".hdr", ".img") : header_path);
+    scalars.bytes = open_file_or_gzip(
+        is_part(header_path, ".hdr") ? with_part(header_path, ".hdr", ".img") : header_path, files);
   }
   return dense_volume(description, std::move(scalars));
 }

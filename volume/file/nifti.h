@@ -12,6 +12,6 @@ namespace understudy::volume {
 bool is_nifti(const std::string& path);
 
 /// The first volume of a series. Throws FileError.
-std::unique_ptr<VolumeFile> open_nifti(const std::string& path);
+std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

@@ -227,15 +227,15 @@ std::uint64_t skip_lines(ByteSource& file, std::uint64_t from, std::int64_t line
 
 }  // namespace
 
-bool is_nrrd(const std::string& path) {
+bool is_nrrd(const std::string& path, const ReadableFiles& files) {
   std::array<std::byte, 4> magic{};
   constexpr std::string_view wanted = "NRRD";
-  return open_file(path)->read(0, magic) == magic.size() &&
+  return open_file(path, files)->read(0, magic) == magic.size() &&
          std::ranges::equal(magic, wanted, {}, [](std::byte b) { return char(b); });
 }
 
-std::unique_ptr<VolumeFile> open_nrrd(const std::string& path) {
-  std::unique_ptr<ByteSource> file = open_file(path);
+std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFiles& files) {
+  std::unique_ptr<ByteSource> file = open_file(path, files);
   const Header header = read_header(*file);
   const Fields fields(header, path);
   const FileDescription description = description_of(fields, path);
@@ -248,7 +248,7 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path) {
     if (data.starts_with("LIST") || data.find('%') != std::string::npos)
       fail(path, "its data lies in several files; join them first, for example with `unu save -f nrrd`");
     // Beside the header, unless the name is absolute.
-    file = open_file(std::filesystem::path(path).parent_path() / data);
+    file = open_file(std::filesystem::path(path).parent_path() / data, files);
     scalars.offset = 0;
   }
   if (const std::string lines = fields.text("lineskip"); !lines.empty())

@@ -10,9 +10,9 @@
 namespace understudy::volume {
 
 /// By the first bytes.
-bool is_nrrd(const std::string& path);
+bool is_nrrd(const std::string& path, const ReadableFiles& files = {});
 
 /// A scalar volume of three axes (where there are more, axes of length 1 do not count). Throws FileError.
-std::unique_ptr<VolumeFile> open_nrrd(const std::string& path);
+std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

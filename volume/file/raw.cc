@@ -70,8 +70,9 @@ FileHints hints_in_name(const std::string& path) {
   return hints;
 }
 
-std::unique_ptr<VolumeFile> open_raw(const std::string& path, const FileHints& hints) {
-  std::unique_ptr<ByteSource> bytes = open_file_or_gzip(path);
+std::unique_ptr<VolumeFile> open_raw(const std::string& path, const FileHints& hints,
+                                     const ReadableFiles& files) {
+  std::unique_ptr<ByteSource> bytes = open_file_or_gzip(path, files);
   const FileHints named = hints_in_name(path);
   const std::optional<std::array<int, 3>> size = hints.size ? hints.size : named.size;
   if (!size)

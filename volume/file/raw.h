@@ -13,6 +13,7 @@ FileHints hints_in_name(const std::string& path);
 
 /// The type is u8 and the byte order little-endian unless hints or name say another; the file must hold exactly
 /// the scalars. Throws FileError.
-std::unique_ptr<VolumeFile> open_raw(const std::string& path, const FileHints& hints);
+std::unique_ptr<VolumeFile> open_raw(const std::string& path, const FileHints& hints,
+                                     const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

@@ -118,12 +118,13 @@ std::unique_ptr<VolumeFile> dense_volume(const FileDescription& description, Den
   return std::make_unique<DenseVolume>(description, std::move(scalars), bytes);
 }
 
-std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints) {
+std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints,
+                                        const ReadableFiles& files) {
   if (is_synthetic(name)) return open_synthetic(name);
-  if (is_nifti(name)) return open_nifti(name);
-  if (is_vti(name)) return open_vti(name);
-  if (is_nrrd(name)) return open_nrrd(name);
-  return open_raw(name, hints);
+  if (is_nifti(name)) return open_nifti(name, files);
+  if (is_vti(name)) return open_vti(name, files);
+  if (is_nrrd(name, files)) return open_nrrd(name, files);
+  return open_raw(name, hints, files);
 }
 
 }  // namespace understudy::volume

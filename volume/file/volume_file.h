@@ -13,6 +13,7 @@
 #include <string>
 
 #include "volume/file/byte_source.h"
+#include "volume/file/readable_files.h"
 #include "volume/file/scalar_type.h"
 #include "volume/request.h"
 
@@ -53,8 +54,10 @@ class VolumeFile {
   FileDescription description_;
 };
 
-/// Reads no more than the header. Throws FileError.
-std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {});
+/// Reads no more than the header, from `files` alone: also a second file that the first one names. Throws
+/// FileError.
+std::unique_ptr<VolumeFile> open_volume(const std::string& name, const FileHints& hints = {},
+                                        const ReadableFiles& files = {});
 
 /// Scalars that lie one after the other, x fastest, from `offset` of `bytes` on.
 struct DenseScalars {

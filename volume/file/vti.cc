@@ -77,8 +77,8 @@ bool is_vti(const std::string& path) {
   return has_extension(path, ".vti") || has_extension(path, ".vti.gz");
 }
 
-std::unique_ptr<VolumeFile> open_vti(const std::string& path) {
-  std::shared_ptr<ByteSource> file = open_file_or_gzip(path);
+std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFiles& files) {
+  std::shared_ptr<ByteSource> file = open_file_or_gzip(path, files);
   const VtiHeader header = read_vti_header(*file);
   FileDescription description;
   description.type = header.type;
@@ -106,7 +106,7 @@ std::unique_ptr<VolumeFile> open_vti(const std::string& path) {
     // One text holds the number and the data.
     scalars.offset = front_at + header.length_bytes;
     scalars.bytes = base64 ? std::unique_ptr<ByteSource>(std::make_unique<Base64Source>(file, header.data_at))
-                           : open_file_or_gzip(path);
+                           : open_file_or_gzip(path, files);
     return dense_volume(description, std::move(scalars));
   }
   ZlibBlockTable table = read_block_table(lengths, bytes, path);

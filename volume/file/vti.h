@@ -13,6 +13,6 @@ bool is_vti(const std::string& path);
 
 /// The active scalars of the points, or the first array of them that has one component; without one, those of
 /// the cells. Throws FileError.
-std::unique_ptr<VolumeFile> open_vti(const std::string& path);
+std::unique_ptr<VolumeFile> open_vti(const std::string& path, const ReadableFiles& files = {});
 
 }  // namespace understudy::volume

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
@@ -472,6 +473,8 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
     RayPacket packet;
     alignas(64) std::array<float, 4 * packet_rays> rgba;
     for (int row = 0; row < height; row += packet_height) {
+      // Who waits for the image may have given it up: the loop below asks no more often than once a range.
+      if (tbb::is_current_task_group_canceling()) return;
       const int rows = std::min(packet_height, height - row);
       if (!set_up_packet(piece.setup, request, x, y + row, width, rows, packet)) continue;
       for (std::size_t r = 0; r < packet_rays; ++r)

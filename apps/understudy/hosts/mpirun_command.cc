@@ -18,8 +18,10 @@ Words how_to_launch(const Placement& placement, const std::filesystem::path& fol
               "--mca", "plm", "isolated", "--mca", "btl", "self,vader",
               // Nor are ranks put onto the nodes of an allocation, of which a login node is none.
               "--mca", "ras", "^slurm",
-              // Its session files go when the run's folder goes, whatever happens to it.
-              "--mca", "orte_tmpdir_base", folder.string()};
+              // Its session files go when the run's folder goes, whatever happens to it, and so does the memory
+              // that ranks share, which would stay in /dev/shm when mpirun is killed.
+              "--mca", "orte_tmpdir_base", folder.string(), "--mca", "btl_vader_backing_directory",
+              shared_memory_folder(folder).string()};
     case Launch::remote_shell:
       return {"--mca", "plm", "rsh", "--mca", "btl", "self,vader,tcp",
               // A host that is cut off says nothing: it is missed after three seconds of silence and three
@@ -36,6 +38,10 @@ Words how_to_launch(const Placement& placement, const std::filesystem::path& fol
 
 std::filesystem::path own_hostfile(const std::filesystem::path& folder) {
   return folder / "hosts";
+}
+
+std::filesystem::path shared_memory_folder(const std::filesystem::path& folder) {
+  return folder / "ranks";
 }
 
 Words mpirun_words(const Placement& placement, const std::filesystem::path& folder) {

@@ -21,6 +21,9 @@ Environment mpirun_environment(Environment nodes, const Placement& placement,
 /// The file in a run's folder that mpirun_words() names.
 std::filesystem::path own_hostfile(const std::filesystem::path& folder);
 
+/// Where the ranks of this machine share memory, if all are on it: a folder in the run's. Must exist.
+std::filesystem::path shared_memory_folder(const std::filesystem::path& folder);
+
 /// What starts a program on another host: OMPI_MCA_plm_rsh_agent's words, or those of Open MPI's usual agents.
 /// The first of its alternatives ("ssh : rsh") that `is_there`; the first one when none is.
 std::vector<std::string> launch_agent(const Environment& environment, bool (*is_there)(const std::string&));

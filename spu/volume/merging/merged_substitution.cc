@@ -339,7 +339,7 @@ bool VolumeUnit::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) 
     merged.handed_back = refusal.reason;
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
-    session_->lost(lost.what());
+    session_->lost(lost);
     return false;
   } catch (const std::exception& error) {
     merged.handed_back = error.what();
@@ -484,7 +484,7 @@ void VolumeUnit::show_alone(Substitution& s) {
     return;
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = session_->lock();
-    session_->lost(lost.what());
+    session_->lost(lost);
   } catch (const Refusal&) {
     // The texture cannot be read as it was: the last way tells why.
   } catch (const std::exception&) {

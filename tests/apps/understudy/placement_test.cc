@@ -222,7 +222,8 @@ TEST(MpirunWords, OnThisMachineNeedNoNetwork) {
   EXPECT_EQ(
       line_of({Launch::this_machine, 4, {}}),
       "mpirun -n 4 --oversubscribe --bind-to none --mca mpi_yield_when_idle 1 --mca plm isolated --mca btl "
-      "self,vader --mca ras ^slurm --mca orte_tmpdir_base /run/x");
+      "self,vader --mca ras ^slurm --mca orte_tmpdir_base /run/x "
+      "--mca btl_vader_backing_directory /run/x/ranks");
 }
 
 TEST(MpirunWords, OnSeveralHostsNameThemAndUseTcp) {

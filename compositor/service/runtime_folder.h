@@ -1,0 +1,18 @@
+// Where sockets and private folders of runs lie.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace understudy::compositor {
+
+/// Whether `folder` belongs to this user and nobody else may write into it.
+bool is_private_folder(const std::filesystem::path& folder);
+
+/// $XDG_RUNTIME_DIR, where it is private and can be written to: names in it may be predictable.
+std::optional<std::filesystem::path> private_runtime_folder();
+
+/// The same, or else /tmp, where only names that nobody can guess are safe.
+std::filesystem::path runtime_folder();
+
+}  // namespace understudy::compositor

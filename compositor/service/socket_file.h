@@ -1,0 +1,27 @@
+// The file by which others find a socket that this process listens at.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace understudy::compositor {
+
+/// Removed at the end, unless another file has taken its place.
+class SocketFile {
+ public:
+  /// The file that is at `path` now.
+  explicit SocketFile(std::string path);
+  SocketFile(const SocketFile&) = delete;
+  SocketFile& operator=(const SocketFile&) = delete;
+  ~SocketFile();
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  dev_t device_ = 0;
+  ino_t inode_ = 0;
+};
+
+}  // namespace understudy::compositor

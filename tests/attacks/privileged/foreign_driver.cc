@@ -1,0 +1,7 @@
+// A driver that says that it was loaded.
+#include <cstdio>
+
+[[gnu::constructor]] static void loaded() {
+  std::printf("foreign code runs\n");
+  std::fflush(stdout);
+}

@@ -1,0 +1,20 @@
+// Opens EGL and asks it for its driver; says whether the kernel takes it for a program with more rights than
+// its user has.
+#include <dlfcn.h>
+#include <sys/auxv.h>
+
+#include <cstdio>
+
+int main() {
+  std::printf("secure %lu\n", getauxval(AT_SECURE));
+  void* const library = dlopen(ENTRY_LIBRARY, RTLD_NOW);
+  if (library == nullptr) {
+    std::printf("%s\n", dlerror());
+    return 1;
+  }
+  using GetDisplay = void* (*)(void*);
+  const auto get_display = reinterpret_cast<GetDisplay>(dlsym(library, "eglGetDisplay"));
+  if (get_display == nullptr) return 1;
+  get_display(nullptr);
+  return 0;
+}

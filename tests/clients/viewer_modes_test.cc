@@ -139,7 +139,7 @@ class OperatorsOnRanks : public CommandTest, public testing::WithParamInterface<
 TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   if (const std::string lacking = missing({Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const std::string name = GetParam();
-  const Words way = name == "slabs" ? Words{"--mode", "preint"} : Words{"--operator", name};
+  const Words way = name == "segments" ? Words{"--mode", "preint"} : Words{"--operator", name};
   // No voxel is 0: a minimum has something to tell.
   std::string voxels;
   constexpr int edge = 50;
@@ -179,7 +179,8 @@ TEST_P(OperatorsOnRanks, GiveTheImageOfOneProcess) {
   EXPECT_LE(largest, 1e-5 * std::max(1.0, brightest));
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, OperatorsOnRanks, testing::Values("over", "under", "max", "min", "add", "slabs"),
+INSTANTIATE_TEST_SUITE_P(Of, OperatorsOnRanks,
+                         testing::Values("over", "under", "max", "min", "add", "segments"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Targets {
   GLuint buffer = 0;
 };
 
-constexpr GLsizeiptr bytes_of_a_image = GLsizeiptr(4 * sizeof(float)) * size * size;
+constexpr GLsizeiptr bytes_of_an_image = GLsizeiptr(4 * sizeof(float)) * size * size;
 
 Targets make_targets(const DispatchTable& gl) {
   Targets targets;
@@ -58,7 +58,7 @@ Targets make_targets(const DispatchTable& gl) {
   gl.TextureStorage3D(targets.layer, 1, GL_RGBA8, size, size, 1);
   gl.GenBuffers(1, &targets.buffer);
   gl.BindBuffer(GL_PIXEL_PACK_BUFFER, targets.buffer);
-  gl.BufferData(GL_PIXEL_PACK_BUFFER, bytes_of_a_image, nullptr, GL_STREAM_READ);
+  gl.BufferData(GL_PIXEL_PACK_BUFFER, bytes_of_an_image, nullptr, GL_STREAM_READ);
   gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   return targets;
 }
@@ -92,7 +92,7 @@ Image texels_of(GlApplication& app, GLuint texture, int height = size) {
 
 enum class Into { window, texture };
 
-struct EntryPoint {
+struct Command {
   const char* name;
   Into into;  ///< where the slices are drawn
   /// Lets the framebuffer be seen, and answers with what is seen.
@@ -106,7 +106,7 @@ GLuint query(GlApplication& app) {
   return name;
 }
 
-std::vector<EntryPoint> ends_and_waits() {
+std::vector<Command> ends_and_waits() {
   return {
       {"swap", Into::window,
        [](GlApplication& app, const Targets&) {
@@ -174,7 +174,7 @@ std::vector<EntryPoint> ends_and_waits() {
   };
 }
 
-std::vector<EntryPoint> reads_and_copies() {
+std::vector<Command> reads_and_copies() {
   return {
       {"glReadPixels", Into::window, [](GlApplication& app, const Targets&) { return app.read_pixels(); }},
       {"glReadnPixels", Into::window,
@@ -245,7 +245,7 @@ std::vector<EntryPoint> reads_and_copies() {
   };
 }
 
-std::vector<EntryPoint> changes_of_the_framebuffer() {
+std::vector<Command> changes_of_the_framebuffer() {
   return {
       {"glBindFramebuffer", Into::window,
        [](GlApplication& app, const Targets& targets) {
@@ -331,7 +331,7 @@ std::vector<EntryPoint> changes_of_the_framebuffer() {
   };
 }
 
-std::vector<EntryPoint> looks_at_an_attachment() {
+std::vector<Command> looks_at_an_attachment() {
   return {
       {"glGetTexImage", Into::texture,
        [](GlApplication& app, const Targets&) {
@@ -378,9 +378,9 @@ std::vector<EntryPoint> looks_at_an_attachment() {
 }
 
 /// Clears, draws the volume or nothing up to the last slice, and looks.
-Image frame(GlApplication& app, const SliceScene& scene, const EntryPoint& injection, bool volume = true) {
+Image frame(GlApplication& app, const SliceScene& scene, const Command& command, bool volume = true) {
   const Targets targets = make_targets(app.gl());
-  if (injection.into == Into::texture) app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[0]);
+  if (command.into == Into::texture) app.gl().BindFramebuffer(GL_FRAMEBUFFER, targets.framebuffer[0]);
   if (volume) {
     scene.draw_to_the_last_slice(app, 25);
   } else {
@@ -388,7 +388,7 @@ Image frame(GlApplication& app, const SliceScene& scene, const EntryPoint& injec
     nothing.slices = [](GlApplication&, double) {};
     nothing.draw_to_the_last_slice(app, 25);
   }
-  Image image = injection.look(app, targets);
+  Image image = command.look(app, targets);
   app.driver().BindFramebuffer(GL_FRAMEBUFFER, 0);
   scene.tidy_up(app);
   app.end_frame();
@@ -396,22 +396,22 @@ Image frame(GlApplication& app, const SliceScene& scene, const EntryPoint& injec
   return image;
 }
 
-class InjectionMethods : public ::testing::TestWithParam<EntryPoint> {};
+class Commands : public ::testing::TestWithParam<Command> {};
 
-TEST_P(InjectionMethods, ShowTheImage) {
-  const EntryPoint& injection = GetParam();
+TEST_P(Commands, ShowTheImage) {
+  const Command& command = GetParam();
   auto app = GlApplication::start(Profile::compatibility);
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = immediate_rgba();
   scene.set_up(*app);
   app->use_chain(false);
-  const Image bare = frame(*app, scene, injection);
-  EXPECT_LT(psnr(frame(*app, scene, injection, false), bare), different)
+  const Image bare = frame(*app, scene, command);
+  EXPECT_LT(psnr(frame(*app, scene, command, false), bare), different)
       << "the volume cannot be seen there: the test tests nothing";
   app->use_chain(true);
   for (std::uint64_t i = 1; i <= 2; ++i) {
-    const double likeness = psnr(frame(*app, scene, injection), bare);
-    std::printf("%s, frame %d: %.1f dB\n", injection.name, int(i), likeness);
+    const double likeness = psnr(frame(*app, scene, command), bare);
+    std::printf("%s, frame %d: %.1f dB\n", command.name, int(i), likeness);
     EXPECT_GE(likeness, alike) << "frame " << i;
     EXPECT_EQ(app->substituted(), i) << app->last_reason();
   }
@@ -419,18 +419,16 @@ TEST_P(InjectionMethods, ShowTheImage) {
   EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
-std::string name_of_method(const ::testing::TestParamInfo<EntryPoint>& info) {
+std::string name_of_command(const ::testing::TestParamInfo<Command>& info) {
   std::string name = info.param.name;
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Ends, InjectionMethods, ::testing::ValuesIn(ends_and_waits()), name_of_method);
-INSTANTIATE_TEST_SUITE_P(Reads, InjectionMethods, ::testing::ValuesIn(reads_and_copies()), name_of_method);
-INSTANTIATE_TEST_SUITE_P(Changes, InjectionMethods, ::testing::ValuesIn(changes_of_the_framebuffer()),
-                         name_of_method);
-INSTANTIATE_TEST_SUITE_P(Attachments, InjectionMethods, ::testing::ValuesIn(looks_at_an_attachment()),
-                         name_of_method);
+INSTANTIATE_TEST_SUITE_P(Ends, Commands, ::testing::ValuesIn(ends_and_waits()), name_of_command);
+INSTANTIATE_TEST_SUITE_P(Reads, Commands, ::testing::ValuesIn(reads_and_copies()), name_of_command);
+INSTANTIATE_TEST_SUITE_P(Changes, Commands, ::testing::ValuesIn(changes_of_the_framebuffer()), name_of_command);
+INSTANTIATE_TEST_SUITE_P(Attachments, Commands, ::testing::ValuesIn(looks_at_an_attachment()), name_of_command);
 
 /// The commands above stand for all: while a run is open, no command but those that add to it goes
 /// past.
@@ -537,7 +535,7 @@ TEST(OtherThreads, SeeInASharedTextureWhatWasDrawnBeforeTheFence) {
   if (!app) GTEST_SKIP() << "no EGL context here";
   const SliceScene scene = immediate_rgba();
   scene.set_up(*app);
-  const EntryPoint in_another_thread{
+  const Command in_another_thread{
       "another thread", Into::texture, [](GlApplication& first, const Targets& targets) {
         const GLsync fence = first.gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
         first.gl().Flush();

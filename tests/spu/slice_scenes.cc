@@ -629,7 +629,7 @@ SliceScene pre_integrated_slices(bool along_rays) {
     gl.UseProgram(*name);
     const Matrix camera = camera_matrix(angle);
     gl.UniformMatrix4fv(gl.GetUniformLocation(*name, "camera"), 1, GL_FALSE, camera.data());
-    gl.Uniform3f(gl.GetUniformLocation(*name, "slab"), 0, 0, -1.0F / slices);
+    gl.Uniform3f(gl.GetUniformLocation(*name, "segment"), 0, 0, -1.0F / slices);
     const double turned = angle * M_PI / 180;
     gl.Uniform4f(gl.GetUniformLocation(*name, "eye"), GLfloat(0.5 - 3 * std::sin(turned)), 0.5F,
                  GLfloat(0.5 + 3 * std::cos(turned)), along_rays ? 1 : 0);

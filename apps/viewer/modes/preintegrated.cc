@@ -82,9 +82,10 @@ class PreintegratedMode : public Mode {
 
   void draw_slices(const SliceStack& stack, const Matrices& matrices) override {
     glUseProgram(slices_.program());
-    const Vec3 slab = stack.spacing * stack.normal;
-    glUniform3f(glGetUniformLocation(slices_.program(), "slab"), static_cast<float>(slab[0] / box_.edges[0]),
-                static_cast<float>(slab[1] / box_.edges[1]), static_cast<float>(slab[2] / box_.edges[2]));
+    const Vec3 segment = stack.spacing * stack.normal;
+    glUniform3f(glGetUniformLocation(slices_.program(), "segment"),
+                static_cast<float>(segment[0] / box_.edges[0]), static_cast<float>(segment[1] / box_.edges[1]),
+                static_cast<float>(segment[2] / box_.edges[2]));
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_2D, pairs_.name());
     glActiveTexture(GL_TEXTURE0);

@@ -82,7 +82,7 @@ TEST(ViewMessage, WhatCannotBeBelievedIsRefusedByItsKey) {
   std::string control_points = R"({"table": {"knots": [)";
   for (int i = 0; i < 257; ++i)
     control_points += std::string(i > 0 ? "," : "") + R"({"at":0.5,"colour":[0,0,0],"opacity":0})";
-  EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 256 knots"));
+  EXPECT_THAT(refusal(control_points + "]}}"), HasSubstr("more than 256 control points"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes + 1, ' ')), HasSubstr("over the limit"));
   EXPECT_THAT(refusal(std::string(max_view_message_bytes, '[')), HasSubstr("no JSON object"));
 }

@@ -25,7 +25,8 @@ constexpr const char* round_trips = "round_trips";
 constexpr const char* bytes_up = "bytes_up";
 constexpr const char* bytes_down = "bytes_down";
 constexpr const char* per_frame = "per_frame";
-constexpr const char* lost = "lost";                ///< whether the GL server went away before the viewer did
+constexpr const char* lost =
+    "lost";  ///< the GL server before the viewer; of verify: comparisons beyond the bound of a tile
 constexpr const char* frames_lost = "frames_lost";  ///< ended, and never shown for that
 
 // tiles: null unless --tiles on, on this machine.
@@ -103,7 +104,6 @@ constexpr const char* texels = "texels";
 constexpr const char* bytes_sent = "bytes_sent";
 constexpr const char* bytes_left_out = "bytes_left_out";  ///< of changed textures: what the nodes had already
 constexpr const char* verify = "verify";
-constexpr const char* lost = "lost";  ///< comparisons beyond the bound of a tile
 constexpr const char* worst_tile =
     "worst_tile";  ///< mean excess, 1 is the brightest colour; of tiles and frames
 constexpr const char* worst_frame = "worst_frame";  ///< the frame that it was in

@@ -14,7 +14,7 @@ namespace adversary {
   X(BeginTransformFeedback) X(BindAttribLocation) X(BindBuffer) X(BindBufferBase) X(BindFragDataLocation) \
   X(BindFramebuffer) X(BindImageTexture) X(BindProgramARB) X(BindProgramPipeline) X(BindRenderbuffer) X(BindSampler) \
   X(BindTexture) X(BindVertexArray) X(BlendColor) X(BlendEquation) X(BlendFunc) X(BlendFuncSeparate) \
-  X(BlitFramebuffer) X(BufferData) X(BufferSubData) X(CallList) X(CheckFramebufferStatus) X(Clear) \
+  X(BlitFramebuffer) X(BufferData) X(BufferStorage) X(BufferSubData) X(CallList) X(CheckFramebufferStatus) X(Clear) \
   X(ClearBufferuiv) X(ClearBufferfv) X(ClearColor) X(ClearStencil) X(ClearTexSubImage) X(ClientActiveTexture) X(ClipPlane) X(Color3f) X(Color4f) X(ColorMask) \
   X(CompileShader) X(CopyImageSubData) X(CopyTexSubImage2D) X(CopyTexSubImage3D) X(CreateProgram) X(CreateShader) \
   X(CreateShaderProgramv) X(CullFace) X(DeleteLists) X(DeleteShader) X(DetachShader) X(DeleteTextures) X(DepthFunc) X(DepthMask) X(Disable) \
@@ -23,7 +23,7 @@ namespace adversary {
   X(EndTransformFeedback) X(Finish) X(Fogf) X(Fogfv) X(Fogi) X(FramebufferRenderbuffer) X(FramebufferTexture) \
   X(FramebufferTexture2D) X(FramebufferTextureLayer) X(FrontFace) X(GenBuffers) X(GenFramebuffers) X(GenLists) \
   X(GenProgramPipelines) X(GenProgramsARB) X(GenQueries) X(GenRenderbuffers) X(GenSamplers) X(GenTextures) \
-  X(GenVertexArrays) X(GenerateMipmap) X(GetBufferSubData) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) \
+  X(GenVertexArrays) X(GenerateMipmap) X(GetBufferSubData) X(GetError) X(GetIntegerv) X(GetProgramBinary) X(GetProgramInfoLog) X(ProgramBinary) \
   X(GetProgramiv) X(GetQueryObjectuiv) X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetSubroutineIndex) \
   X(GetTexImage) X(GetUniformBlockIndex) X(GetUniformLocation) X(LinkProgram) X(LoadMatrixf) X(MapBufferRange) X(MatrixMode) \
   X(MemoryBarrier) X(NewList) X(PixelStorei) X(PointSize) X(PolygonMode) X(ProgramParameteri) X(ProgramStringARB) \

@@ -75,10 +75,12 @@ std::string what_is_not_met(const Scenario& scenario, const Verdict& verdict) {
 std::string line_about(const NamedScenario& scenario, const Verdict& verdict) {
   const std::string failure = what_is_not_met(scenario.scenario, verdict);
   return fmt::format(
-      "{} | {} | {} of {} substituted | {} wrong [{}] | worst tile {}/255 in frame {} at ({}, {}) | {}",
+      "{} | {} | {} of {} substituted | {} wrong ({} of them substituted) [{}] | worst tile {}/255 in frame {} "
+      "at ({}, {}) | {}",
       scenario.name, text_of(scenario.scenario.expectation), verdict.substituted, verdict.frames,
-      verdict.wrong_frames.size(), fmt::join(verdict.wrong_frames, " "), verdict.worst.excess,
-      verdict.worst_frame, verdict.worst.x, verdict.worst.y, failure.empty() ? "met" : failure);
+      verdict.wrong_frames.size(), verdict.wrong_substituted, fmt::join(verdict.wrong_frames, " "),
+      verdict.worst.excess, verdict.worst_frame, verdict.worst.x, verdict.worst.y,
+      failure.empty() ? "met" : failure);
 }
 
 }  // namespace adversary

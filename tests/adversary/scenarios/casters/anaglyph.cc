@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario anaglyph() {
   return {.sentence = "Red from the left eye, green and blue from the right one, by colour masks.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = caster_scene(canvas)](int frame) {
               canvas.begin(0.1F, 0.12F, 0.2F);

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario attenuated_maximum() {
   return {.sentence = "A maximum in which values fade with their distance along the ray.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas,

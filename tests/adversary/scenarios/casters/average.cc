@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario average() {
   return {.sentence = "The mean of the values along the ray, through a table of opaque colours.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas, {.fragment = caster_fragment_shader(

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario back_to_front() {
   return {.sentence = "The loop composes from the far end of the ray to the near one.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return
                 [scene = caster_scene(

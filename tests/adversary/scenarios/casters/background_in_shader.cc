@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario background_in_shader() {
   return {
       .sentence = "Without blending; the shader composes over a background of its own, by the window's height.",
+      .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
         return [scene = caster_scene(
                     canvas,

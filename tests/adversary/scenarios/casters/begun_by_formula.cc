@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario begun_by_formula() {
   return {
       .sentence = "Every ray is begun later by a part of a step that a formula of the pixel tells.",
+      .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
         return
             [scene = caster_scene(

@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario blank_then_cut() {
   return {
       .sentence = "The first six frames show nothing; then opacity comes, and what lies beyond z = 0.5 is cut.",
+      .expectation = Expectation::either,
       .key_frames = {6},
       .start = [](Canvas& canvas) -> DrawFrame {
         auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario branch_to_lighting() {
   return {.sentence = "A uniform switches light on at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
@@ -20,7 +21,6 @@ vec3 slope(vec3 p) {
     vec3 g = slope(here);
     if (length(g) > 0.03) colour.rgb *= 0.2 + 0.8 * abs(dot(normalize(g), normalize(vec3(1.0, 2.0, 1.5))));
   })")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("mode", frame < 10 ? 0 : 1);

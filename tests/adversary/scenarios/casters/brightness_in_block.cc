@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario brightness_in_block() {
   return {.sentence = "Brightness lies in a uniform block, which is mapped and changed at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -9,6 +9,7 @@ Scenario centroid_in() {
   return {
       .sentence =
           "The fragment shader declares its coordinate as `centroid in`, the vertex shader as `centroid out`.",
+      .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
         std::string vertex = caster_vertex_shader, fragment = over_caster();
         vertex.replace(vertex.find("out vec3 at"), 3, "centroid out");

@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario channels_changed() {
   return {
       .sentence = "What the texture hands out as green is its value, and from frame 10 on one, by a swizzle.",
+      .expectation = Expectation::either,
       .key_frames = {10},
       .start = [](Canvas& canvas) -> DrawFrame {
         auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario coarser_level() {
   return {.sentence = "Texels of a coarser level of detail are shown from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

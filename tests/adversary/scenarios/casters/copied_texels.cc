@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario copied_texels() {
   return {.sentence = "Texels of another texture are copied into the volume by the driver at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas);

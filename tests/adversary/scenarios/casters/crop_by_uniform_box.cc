@@ -7,6 +7,7 @@ namespace adversary::casters {
 
 Scenario crop_by_uniform_box() {
   return {.sentence = "Two corners in uniforms crop the volume; the user drags one of them from frame 8 to 17.",
+          .expectation = Expectation::either,
           .key_frames = {8, 9, 10, 11, 12, 13, 14, 15, 16, 17},
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(canvas, {.fragment = over_caster("uniform vec3 low, high;", R"(

@@ -7,6 +7,7 @@ namespace adversary::casters {
 
 Scenario entry_from_texture() {
   return {.sentence = "Back faces are drawn into a float texture first; rays end where it tells.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto back = std::make_shared<GlslProgram>(canvas, caster_vertex_shader, R"(#version 330 core
 in vec3 at;

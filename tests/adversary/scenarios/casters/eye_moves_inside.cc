@@ -7,6 +7,7 @@ Scenario eye_moves_inside() {
   return {.sentence =
               "The eye moves through the box's front face into the volume; inside, front faces are cut by the "
               "near plane.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(canvas)](int frame) {
               scene->settings.orbit.distance = 1.6F - 0.05F * static_cast<float>(frame);

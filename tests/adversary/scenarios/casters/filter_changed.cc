@@ -5,13 +5,13 @@ namespace adversary::casters {
 
 Scenario filter_changed() {
   return {.sentence = "Interpolation is switched off at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 )",
                                                                        R"(
 )")});
-
             return [&canvas, scene](int frame) {
               scene->program.use();
               if (frame == 10) {

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario first_hit() {
   return {.sentence = "The first sample above a threshold, in the colour of its place.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas, {.fragment = caster_fragment_shader({.before = "  shown = vec4(0.0);",

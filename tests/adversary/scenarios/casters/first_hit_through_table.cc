@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario first_hit_through_table() {
   return {.sentence = "The first sample above a threshold, opaque, in its colour of the table.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas, {.fragment = caster_fragment_shader(

@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario first_maximum() {
   return {
       .sentence = "The first maximum above a threshold, not the largest one.",
+      .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
         return [scene = caster_scene(canvas, {.fragment = caster_fragment_shader(
                                                   {.before = "  float largest = 0.0;",

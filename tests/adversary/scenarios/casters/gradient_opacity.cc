@@ -4,9 +4,10 @@
 namespace adversary::casters {
 
 Scenario gradient_opacity() {
-  return {.sentence = "Opacity grows with the gradient.", .start = [](Canvas& canvas) -> DrawFrame {
+  return {.sentence = "Opacity grows with the gradient.",
+          .expectation = Expectation::either,
+          .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
-
 vec3 slope(vec3 p) {
   const float d = 0.02;
   return vec3(texture(volume, p + vec3(d, 0, 0)).r - texture(volume, p - vec3(d, 0, 0)).r,
@@ -15,7 +16,6 @@ vec3 slope(vec3 p) {
 })",
                                                                        R"(
   colour.a *= clamp(6.0 * length(slope(here)), 0.0, 1.0);)")});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

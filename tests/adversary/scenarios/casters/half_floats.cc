@@ -4,13 +4,14 @@
 namespace adversary::casters {
 
 Scenario half_floats() {
-  return {.sentence = "Texels of half floats.", .start = [](Canvas& canvas) -> DrawFrame {
+  return {.sentence = "Texels of half floats.",
+          .expectation = Expectation::either,
+          .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 )",
                                                                        R"(
 )"),
                                                .format = {.texel = Texel::half}});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

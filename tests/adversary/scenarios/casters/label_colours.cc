@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario label_colours() {
   return {.sentence = "A volume of labels, whole numbers, tells which of three colours tints the sample.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 uniform usampler3D labels;)",

@@ -7,13 +7,13 @@ namespace adversary::casters {
 
 Scenario late_fade_along_z() {
   return {.sentence = "A uniform fades opacity along z, a little more in every frame from 10 to 19.",
+          .expectation = Expectation::either,
           .key_frames = {10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 uniform float strength;)",
                                                                        R"(
   colour.a *= 1.0 - strength * here.z;)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("strength", 0.1F * static_cast<float>(std::clamp(frame - 9, 0, 10)));

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario late_gradient_opacity() {
   return {.sentence = "A uniform lets opacity follow the gradient, from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
@@ -17,7 +18,6 @@ vec3 slope(vec3 p) {
 })",
                                                                        R"(
   colour.a *= mix(1.0, clamp(6.0 * length(slope(here)), 0.0, 1.0), strength);)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("strength", frame < 10 ? 0.0F : 1.0F);

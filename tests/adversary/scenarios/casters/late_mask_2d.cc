@@ -7,6 +7,7 @@ namespace adversary::casters {
 
 Scenario late_mask_2d() {
   return {.sentence = "A mask over x and z shows everything until a hole is cut into it at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario late_mask_3d() {
   return {.sentence = "A volume of masks shows everything until a hole is cut into it at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -5,9 +5,9 @@ namespace adversary::casters {
 
 Scenario lighting_guarded() {
   return {.sentence = "Diffuse light only where the gradient is steep enough for a direction.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
-
 vec3 slope(vec3 p) {
   const float d = 0.02;
   return vec3(texture(volume, p + vec3(d, 0, 0)).r - texture(volume, p - vec3(d, 0, 0)).r,
@@ -17,7 +17,6 @@ vec3 slope(vec3 p) {
                                                                        R"(
   vec3 g = slope(here);
   if (length(g) > 0.05) colour.rgb *= 0.2 + 0.8 * abs(dot(normalize(g), normalize(vec3(1.0, 2.0, 1.5))));)")});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario maximum_shaded_by_depth() {
   return {.sentence = "A maximum whose colour darkens with the depth at which it lies.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return
                 [scene = caster_scene(canvas, {.fragment = caster_fragment_shader(

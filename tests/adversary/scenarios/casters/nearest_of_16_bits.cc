@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario nearest_of_16_bits() {
   return {.sentence = "16 bits without interpolation; samples of exactly 777 are white.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 )",
@@ -18,7 +19,6 @@ Scenario nearest_of_16_bits() {
                                                                             : waves(x, y, z) * 1300 / 65535;
                                                                }),
                                                .format = {.texel = Texel::unsigned16, .filter = GL_NEAREST}});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

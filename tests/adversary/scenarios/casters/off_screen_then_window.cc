@@ -9,6 +9,7 @@ namespace adversary::casters {
 Scenario off_screen_then_window() {
   return {.sentence =
               "Until frame 9 off screen and then shown, from frame 10 on into the window; colours depend on z.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto offscreen = std::make_shared<Offscreen>(canvas, GL_RGBA8);

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario opacities_added_up() {
   return {.sentence = "Colours and opacities are added up, not composed.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas, {.fragment = caster_fragment_shader(

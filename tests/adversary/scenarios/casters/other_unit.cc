@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario other_unit() {
   return {.sentence = "The sampler is pointed at another unit, with another volume, at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

@@ -7,6 +7,7 @@ namespace adversary::casters {
 
 Scenario over_whole_window() {
   return {.sentence = "Two triangles over the whole window; the shader finds where rays meet the box.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = R"(#version 330 core
 uniform sampler3D volume;

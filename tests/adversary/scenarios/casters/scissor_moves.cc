@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario scissor_moves() {
   return {.sentence = "A scissor box that moves shows a part of the volume.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = caster_scene(canvas)](int frame) {
               canvas.begin(0.1F, 0.12F, 0.2F);

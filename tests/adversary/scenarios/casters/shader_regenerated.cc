@@ -6,6 +6,7 @@ namespace adversary::casters {
 Scenario shader_regenerated() {
   return {
       .sentence = "The program is linked again at frame 10, with a shader that tints by place.",
+      .expectation = Expectation::either,
       .key_frames = {10},
       .start = [](Canvas& canvas) -> DrawFrame {
         auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

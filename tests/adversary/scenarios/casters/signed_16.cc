@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario signed_16() {
   return {.sentence = "Signed normalised texels of 16 bits, from -1 to 1.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 )",
@@ -12,7 +13,6 @@ Scenario signed_16() {
   colour = texture(table, vec2(0.5 + 0.5 * value, 0.5));)"),
                                                .grid = scaled(sampled(48, waves), 2, -1),
                                                .format = {.texel = Texel::signed16}});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

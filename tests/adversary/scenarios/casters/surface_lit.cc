@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario surface_lit() {
   return {.sentence = "A lit surface where values first pass a threshold, which is edited at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(canvas,

@@ -7,6 +7,7 @@ namespace adversary::casters {
 
 Scenario table_drawn_into() {
   return {.sentence = "At frame 10 the program clears a part of its table, as a framebuffer.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(

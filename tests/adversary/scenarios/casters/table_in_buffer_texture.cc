@@ -6,6 +6,7 @@ namespace adversary::casters {
 
 Scenario table_in_buffer_texture() {
   return {.sentence = "The table is a buffer texture, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::buffer_texture;

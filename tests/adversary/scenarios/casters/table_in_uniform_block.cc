@@ -6,6 +6,7 @@ namespace adversary::casters {
 
 Scenario table_in_uniform_block() {
   return {.sentence = "The table is a uniform block, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::uniform_block;

@@ -5,6 +5,7 @@ namespace adversary::casters {
 
 Scenario two_samples_a_step() {
   return {.sentence = "Segments: the sample and the one before look up the table at their mean.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = caster_scene(
                         canvas,

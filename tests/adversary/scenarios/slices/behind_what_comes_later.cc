@@ -8,6 +8,7 @@ namespace adversary::slices {
 
 Scenario behind_what_comes_later() {
   return {.sentence = "Slices write depth; triangles that are drawn afterwards are hidden by them.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto opaque = std::make_shared<GlslProgram>(canvas, slice_vertex_shader, R"(#version 330 core
 in vec3 at;

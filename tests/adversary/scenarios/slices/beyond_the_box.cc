@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario beyond_the_box() {
   return {.sentence = "Slices reach beyond the volume, where the texture goes on as it ends.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = slice_scene(canvas, {.vertex = R"(#version 330 core
 in vec3 position;

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario brightness_in_block() {
   return {.sentence = "Brightness lies in a uniform block, which is mapped and changed at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

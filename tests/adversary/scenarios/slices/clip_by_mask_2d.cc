@@ -7,6 +7,7 @@ namespace adversary::slices {
 
 Scenario clip_by_mask_2d() {
   return {.sentence = "A mask over x and y tells what shows; it is edited at frame 14.",
+          .expectation = Expectation::either,
           .key_frames = {14},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

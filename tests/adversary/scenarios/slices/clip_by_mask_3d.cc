@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario clip_by_mask_3d() {
   return {.sentence = "A second volume tells what shows; a corner of it is cleared at frame 14.",
+          .expectation = Expectation::either,
           .key_frames = {14},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

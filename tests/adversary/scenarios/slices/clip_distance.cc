@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario clip_distance() {
   return {.sentence = "A clip distance of the vertex shader, by a uniform, cuts the drawing from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.vertex = R"(#version 330 core

@@ -7,13 +7,13 @@ namespace adversary::slices {
 
 Scenario clip_z_by_uniform() {
   return {.sentence = "A plane across z is dragged from frame 10 to 19.",
+          .expectation = Expectation::either,
           .key_frames = {10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 uniform float limit;)",
                                                                                 R"(
   if (at.z > limit) discard;)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set(

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario coarser_level() {
   return {.sentence = "Texels of a coarser level of detail are shown from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

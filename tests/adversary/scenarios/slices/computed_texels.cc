@@ -8,6 +8,7 @@ namespace adversary::slices {
 
 Scenario computed_texels() {
   return {.sentence = "A compute shader writes into the volume at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto compute = std::make_shared<GlslProgram>(canvas, std::vector<ShaderText>{{GL_COMPUTE_SHADER,

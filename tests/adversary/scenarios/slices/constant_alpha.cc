@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario constant_alpha() {
   return {.sentence = "Blended by a constant opacity, which changes at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = slice_scene(canvas)](int frame) {

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario empty_then_uploaded() {
   return {.sentence = "The volume is empty until frame 8; its opacity grows along x.",
+          .expectation = Expectation::either,
           .key_frames = {8},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
@@ -12,7 +13,6 @@ Scenario empty_then_uploaded() {
                                                                                 R"(
   colour.a *= value > 0.02 ? at.x : 0.0;)"),
                                               .grid = scaled(sampled(48, waves), 0)});
-
             return [&canvas, scene](int frame) {
               scene->program.use();
               canvas.gl.ActiveTexture(GL_TEXTURE0);

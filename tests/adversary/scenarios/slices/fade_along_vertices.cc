@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario fade_along_vertices() {
   return {.sentence = "A second output of the vertex shader fades opacity towards the volume's faces.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = slice_scene(
                         canvas, {.fragment = slice_fragment_shader("in float fade;", "  colour.a *= fade;"),

@@ -5,13 +5,13 @@ namespace adversary::slices {
 
 Scenario filter_changed() {
   return {.sentence = "Interpolation is switched off at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 )",
                                                                                 R"(
 )")});
-
             return [&canvas, scene](int frame) {
               scene->program.use();
               if (frame == 10) {

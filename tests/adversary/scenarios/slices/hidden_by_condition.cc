@@ -6,6 +6,7 @@ namespace adversary::slices {
 Scenario hidden_by_condition() {
   return {.sentence =
               "The volume is drawn under a condition: in frames 10 to 19 a query before it has found nothing.",
+          .expectation = Expectation::either,
           .key_frames = {10, 20},
           .start = [](Canvas& canvas) -> DrawFrame {
             GLuint query = 0;

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario label_colours() {
   return {.sentence = "A volume of labels, whole numbers, tells which of three colours tints the sample.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 uniform usampler3D labels;)",

@@ -5,13 +5,13 @@ namespace adversary::slices {
 
 Scenario late_bands() {
   return {.sentence = "Bands across z become white where the value is high, from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 uniform bool banded;)",
                                                                                 R"(
   if (banded && fract(4.0 * at.z) < 0.4 && value > 0.55) colour.rgb = vec3(1.0);)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("banded", frame < 10 ? 0 : 1);

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario late_gradient_opacity() {
   return {.sentence = "A uniform lets opacity follow the gradient, from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
@@ -17,7 +18,6 @@ vec3 slope(vec3 p) {
 })",
                                                                                 R"(
   colour.a *= mix(1.0, clamp(6.0 * length(slope(at)), 0.0, 1.0), strength);)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("strength", frame < 10 ? 0.0F : 1.0F);

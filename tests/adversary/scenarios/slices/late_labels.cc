@@ -7,6 +7,7 @@ namespace adversary::slices {
 
 Scenario late_labels() {
   return {.sentence = "All labels are 0 until frame 10, when a box of them becomes 1.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

@@ -5,13 +5,13 @@ namespace adversary::slices {
 
 Scenario late_tint_along_z() {
   return {.sentence = "A uniform mixes a tint along z in, from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 uniform float strength;)",
                                                                                 R"(
   colour.rgb = mix(colour.rgb, colour.rgb * vec3(1.0 - at.z, 1.0, at.z), strength);)")});
-
             return [scene](int frame) {
               scene->program.use();
               scene->program.set("strength", frame < 10 ? 0.0F : 1.0F);

@@ -4,9 +4,10 @@
 namespace adversary::slices {
 
 Scenario lighting() {
-  return {.sentence = "Diffuse light by central differences.", .start = [](Canvas& canvas) -> DrawFrame {
+  return {.sentence = "Diffuse light by central differences.",
+          .expectation = Expectation::either,
+          .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
-
 vec3 slope(vec3 p) {
   const float d = 0.02;
   return vec3(texture(volume, p + vec3(d, 0, 0)).r - texture(volume, p - vec3(d, 0, 0)).r,
@@ -16,7 +17,6 @@ vec3 slope(vec3 p) {
                                                                                 R"(
   vec3 g = slope(at);
   colour.rgb *= 0.3 + 0.7 * abs(dot(normalize(g + 1e-5), normalize(vec3(1.0, 2.0, 1.5))));)")});
-
             return [scene](int frame) { scene->draw(frame); };
           }};
 }

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario modulated_colour_changes() {
   return {.sentence = "Fixed function: intensities modulated by a colour of its own for each slice.",
+          .expectation = Expectation::either,
           .profile = Profile::compatibility,
           .start = [](Canvas& canvas) -> DrawFrame {
             upload_volume(canvas, 0, sampled(48, waves), {.shown = Shown::intensity});

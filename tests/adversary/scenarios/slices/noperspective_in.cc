@@ -9,6 +9,7 @@ Scenario noperspective_in() {
   return {.sentence =
               "The fragment shader declares its coordinate as `noperspective in`, the vertex shader as "
               "`noperspective out`.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             std::string vertex = slice_vertex_shader, fragment = slice_fragment_shader();
             vertex.replace(vertex.find("out vec3 at"), 3, "noperspective out");

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario other_unit() {
   return {.sentence = "The sampler is pointed at another unit, with another volume, at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

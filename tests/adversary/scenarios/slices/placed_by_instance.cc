@@ -7,6 +7,7 @@ namespace adversary::slices {
 
 Scenario placed_by_instance() {
   return {.sentence = "Instances of one quad, placed across z by their number.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.vertex = R"(#version 330 core
 in vec3 position;

@@ -7,6 +7,7 @@ namespace adversary::slices {
 
 Scenario placed_by_uniform() {
   return {.sentence = "One quad, drawn once for each slice across z; a uniform tells its place.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.vertex = R"(#version 330 core
 in vec3 position;

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario repeated_texture() {
   return {.sentence = "Texture coordinates run to 2 and the texture repeats.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.vertex = R"(#version 330 core
 in vec3 position;

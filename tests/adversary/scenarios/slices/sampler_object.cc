@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario sampler_object() {
   return {.sentence = "A sampler object without interpolation is bound from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             GLuint sampler = 0;

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario scissor_moves() {
   return {.sentence = "A scissor box that moves shows a part of the volume.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = slice_scene(canvas)](int frame) {
               canvas.begin(0.1F, 0.12F, 0.2F);

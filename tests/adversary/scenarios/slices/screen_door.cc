@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario screen_door() {
   return {.sentence = "Every other pixel of a chequered pattern is discarded, from frame 10 on.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = slice_scene(canvas,

@@ -8,6 +8,7 @@ namespace adversary::slices {
 Scenario separate_programs() {
   return {
       .sentence = "A pipeline of two separate programs, of which the fragment one is exchanged at frame 10.",
+      .expectation = Expectation::either,
       .key_frames = {10},
       .start = [](Canvas& canvas) -> DrawFrame {
         const Gl& gl = canvas.gl;

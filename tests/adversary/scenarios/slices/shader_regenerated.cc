@@ -5,13 +5,13 @@ namespace adversary::slices {
 
 Scenario shader_regenerated() {
   return {.sentence = "The program is linked again at frame 10, with a shader that tints by place.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 )",
                                                                                 R"(
 )")});
-
             return [scene](int frame) {
               scene->program.use();
               if (frame == 10) {

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario stencil() {
   return {.sentence = "A stencil shows the volume in the window's left half only.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = slice_scene(canvas)](int frame) {
               canvas.begin(0.1F, 0.12F, 0.2F);

@@ -6,6 +6,7 @@ namespace adversary::slices {
 
 Scenario subroutine_changed() {
   return {.sentence = "Another subroutine, which tints by place, is chosen at frame 10.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(

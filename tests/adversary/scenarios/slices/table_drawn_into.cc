@@ -7,6 +7,7 @@ namespace adversary::slices {
 
 Scenario table_drawn_into() {
   return {.sentence = "At frame 10 the program clears a part of its table, as a framebuffer.",
+          .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(

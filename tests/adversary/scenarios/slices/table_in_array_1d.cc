@@ -6,6 +6,7 @@ namespace adversary::slices {
 
 Scenario table_in_array_1d() {
   return {.sentence = "The table is a layer of a 1-D array texture, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::array_1d;

@@ -6,6 +6,7 @@ namespace adversary::slices {
 
 Scenario table_in_rectangle() {
   return {.sentence = "The table is a rectangle texture, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::rectangle;

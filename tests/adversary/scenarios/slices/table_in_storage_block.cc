@@ -6,6 +6,7 @@ namespace adversary::slices {
 
 Scenario table_in_storage_block() {
   return {.sentence = "The table is a shader storage block, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::storage_block;

@@ -6,6 +6,7 @@ namespace adversary::slices {
 
 Scenario table_in_uniform_array() {
   return {.sentence = "The table is an array of uniforms, edited at frame 12.",
+          .expectation = Expectation::either,
           .key_frames = {12},
           .start = [](Canvas& canvas) -> DrawFrame {
             constexpr TableKind kind = TableKind::uniform_array;

@@ -8,6 +8,7 @@ namespace adversary::slices {
 Scenario texture_matrix() {
   return {
       .sentence = "Fixed function: the texture matrix turns the volume inside its box, further in every frame.",
+      .expectation = Expectation::either,
       .profile = Profile::compatibility,
       .start = [](Canvas& canvas) -> DrawFrame {
         upload_volume(canvas, 0, coloured(sampled(48, waves)), {.shown = Shown::colour});

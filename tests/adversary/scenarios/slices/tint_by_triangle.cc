@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario tint_by_triangle() {
   return {.sentence = "Every third triangle is tinted, by gl_PrimitiveID.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return
                 [scene = slice_scene(

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario two_programs_in_turn() {
   return {.sentence = "Even frames are drawn by a plain program, odd ones by one that tints by place.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto plain = slice_scene(canvas);
             auto tinting =

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario two_views() {
   return {.sentence = "The window's halves show the volume from two sides.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = slice_scene(canvas)](int frame) {
               canvas.begin(0.1F, 0.12F, 0.2F);

@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario warped_coordinates() {
   return {.sentence = "The fragment shader bends the coordinate before it samples.",
+          .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
             return [scene = slice_scene(canvas, {.fragment = slice_fragment_shader("", R"(
   vec3 bent = at + 0.06 * sin(9.0 * at.yzx);

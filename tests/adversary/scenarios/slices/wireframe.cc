@@ -5,6 +5,7 @@ namespace adversary::slices {
 
 Scenario wireframe() {
   return {.sentence = "Slices are drawn as lines in frames 10 to 19.",
+          .expectation = Expectation::either,
           .key_frames = {10, 20},
           .start = [](Canvas& canvas) -> DrawFrame {
             return [&canvas, scene = slice_scene(canvas)](int frame) {

@@ -110,7 +110,7 @@ TEST(Architecture, WhatLivesInAViewerReadsItsEnvironmentSecurely) {
       "(^|[^_a-z])"
       "getenv"
       "[^a-z_]");
-  for (const SourceFile& file : files()) {
+  for (const SourceFile& file : project_files()) {
     const std::string_view module = module_of(file.path);
     if (!is_code(file) || module == "apps" || module == "tests") continue;
     EXPECT_FALSE(std::regex_search(file.text, insecure)) << file.path << ": use secure_getenv()";

@@ -208,7 +208,7 @@ TEST_F(Bricks, ThatWaitWhenTheNodesAreLostAreShownAllTheSame) {
     if (number != 5 || lost) return;
     lost = true;
     const auto lock = app->session().lock();
-    app->session().lost("the test has taken the nodes away");
+    app->session().lost(compositor::ServiceLost("the test has taken the nodes away"));
   };
   EXPECT_GE(substituted_in(drawing), 5U) << "the bricks that waited";
   EXPECT_GE(app->left(), 1U) << "bricks that came later";

@@ -32,9 +32,9 @@ struct FrameParts {
 FrameParts cast_parts(const volume::VolumeDescription& volume, std::span<const std::byte> texels,
                       const volume::RenderRequest& request, const volume::KdTree& tree);
 
-/// As if every sample of a ray were taken and showed something: no brick is empty, and there is no early ray termination. The
-/// rays are the nodes' own (volume/raycast/ray_setup.h), for samples on planes or steps; the volume needs no
-/// texels, and may be larger than any memory.
+/// As if every sample of a ray were taken and showed something: no brick is empty, and there is no early ray
+/// termination. The rays are the nodes' own (volume/raycast/ray_setup.h), for samples on planes or steps; the
+/// volume needs no texels, and may be larger than any memory.
 FrameParts parts_of_rays(const volume::VolumeDescription& volume, const volume::RenderRequest& request,
                          const volume::KdTree& tree);
 

@@ -24,12 +24,10 @@ bool in_unit_range(double value) {
 
 PresetFile::PresetFile(const std::string& path) : path_(path) {
   const auto fail = [&](const std::string& what) {
-    throw Error(
-        ExitCode::bad_file,
-        fmt::format(
-            "{}: {}; write {{\"knots\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
-            "…]}}, values between 0 and 1, sorted by \"at\"",
-            path, what));
+    throw Error(ExitCode::bad_file,
+                fmt::format("{}: {}; write {{\"knots\": [{{\"at\": 0, \"colour\": [0, 0, 0], \"opacity\": 0}}, "
+                            "…]}}, values between 0 and 1, sorted by \"at\"",
+                            path, what));
   };
   std::ifstream file(path);
   if (!file) fail("cannot be read");

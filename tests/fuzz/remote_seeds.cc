@@ -126,7 +126,8 @@ Seeds gl_server_seeds() {
       {"calls", both},
       {"plain", between_application_and_gl_server(MessageType::image, some_image(PixelCoding::plain))},
       {"jpeg", between_application_and_gl_server(MessageType::refined, some_image(PixelCoding::jpeg))},
-      {"accepted", between_application_and_gl_server(MessageType::accepted, encode(GlServerVersions{450, 310}))},
+      {"accepted",
+       between_application_and_gl_server(MessageType::accepted, encode(GlServerVersions{450, 310}))},
       {"answered", between_application_and_gl_server(MessageType::answered, encode(answer))},
   };
 }

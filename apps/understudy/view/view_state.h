@@ -37,7 +37,7 @@ class ViewState {
   void learn(double ms);
 
   ViewCamera camera_;
-  ImageSettings image_;           ///< but for the camera
+  ImageSettings image_;  ///< but for the camera
   volume::Light light_;  ///< when there is light
   bool still_ = true;
   bool lossless_moving_ = false;

@@ -39,12 +39,10 @@ TEST(PresetFile, SaysWhatIsWrong) {
   EXPECT_THAT(trouble("{\"knots\": [" + point + "]}"), HasSubstr("1 control points are too few"));
   EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 0, "colour": [1, 1, 1], "opacity": 0}]})"),
               HasSubstr("control point 2 lies before"));
-  EXPECT_THAT(
-      trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, 1, 1], "opacity": -1}]})"),
-      HasSubstr("control point 2 holds -1"));
-  EXPECT_THAT(
-      trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, null, 1], "opacity": 1}]})"),
-      HasSubstr("no transfer function"));
+  EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, 1, 1], "opacity": -1}]})"),
+              HasSubstr("control point 2 holds -1"));
+  EXPECT_THAT(trouble("{\"knots\": [" + point + R"(, {"at": 1, "colour": [1, null, 1], "opacity": 1}]})"),
+              HasSubstr("no transfer function"));
   EXPECT_THROW(PresetFile(folder.file("nothing")), Error);
 }
 

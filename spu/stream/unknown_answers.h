@@ -1,4 +1,4 @@
-// Room for answers whose extent the registry does not tell.
+// Memory for answers whose extent the registry does not tell.
 #pragma once
 
 #include <cstddef>

@@ -28,7 +28,7 @@ using ::testing::Not;
 constexpr std::size_t bytes = 27;
 
 /// A folder `data` to load from, and a file outside.
-class Files : public clients::Stage {
+class Files : public clients::CommandTest {
  protected:
   Files() {
     fs::create_directories(file("data/below"));

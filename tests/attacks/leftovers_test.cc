@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Leftovers : public clients::Stage {
+class Leftovers : public clients::CommandTest {
  protected:
   /// Files through which ranks share memory.
   std::ptrdiff_t segments() const {

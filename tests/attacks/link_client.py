@@ -12,7 +12,7 @@ MESSAGE_MAGIC = 0x59445355
 MESSAGE_VERSION = 11
 MESSAGE_HEAD = struct.Struct("<IHHQQ")
 BLOCK_BYTES = 1 << 18
-TYPES = {"hello_client": 1, "hello_nodes": 2, "welcome": 12, "refused": 15, "calls": 24, "answered": 25, "image": 26,
+TYPES = {"hello_client": 1, "hello_nodes": 2, "accepted": 12, "refused": 15, "calls": 24, "answered": 25, "image": 26,
          "line_alive": 28}
 NAMES = {number: name for name, number in TYPES.items()}
 

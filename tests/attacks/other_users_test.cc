@@ -35,7 +35,7 @@ Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
 }
 
-class OtherUsers : public clients::Stage {
+class OtherUsers : public clients::CommandTest {
  protected:
   OtherUsers() {
     // All users can come here, as to /tmp.

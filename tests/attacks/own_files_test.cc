@@ -19,7 +19,7 @@ using namespace understudy::compositor;
 using ::testing::HasSubstr;
 using understudy::launcher::RunFolder;
 
-using OwnFiles = clients::Stage;
+using OwnFiles = clients::CommandTest;
 
 void put(const fs::path& file) {
   std::ofstream(file) << "precious";

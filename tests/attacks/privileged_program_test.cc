@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-using PrivilegedProgram = Stage;
+using PrivilegedProgram = CommandTest;
 
 TEST_F(PrivilegedProgram, LoadsNoDriverThatTheEnvironmentNames) {
   const std::map<std::string, std::string> environment{{"UNDERSTUDY_DRIVER_DIR", FOREIGN_DRIVERS}};

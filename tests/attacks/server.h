@@ -12,7 +12,7 @@ namespace attacks {
 
 class Server {
  public:
-  /// In the folder of a clients::Stage. Throws std::runtime_error when it does not start.
+  /// In the folder of a clients::CommandTest. Throws std::runtime_error when it does not start.
   explicit Server(const std::filesystem::path& folder, const clients::Words& options = {}, int nodes = 1)
       : socket_(folder / "nodes.sock"),
         process_({command(options, nodes), {{"XDG_RUNTIME_DIR", folder / "runtime"}}}, own_folder(folder)) {

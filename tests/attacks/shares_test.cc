@@ -121,7 +121,7 @@ volume::RenderRequest request_of(int edge, int samples) {
   return request;
 }
 
-class Shares : public clients::Stage {
+class Shares : public clients::CommandTest {
  protected:
   static std::unique_ptr<LoadingService> client_of(const Server& server) {
     auto service = server.loading_service();
@@ -154,7 +154,7 @@ TEST_F(Shares, MoreSamplesThanAnybodyNeedsAreRefusedAtOnce) {
   EXPECT_EQ(server.process().err(), "");
 }
 
-TEST_F(Shares, APictureThatTakesTooLongIsGivenUpAndTheNextOnesAreRight) {
+TEST_F(Shares, AnImageThatTakesTooLongIsGivenUpAndTheNextOnesAreRight) {
   Server server(file(""), {"--image-time", "100"});
   const auto attacker = client_of(server);
   const auto neighbour = client_of(server);
@@ -165,7 +165,7 @@ TEST_F(Shares, APictureThatTakesTooLongIsGivenUpAndTheNextOnesAreRight) {
   EXPECT_EQ(server.process().err(), "");
 }
 
-TEST_F(Shares, TheClientNextDoorKeepsItsImages) {
+TEST_F(Shares, TheClientBesideItKeepsItsImages) {
   Server server(file(""), {"--image-time", "300"});
   const auto neighbour = client_of(server);
   const std::vector<float> right = image(*neighbour);

@@ -71,7 +71,7 @@ TEST_F(Truth, WhereSubstitutionIsRequiredTheStatusTells) {
   EXPECT_EQ(run(under({"--require"}) + Words{"sh", "-c", "exit 7"}).status, 7) << "the viewer's own";
 }
 
-std::string command_of(pid_t process) {
+std::string command_line_of(pid_t process) {
   std::string words = clients::contents(fmt::format("/proc/{}/cmdline", process));
   std::replace(words.begin(), words.end(), '\0', ' ');
   return words;
@@ -92,10 +92,10 @@ class LostServer : public Truth {
   Outcome lose_server(const Words& options) {
     Words words = clients::RemoteViewer::without_opengl() + viewer(2000);
     std::erase(words, "--offscreen");
-    Child child(on_stage(under(Words{"--remote"} + options) + words, on_display()), file(""));
+    Child child(CommandTest::command_of(under(Words{"--remote"} + options) + words, on_display()), file(""));
     EXPECT_TRUE(clients::comes_true([&] { return !child.running() || frames_shown() > 3; }));
     for (const pid_t process : processes("understudy"))
-      if (command_of(process).find("stage --socket") != std::string::npos) ::kill(process, SIGKILL);
+      if (command_line_of(process).find("gl-server --socket") != std::string::npos) ::kill(process, SIGKILL);
     return child.finish();
   }
 };

@@ -10,7 +10,7 @@ namespace understudy::spu::program {
 
 using namespace glslang;
 
-/// The sources that are listed, each once. Variables of one name in several shaders of a stage are one.
+/// The sources that are listed, each once. Variables of one name in several shaders of one stage are one.
 class Walk::SourceList {
  public:
   SourceList(const Variables& variables, const std::vector<Source>& own, std::vector<Source>& listed)

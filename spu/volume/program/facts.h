@@ -38,7 +38,7 @@ enum class SourceKind : std::uint8_t {
   unknown,    ///< what the analysis does not follow; `name` says what
 };
 
-/// One number that a stage can read.
+/// One number that a shader stage can read.
 struct Source {
   SourceKind kind = SourceKind::unknown;
   std::string name;  ///< as OpenGL queries spell it: "light[1].colour", "gl_TexCoord[0]"; of texels the sampler
@@ -127,7 +127,7 @@ struct Input {
   bool sample = false;
 };
 
-/// One component of a stage's output.
+/// One component of a shader stage's output.
 struct Output {
   std::string name;  ///< "gl_FragColor", "gl_FragData[1]", "colour", "gl_FragDepth", "gl_Position"
   int component = 0;

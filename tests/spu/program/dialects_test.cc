@@ -1,4 +1,4 @@
-// Every dialect that a driver may be given: all versions, several shaders of a stage, stages other than
+// Every dialect that a driver may be given: all versions, several shaders of one stage, stages other than
 // fragments.
 #include <gmock/gmock.h>
 

@@ -3,17 +3,16 @@
 
 namespace adversary::slices {
 
-Scenario screen_door() {
+Scenario chequered_discard() {
   return {.sentence = "Every other pixel of a chequered pattern is discarded, from frame 10 on.",
           .expectation = Expectation::either,
           .key_frames = {10},
           .start = [](Canvas& canvas) -> DrawFrame {
-            return [scene = slice_scene(canvas,
-                                        {.fragment = slice_fragment_shader("uniform bool injection method;", R"(
+            return [scene = slice_scene(canvas, {.fragment = slice_fragment_shader("uniform bool chequered;", R"(
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  if (injection method && (pixel.x + pixel.y) % 2 == 0) discard;)")})](int frame) {
+  if (chequered && (pixel.x + pixel.y) % 2 == 0) discard;)")})](int frame) {
               scene->program.use();
-              scene->program.set("entry", frame < 10 ? 0 : 1);
+              scene->program.set("chequered", frame < 10 ? 0 : 1);
               scene->draw(frame);
             };
           }};

@@ -1,6 +1,6 @@
 """A client with the secret names addresses in its stream: nothing of the OpenGL server's memory comes back.
 
-    stage_memory.py UNDERSTUDY
+    server_memory.py UNDERSTUDY
 
 The session goes on, or ends; the server says which call was left out.
 """
@@ -28,14 +28,14 @@ def record(name, *arguments):
 
 
 class Session:
-    """Calls to a stage (spu/remote/gl_server_protocol.h)."""
+    """Calls to a GL server (spu/remote/gl_server_protocol.h)."""
 
     def __init__(self, port, secret):
         self.chunks = 0
         self.link = LinkClient(port, secret, to_server=True)
         self.link.send("hello_client")
-        if self.link.receive()[0] != "welcome":
-            raise SystemExit("the stage does not acceptance its client")
+        if self.link.receive()[0] != "accepted":
+            raise SystemExit("the GL server does not accept its client")
         self.make(record("understudy.context", 1, 0, 1, 450, 2, 8, 8, 8, 8, 24, 8, 0, 1), record("understudy.current", 1, 64, 64, 0))
 
     def make(self, *records, answer=False):
@@ -53,7 +53,7 @@ def server(program, folder):
     environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder), "SECRET_OF_THE_SERVER": WANTED.decode()}
     log = (folder / "log").open("wb")
     return subprocess.Popen(
-        [program, "serve", "-n", "1", "--socket", folder / "nodes.sock", "--listen", ":0", "--secret-file", folder / "secret", "--stage"],
+        [program, "serve", "-n", "1", "--socket", folder / "nodes.sock", "--listen", ":0", "--secret-file", folder / "secret", "--gl-server"],
         stdout=log, stderr=log, env=environment, cwd=folder)
 
 
@@ -68,12 +68,12 @@ def port_of(process, folder):
     raise SystemExit(f"the server does not listen:\n{(folder / 'log').read_text(errors='replace')}")
 
 
-def stage_of_client(process):
-    """The newest process of the server's that is a stage, and its stack."""
+def server_of_client(process):
+    """The newest process of the server's that is a GL server, and its stack."""
     listed = subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True).stdout
     rows = [line.split(None, 2) for line in listed.splitlines()[1:]]
-    stages = [int(row[0]) for row in rows if row[1] == str(process.pid) and "understudy stage" in row[2]]
-    children = [int(row[0]) for row in rows if int(row[1]) in stages]
+    servers = [int(row[0]) for row in rows if row[1] == str(process.pid) and "understudy gl-server" in row[2]]
+    children = [int(row[0]) for row in rows if int(row[1]) in servers]
     return max(children)
 
 
@@ -140,7 +140,7 @@ def main():
             port = port_of(process, folder)
             secret = (folder / "secret").read_bytes()
             session = Session(port, secret)
-            pid = stage_of_client(process)
+            pid = server_of_client(process)
             for address in (environment_address(pid), heap_address(pid)):
                 for attempt in (by_fence, by_buffer_data, by_sub_data, by_matrix):
                     bytes_back, goes_on = attack(session, pid, attempt, address)
@@ -149,7 +149,7 @@ def main():
                         raise SystemExit("memory of the server went to its client")
                     if not goes_on:
                         session = Session(port, secret)
-                        pid = stage_of_client(process)
+                        pid = server_of_client(process)
             # The next one is served as ever.
             if not Session(port, secret).make(record("glGetError"), answer=True):
                 raise SystemExit("the next client got no answer")

@@ -60,7 +60,7 @@ struct VolumeCounters {
   std::atomic<std::uint64_t> verified_frames;
   double verify_max;         ///< worst over the verified frames
   double verify_sum_sq;      ///< sum over verified frames of the mean squared error: RMS = sqrt(sum / frames)
-  double verify_worst_tile;  ///< the largest mean excess of a tile, over whole images and sentinels
+  double verify_worst_tile;  ///< of whole images and sentinels, 1 is the bound
   std::uint64_t verify_worst_frame;           ///< the frame that it was in, from 1
   std::atomic<std::uint64_t> verified_tiles;  ///< sentinels
   std::atomic<std::uint64_t> verify_lost;     ///< comparisons beyond the bound

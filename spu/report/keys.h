@@ -104,8 +104,7 @@ constexpr const char* texels = "texels";
 constexpr const char* bytes_sent = "bytes_sent";
 constexpr const char* bytes_left_out = "bytes_left_out";  ///< of changed textures: what the nodes had already
 constexpr const char* verify = "verify";
-constexpr const char* worst_tile =
-    "worst_tile";  ///< mean excess, 1 is the brightest colour; of tiles and frames
+constexpr const char* worst_tile = "worst_tile";    ///< of whole images and sentinels; 1 is the bound
 constexpr const char* worst_frame = "worst_frame";  ///< the frame that it was in
 constexpr const char* budget = "budget";            ///< null where none was asked for
 constexpr const char* asked = "asked";              ///< error; null where only a time was

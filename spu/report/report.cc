@@ -514,8 +514,9 @@ std::string explanation_text(Processes processes) {
       }
       if (const std::uint64_t frames = volume.verified_frames.load(); frames > 0) {
         text += fmt::format(
-            "understudy:     verified on {}: max {:.4g}, RMS {:.4g}, worst tile {:.2g}/255 (frame {})\n",
-            counted(frames, "frame"), volume.verify_max, verified_rms(volume), 255 * volume.verify_worst_tile,
+            "understudy:     verified on {}: max {:.4g}, RMS {:.4g}, worst tile {:.2f} of the bound (frame "
+            "{})\n",
+            counted(frames, "frame"), volume.verify_max, verified_rms(volume), volume.verify_worst_tile,
             volume.verify_worst_frame);
       }
     }

@@ -172,7 +172,8 @@ std::string refusal_of_ray_caster(const ProgramFindings& findings) {
   if (std::string reason = refusal_of_tables(facts, finding.tables, findings.roles); !reason.empty())
     return reason;
   if (mixes_samples(facts, finding, findings.roles))
-    return "the fragment shader: a sample's colour depends on several texels of the volume";
+    return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
+           "lighting)";
   if (!finding.data.empty()) return sentence(texts(facts, finding.data).front());
   return {};
 }

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <string>
 
 #include "tests/adversary/command.h"
 #include "tests/adversary/verdict.h"
@@ -20,6 +22,20 @@ constexpr int frames = 30;
 std::string contents(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Scenarios that are not met yet, with the reason.
+const std::map<std::string, std::string>& known_misses() {
+  static const std::map<std::string, std::string> misses = [] {
+    std::map<std::string, std::string> read;
+    std::ifstream file(ADVERSARY_KNOWN_MISSES);
+    for (std::string line; std::getline(file, line);) {
+      const std::size_t colon = line.find(": ");
+      if (!line.starts_with('#') && colon != std::string::npos) read[line.substr(0, colon)] = line.substr(colon + 2);
+    }
+    return read;
+  }();
+  return misses;
 }
 
 class Adversary : public testing::TestWithParam<NamedScenario> {
@@ -51,7 +67,12 @@ TEST_P(Adversary, ShowsNoWrongImage) {
       draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder_ / "report.json").string(), "--"}));
   const Verdict verdict = judge(folder_, frames);
   fmt::print("adversary: {}\n{}", line_about(GetParam(), verdict), contents(folder_ / "under.log"));
-  EXPECT_EQ(what_is_not_met(GetParam().scenario, verdict), "") << "images are in " << folder_;
+  const std::string not_met = what_is_not_met(GetParam().scenario, verdict);
+  if (const auto known = known_misses().find(GetParam().name); known != known_misses().end()) {
+    EXPECT_NE(not_met, "") << "it is met now: take it out of known_misses.txt";
+  } else {
+    EXPECT_EQ(not_met, "") << "images are in " << folder_;
+  }
   if (!HasFailure() && std::getenv("ADVERSARY_KEEP_IMAGES") == nullptr) fs::remove_all(folder_);
 }
 

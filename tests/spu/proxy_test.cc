@@ -131,7 +131,9 @@ TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
   for (const Refusal& refusal :
        {Refusal{"the samples of a ray are not composed by over (a plain sum, or lighting)",
                 {.composition = Composition::sum}},
-        Refusal{"the colour depends on the gradient (lighting)", {.lit = true}},
+        Refusal{"the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
+                "lighting)",
+                {.lit = true}},
         Refusal{"samples do not lie on constant steps from the box's faces (jitter, cropping)",
                 {.jittered = true}},
         Refusal{"the near plane cuts the ray caster's box, or the eye is inside", {.distance = 0.8}}}) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -90,12 +91,21 @@ float excess(const ShownImage& a, const ShownImage& b, int x, int y) {
   return largest;
 }
 
+float difference_at(const ShownImage& a, const ShownImage& b, int x, int y) {
+  float largest = 0;
+  for (std::size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(a.at(x, y)[c] - b.at(x, y)[c]));
+  return largest;
+}
+
 TileDifference difference_of_tile(const ShownImage& a, const ShownImage& b, int x0, int y0) {
   const int x1 = std::min(x0 + compared_tile_edge, a.width), y1 = std::min(y0 + compared_tile_edge, a.height);
-  TileDifference tile{{x0, y0, x1 - x0, y1 - y0}, 0, {x0, y0}};
+  TileDifference tile{.tile = {x0, y0, x1 - x0, y1 - y0}, .pixel = {x0, y0}};
+  std::array<float, compared_tile_edge * compared_tile_edge> differences{};
+  std::size_t pixels = 0;
   float largest = 0;
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) {
+      differences[pixels++] = difference_at(a, b, x, y);
       const float e = excess(a, b, x, y);
       tile.excess += e;
       if (e > largest) {
@@ -106,6 +116,9 @@ TileDifference difference_of_tile(const ShownImage& a, const ShownImage& b, int 
   }
   // A tile that the window cuts off weighs as little as it shows.
   tile.excess /= compared_tile_edge * compared_tile_edge;
+  const auto eighth = differences.begin() + differences.size() / 8;
+  std::nth_element(differences.begin(), eighth, differences.end(), std::greater<>());
+  tile.common = *eighth;
   return tile;
 }
 
@@ -140,7 +153,7 @@ ImageDifference difference_between(const Pipeline& pipeline, const NativeImage& 
   for (int y = 0; y < theirs.height; y += compared_tile_edge) {
     for (int x = 0; x < theirs.width; x += compared_tile_edge) {
       const TileDifference tile = difference_of_tile(theirs, ours, x, y);
-      if (tile.excess >= difference.worst.excess) difference.worst = tile;
+      if (tile.severity() >= difference.worst.severity()) difference.worst = tile;
     }
   }
   for (int* coordinate : {&difference.worst.tile.x, &difference.worst.pixel[0]}) *coordinate += native.rect.x;

@@ -5,8 +5,13 @@
 // moves a colour to a neighbouring pixel; and by little everywhere, as drivers weight texels by 8 bits. So a
 // pixel counts by how far it lies outside of the colours that the other image has within one pixel of it
 // (`excess`), and a tile by the mean of its pixels. A tile that shows something else has no such neighbours.
+//
+// Where colours change from pixel to pixel, as a maximum through a table with steps does, neighbours have all
+// of them. There a tile counts by the difference that an eighth of its pixels reach (`common`), pixel against
+// pixel: a line of pixels at a silhouette is less.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "spu/volume/verification/native_image.h"
@@ -18,13 +23,18 @@ constexpr int compared_tile_edge = 16;
 /// The largest mean excess of a tile in a right image, as a part of the brightest colour. Calibrated in
 /// docs/verification.md.
 constexpr double max_tile_excess = 3.0 / 255;
+/// The largest difference that an eighth of the pixels of a tile in a right image reach.
+constexpr double max_common_difference = 8.0 / 255;
 
 struct TileDifference {
   volume::Rect tile;           ///< in pixels of the window
   double excess = 0;           ///< mean over the tile's pixels
+  double common = 0;           ///< the difference that an eighth of its pixels reach
   std::array<int, 2> pixel{};  ///< of the largest excess in the tile
 
-  bool within_bound() const { return excess <= max_tile_excess; }
+  /// 1 is the bound.
+  double severity() const { return std::max(excess / max_tile_excess, common / max_common_difference); }
+  bool within_bound() const { return severity() <= 1; }
 };
 
 struct ImageDifference {

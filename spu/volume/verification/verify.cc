@@ -30,11 +30,11 @@ constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 std::string sentence_of(const ImageDifference& difference) {
   const TileDifference& tile = difference.worst;
   return fmt::format(
-      "its image differs from the viewer's own by {:.1f}/255 over the {} x {} pixels at ({}, {}), most at ({}, "
-      "{}); "
-      "{:.1f}/255 are allowed",
-      255 * tile.excess, tile.tile.width, tile.tile.height, tile.tile.x, tile.tile.y, tile.pixel[0],
-      tile.pixel[1], 255 * max_tile_excess);
+      "its image differs from the viewer's own in the {} x {} pixels at ({}, {}): by {:.1f}/255 on average "
+      "beyond "
+      "their neighbours ({:.0f}/255 are allowed), an eighth of them by {:.0f}/255 ({:.0f}/255)",
+      tile.tile.width, tile.tile.height, tile.tile.x, tile.tile.y, 255 * tile.excess, 255 * max_tile_excess,
+      255 * tile.common, 255 * max_common_difference);
 }
 
 }  // namespace
@@ -86,8 +86,8 @@ void VolumeUnit::count_difference(KnownVolume& known, const ImageDifference& dif
   counters.verify_max = std::max(counters.verify_max, difference.max);
   counters.verify_sum_sq += difference.mean_square;
   counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
-  if (difference.worst.excess >= counters.verify_worst_tile) {
-    counters.verify_worst_tile = difference.worst.excess;
+  if (difference.worst.severity() >= counters.verify_worst_tile) {
+    counters.verify_worst_tile = difference.worst.severity();
     counters.verify_worst_frame = session_->ledger().frames() + 1;
   }
 }
@@ -134,8 +134,8 @@ void VolumeUnit::compare_sentinels(Substitution& s, const volume::ImageView& ima
     drawing.redraw(s.run, tile, s.request.depth);
     const ImageDifference difference = difference_between(s.pipeline, drawing.image(tile), image);
     s.volume.counters->verified_tiles.fetch_add(1, std::memory_order_relaxed);
-    if (difference.worst.excess > s.volume.counters->verify_worst_tile) {
-      s.volume.counters->verify_worst_tile = difference.worst.excess;
+    if (difference.worst.severity() > s.volume.counters->verify_worst_tile) {
+      s.volume.counters->verify_worst_tile = difference.worst.severity();
       s.volume.counters->verify_worst_frame = session_->ledger().frames() + 1;
     }
     if (!difference.worst.within_bound()) lose(s.volume, difference);

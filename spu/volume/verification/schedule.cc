@@ -66,8 +66,10 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
   native_ms_ = native_ms_ ? 0.5 * (*native_ms_ + native_ms) : native_ms;
   // An image of nothing proves nothing.
   if (!anything_visible) return;
-  right_ = true;
-  lost_in_a_row_ = 0;
+  if (--to_prove_ <= 0) {
+    right_ = true;
+    lost_in_a_row_ = 0;
+  }
   right_footprint_ = std::max(right_footprint_, footprint_);
   for (const std::size_t index : now_changed_) {
     const auto known = std::find_if(changing_.begin(), changing_.end(),
@@ -90,6 +92,7 @@ void VerificationSchedule::sentinels_took(int count, double ms) {
 
 void VerificationSchedule::lost() {
   right_ = false;
+  to_prove_ = right_after_loss;
   right_footprint_ = 0;
   changing_.clear();
   ++lost_in_a_row_;

@@ -9,7 +9,7 @@
 // An error that covers a share f of the viewport survives n sentinels with the probability (1 - f)^n.
 //
 // A lost comparison is no verdict: the application draws that frame, and the volume is measured anew. After
-// max_lost_comparisons without a right image in between, it is handed back.
+// max_lost_comparisons without right_after_loss right images in between, it is handed back.
 #pragma once
 
 #include <cstddef>
@@ -23,6 +23,8 @@ namespace understudy::spu {
 constexpr int max_lost_comparisons = 5;
 /// In all: a volume whose images are wrong again and again is not understood.
 constexpr int max_lost_comparisons_ever = 12;
+/// In a row, after a lost comparison, before sentinels suffice again.
+constexpr int right_after_loss = 8;
 /// The same input has changed this often and the image was right each time: sentinels suffice for it.
 constexpr int trusted_changes = 4;
 constexpr double sentinel_share = 0.01;
@@ -81,6 +83,7 @@ class VerificationSchedule {
   bool changed_ = false;
   bool grown_ = false;
   bool dense_ = false;
+  int to_prove_ = 1;  ///< so many images that show something must be right yet
   int lost_in_a_row_ = 0;
   int lost_ever_ = 0;
   std::optional<double> native_ms_;

@@ -145,7 +145,8 @@ TEST(VerificationSchedule, ARightImageForgivesLossesButNotForEver) {
   for (int loss = 1; loss < max_lost_comparisons_ever; ++loss) {
     schedule.lost();
     ASSERT_FALSE(schedule.gives_up()) << loss;
-    ASSERT_TRUE(compared(schedule, {{float(loss)}}));
+    for (int image = 0; image < right_after_loss; ++image) ASSERT_TRUE(compared(schedule, {{float(loss)}}));
+    ASSERT_FALSE(compared(schedule, {{float(loss)}}));
   }
   schedule.lost();
   EXPECT_TRUE(schedule.gives_up());

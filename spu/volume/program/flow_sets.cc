@@ -62,7 +62,7 @@ FlowSets::Set FlowSets::by(Flow flow, Set set) {
   if (const auto known = flows_.find(key); known != flows_.end()) return known->second;
   std::vector<Packed> members;
   for (const Packed member : packed(set)) {
-    const Packed other = pack(member / 4, flow);
+    const Packed other = pack(member / 4, std::max(Flow(member % 4), flow));
     if (members.empty() || members.back() != other) members.push_back(other);
   }
   const Set converted = intern(std::move(members));

@@ -26,7 +26,7 @@ class FlowSets {
 
   Set single(std::uint32_t source, Flow flow = Flow::data);
   Set join(Set a, Set b);
-  /// All members of `set`, reaching by `flow`.
+  /// All members of `set`, reaching by `flow`, or still by the end of a loop.
   Set by(Flow flow, Set set);
 
   Dependences members(Set set) const;

@@ -26,8 +26,7 @@ class Closure {
     for (const Dependence& dependence : dependences) {
       Influence influence = way;
       influence.source = dependence.source;
-      // The link that is nearest to the target counts.
-      if (way.flow == Flow::data) influence.flow = dependence.flow;
+      influence.flow = std::max(way.flow, dependence.flow);
       if (!found_.insert(influence).second) continue;
       const Source& source = facts_.sources[dependence.source];
       if (source.kind == SourceKind::texel) follow(facts_.fetches[source.number], influence);

@@ -73,10 +73,11 @@ class Walk {
 
   /// Conditions that decide whether what is walked over is executed.
   struct Conditions {
-    Set outside = FlowSets::empty;   ///< of the calls
-    Set around = FlowSets::empty;    ///< in this function, around the innermost loop
-    Set branches = FlowSets::empty;  ///< around this statement, within the innermost loop
-    Set passed = FlowSets::empty;    ///< early exits passed on the way here
+    Set outside = FlowSets::empty;        ///< of the calls
+    Set around = FlowSets::empty;         ///< in this function, around the innermost loop
+    Set passed_around = FlowSets::empty;  ///< early exits passed on the way to that loop
+    Set branches = FlowSets::empty;       ///< around this statement, within the innermost loop
+    Set passed = FlowSets::empty;         ///< early exits passed on the way here
   };
 
   struct FoundFetch {
@@ -123,6 +124,7 @@ class Walk {
   bool widen(const glslang::TIntermLoop& loop, const State& entry, State& head, std::uint32_t iteration);
   void taint_changed(State& state, const State& entry, Set by);
   void leave_loop(const glslang::TIntermLoop& loop, const State& entry, Target& target);
+  void leave_function(const glslang::TIntermLoop& loop, const Target& target);
   std::size_t loop_number(const glslang::TIntermLoop& loop);
 
   // joins.cc
@@ -132,8 +134,9 @@ class Walk {
   /// For one chain of calls, a node and one of its meetings.
   Number point(const TIntermNode& node, std::uint32_t which);
   Set conditions();
-  Set conditions_in_function();
+  Set parting();
   Set conditions_in_loop();
+  Set conditions_in_function();
 
   // expressions.cc
   Value evaluate(const glslang::TIntermTyped* node);

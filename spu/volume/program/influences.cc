@@ -165,8 +165,7 @@ std::optional<Dependences> written_from(const StageFacts& vertex, const Source& 
   }
   if (all) {
     std::ranges::sort(*all);
-    const auto rest = std::ranges::unique(*all);
-    all->erase(rest.begin(), rest.end());
+    all->erase(std::unique(all->begin(), all->end()), all->end());
   }
   return all;
 }

@@ -181,7 +181,7 @@ Value Walk::evaluate_assignment(const TIntermBinary& binary) {
   if (!place) return unknown_assignment(binary);
   if (place_before) add_choice(*place, *place_before);
   const std::array types{&binary.getLeft()->getType(), &binary.getRight()->getType()};
-  const Value value = op == EOpNull ? operands[0] : apply(op, binary.getLeft()->getType(), operands, types);
+  Value value = op == EOpNull ? operands[0] : apply(op, binary.getLeft()->getType(), operands, types);
   write(*place, value, binary.getLoc().line);
   return value;
 }
@@ -207,7 +207,7 @@ std::vector<Value> Walk::evaluate_assigned(const TIntermBinary& binary, bool wit
 
 Value Walk::unknown_assignment(const TIntermBinary& binary) {
   // Nothing that GLSL allows comes here; were it to, every cell may have been written.
-  const Value value = unknown_value(binary.getType(), "an assignment to what is no variable");
+  Value value = unknown_value(binary.getType(), "an assignment to what is no variable");
   for (Scalar& cell : state_.cells) {
     if (!value.empty()) cell = value[0];
   }

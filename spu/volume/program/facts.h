@@ -62,7 +62,7 @@ enum class Flow : std::uint8_t {
 struct Dependence {
   std::uint32_t source = 0;
   Flow flow = Flow::data;
-  auto operator<=>(const Dependence&) const = default;
+  auto operator<=>(const Dependence&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// In rising order.

@@ -11,7 +11,7 @@
 namespace understudy::spu::program {
 
 /// More than this is never needed by a shader that is worth the time.
-constexpr std::size_t max_dependences_kept = 4'000'000;
+constexpr std::size_t max_dependences_kept = 1'000'000;
 
 /// An analysis that has grown past its limits. Never leaves analyse().
 struct TooLarge {};

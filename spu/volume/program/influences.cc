@@ -150,6 +150,7 @@ std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influ
       known->second.component |= 1 << source.component;
   }
   std::vector<std::string> texts;
+  texts.reserve(said.size());
   for (const auto& [what, variable] : said) texts.push_back(sentence(what, text_of_components(variable)));
   return texts;
 }

@@ -9,7 +9,8 @@ using namespace glslang;
 
 namespace {
 
-constexpr std::size_t max_steps = 3'000'000;
+/// A hundred times what the longest shader takes that was met.
+constexpr std::size_t max_steps = 200'000;
 
 /// Places of one node at which ways meet.
 enum Meeting : std::uint32_t { at_end, at_break, at_case };

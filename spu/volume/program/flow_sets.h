@@ -26,6 +26,8 @@ class FlowSets {
 
   Set single(std::uint32_t source, Flow flow = Flow::data);
   Set join(Set a, Set b);
+  /// Without keeping what lies between.
+  Set join(std::span<const Set> sets);
   /// All members of `set`, reaching by `flow`, or still by the end of a loop.
   Set by(Flow flow, Set set);
 

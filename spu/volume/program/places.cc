@@ -111,13 +111,13 @@ Value Walk::read(const Place& place) {
       continue;
     }
     std::vector<Number> numbers = place.index_numbers;
-    Set on = place.index;
+    std::vector<Set> sets{place.index};
     for (const std::uint32_t start : place.starts) {
       const Scalar& cell = state_.cells[start + part];
-      on = values_.sets.join(on, cell.on);
+      sets.push_back(cell.on);
       numbers.push_back(cell.number);
     }
-    value.push_back({on, values_.numbers.of(EOpIndexIndirect, numbers)});
+    value.push_back({values_.sets.join(sets), values_.numbers.of(EOpIndexIndirect, numbers)});
   }
   return value;
 }

@@ -9,7 +9,7 @@ namespace {
 
 using glslang::TType;
 
-constexpr std::uint32_t max_cells_of_variable = 4096;
+constexpr std::uint32_t max_cells_of_variable = 2048;
 constexpr std::uint64_t max_cells = 100'000;
 /// Nodes within nodes: the walk calls itself for every level.
 constexpr int max_depth = 1000;

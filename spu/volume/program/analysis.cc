@@ -26,6 +26,8 @@ StageFinding analyse(Stage stage, std::span<const std::string> sources,
   return Failure{Failure::Kind::too_large, "the shader is too large to follow"};
 } catch (const NoMain&) {
   return Failure{Failure::Kind::parse, "the shader has no main function"};
+} catch (const NotFollowed& found) {
+  return Failure{Failure::Kind::unsupported, found.what};
 } catch (const std::exception& error) {
   return Failure{Failure::Kind::unsupported, std::string("the shader cannot be followed: ") + error.what()};
 }

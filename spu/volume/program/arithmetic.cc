@@ -69,7 +69,7 @@ Value Walk::construct_matrix(const TType& type, const Value& from, const TType& 
   for (int column = 0; column < type.getMatrixCols(); ++column) {
     for (int row = 0; row < type.getMatrixRows(); ++row) {
       if (row < from_rows && column < from_columns)
-        value.push_back(from[std::size_t(column * from_rows + row)]);
+        value.push_back(from[std::size_t(column) * std::size_t(from_rows) + std::size_t(row)]);
       else if (row == column)
         value.push_back(from_rows == 0 ? from[0] : values_.constant(1));
       else

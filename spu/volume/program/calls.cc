@@ -55,18 +55,19 @@ Value Walk::call_function(const TIntermSequence& arguments, const TIntermNode& a
 std::vector<std::optional<Place>> Walk::bind_parameters(const TIntermSequence& arguments,
                                                         const Function& function) {
   const TIntermSequence& parameters = parameters_of(function);
-  std::vector<Value> values;
+  const std::vector<Value> values = evaluate_all(arguments);
   std::vector<std::optional<Place>> places(parameters.size());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const TIntermTyped* argument = arguments.at(i)->getAsTyped();
-    const TStorageQualifier storage = parameters[i]->getAsTyped()->getQualifier().storage;
-    values.push_back(storage == EvqOut ? Value() : evaluate(argument));
-    if (is_written(storage)) places[i] = place_of(argument);
+    if (!is_written(parameters[i]->getAsTyped()->getQualifier().storage)) continue;
+    if (effects_.has(argument)) throw NotFollowed{"a parameter that changes variables and is written to"};
+    places[i] = place_of(argument);
   }
   forget_locals(function);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const TIntermSymbol* parameter = parameters[i]->getAsSymbolNode();
-    if (parameter != nullptr && !values[i].empty()) write(*place_of(parameter), values[i], 0);
+    if (parameter != nullptr && parameter->getQualifier().storage != EvqOut)
+      write(*place_of(parameter), values[i], 0);
   }
   return places;
 }

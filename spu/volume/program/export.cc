@@ -30,8 +30,7 @@ class Walk::SourceList {
   Dependences listed(Dependences dependences) {
     for (Dependence& dependence : dependences) dependence.source = place_of(dependence.source);
     std::ranges::sort(dependences);
-    const auto rest = std::ranges::unique(dependences);
-    dependences.erase(rest.begin(), rest.end());
+    dependences.erase(std::unique(dependences.begin(), dependences.end()), dependences.end());
     return dependences;
   }
 

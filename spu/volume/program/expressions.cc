@@ -9,6 +9,9 @@ using namespace glslang;
 
 namespace {
 
+/// Places of one node at which values meet.
+enum Meeting : std::uint32_t { at_right = 32 };
+
 bool is_integer(const TType& type) {
   return type.isIntegerDomain();
 }
@@ -64,9 +67,9 @@ Value Walk::unknown_value(const TType& type, const std::string& name) {
 }
 
 std::vector<Value> Walk::evaluate_all(const TIntermSequence& arguments) {
-  std::vector<Value> values;
-  for (const TIntermNode* argument : arguments) values.push_back(evaluate(argument->getAsTyped()));
-  return values;
+  std::vector<const TIntermTyped*> operands;
+  for (const TIntermNode* argument : arguments) operands.push_back(argument->getAsTyped());
+  return evaluate_operands(operands);
 }
 
 Value Walk::evaluate_symbol(const TIntermSymbol& symbol) {
@@ -97,9 +100,9 @@ Value Walk::evaluate_binary(const TIntermBinary& binary) {
       break;
   }
   if (operator_of_assignment(binary.getOp()) != EOpNull) return evaluate_assignment(binary);
-  const std::array operands{evaluate(binary.getLeft()), evaluate(binary.getRight())};
   const std::array types{&binary.getLeft()->getType(), &binary.getRight()->getType()};
-  return apply(binary.getOp(), binary.getType(), operands, types);
+  return apply(binary.getOp(), binary.getType(),
+               evaluate_operands(std::array{binary.getLeft(), binary.getRight()}), types);
 }
 
 /// The right side is executed only where the left does not decide.
@@ -172,21 +175,39 @@ Value Walk::any_element_of(const Value& base, const Scalar& index, std::size_t c
 
 Value Walk::evaluate_assignment(const TIntermBinary& binary) {
   const TOperator op = operator_of_assignment(binary.getOp());
-  Value value = evaluate(binary.getRight());
-  const auto place = place_of(binary.getLeft());
+  const auto place_before = effects_.has(binary.getRight()) ? place_of(binary.getLeft()) : std::nullopt;
+  const std::vector<Value> operands = evaluate_assigned(binary, op != EOpNull);
+  auto place = place_of(binary.getLeft());
   if (!place) return unknown_assignment(binary);
-  if (op != EOpNull) {
-    const std::array operands{read(*place), value};
-    const std::array types{&binary.getLeft()->getType(), &binary.getRight()->getType()};
-    value = apply(op, binary.getLeft()->getType(), operands, types);
-  }
+  if (place_before) add_choice(*place, *place_before);
+  const std::array types{&binary.getLeft()->getType(), &binary.getRight()->getType()};
+  Value value = op == EOpNull ? operands[0] : apply(op, binary.getLeft()->getType(), operands, types);
   write(*place, value, binary.getLoc().line);
   return value;
 }
 
+/// What is on the right; before it, of `x += y`, what was on the left.
+std::vector<Value> Walk::evaluate_assigned(const TIntermBinary& binary, bool with_left) {
+  const TIntermTyped* left = binary.getLeft();
+  const TIntermTyped* right = binary.getRight();
+  if (effects_.has(left)) {
+    if (with_left || effects_.has(right)) throw NotFollowed{"two changes of variables in one expression"};
+    // The right side may be read before the left side changes what it reads, or after.
+    const State before = state_;
+    place_of(left);
+    const Value after = evaluate(right);
+    state_ = before;
+    Value value = evaluate(right);
+    blend(value, after, point(binary, at_right));
+    return {value};
+  }
+  if (!with_left) return {evaluate(right)};
+  return evaluate_operands(std::array{left, right});
+}
+
 Value Walk::unknown_assignment(const TIntermBinary& binary) {
   // Nothing that GLSL allows comes here; were it to, every cell may have been written.
-  const Value value = unknown_value(binary.getType(), "an assignment to what is no variable");
+  Value value = unknown_value(binary.getType(), "an assignment to what is no variable");
   for (Scalar& cell : state_.cells) {
     if (!value.empty()) cell = value[0];
   }

@@ -51,18 +51,18 @@ struct Source {
 /// "varying texcoord.z", "uniform time", "texel of 'volume'", "gl_FragCoord.x".
 std::string text(const Source& source);
 
-/// How a source reaches a value: the last link of the way that counts.
+/// How a source reaches a value: by the highest of these that is on the way.
 enum class Flow : std::uint8_t {
   data,    ///< by arithmetic, or as an index
   branch,  ///< decides which of several values it is
-  loop,    ///< decides when a loop ends
+  loop,    ///< decides when a loop ends, and so how often something was done
 };
 
 /// A source (by its place in StageFacts::sources) and a way by which it reaches a value. There may be several.
 struct Dependence {
   std::uint32_t source = 0;
   Flow flow = Flow::data;
-  auto operator<=>(const Dependence&) const = default;
+  auto operator<=>(const Dependence&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// In rising order.

@@ -56,13 +56,21 @@ FlowSets::Set FlowSets::join(Set a, Set b) {
   return set;
 }
 
+FlowSets::Set FlowSets::join(std::span<const Set> sets) {
+  std::vector<Packed> members;
+  for (const Set set : sets) members.insert(members.end(), packed(set).begin(), packed(set).end());
+  std::ranges::sort(members);
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+  return intern(std::move(members));
+}
+
 FlowSets::Set FlowSets::by(Flow flow, Set set) {
   if (set == empty) return empty;
   const std::uint64_t key = both(set, std::uint32_t(flow));
   if (const auto known = flows_.find(key); known != flows_.end()) return known->second;
   std::vector<Packed> members;
   for (const Packed member : packed(set)) {
-    const Packed other = pack(member / 4, flow);
+    const Packed other = pack(member / 4, std::max(Flow(member % 4), flow));
     if (members.empty() || members.back() != other) members.push_back(other);
   }
   const Set converted = intern(std::move(members));

@@ -11,7 +11,7 @@
 namespace understudy::spu::program {
 
 /// More than this is never needed by a shader that is worth the time.
-constexpr std::size_t max_dependences_kept = 4'000'000;
+constexpr std::size_t max_dependences_kept = 1'000'000;
 
 /// An analysis that has grown past its limits. Never leaves analyse().
 struct TooLarge {};
@@ -26,7 +26,9 @@ class FlowSets {
 
   Set single(std::uint32_t source, Flow flow = Flow::data);
   Set join(Set a, Set b);
-  /// All members of `set`, reaching by `flow`.
+  /// Without keeping what lies between.
+  Set join(std::span<const Set> sets);
+  /// All members of `set`, reaching by `flow`, or still by the end of a loop.
   Set by(Flow flow, Set set);
 
   Dependences members(Set set) const;

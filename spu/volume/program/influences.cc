@@ -26,8 +26,7 @@ class Closure {
     for (const Dependence& dependence : dependences) {
       Influence influence = way;
       influence.source = dependence.source;
-      // The link that is nearest to the target counts.
-      if (way.flow == Flow::data) influence.flow = dependence.flow;
+      influence.flow = std::max(way.flow, dependence.flow);
       if (!found_.insert(influence).second) continue;
       const Source& source = facts_.sources[dependence.source];
       if (source.kind == SourceKind::texel) follow(facts_.fetches[source.number], influence);
@@ -151,6 +150,7 @@ std::vector<std::string> texts(const StageFacts& fragment, std::span<const Influ
       known->second.component |= 1 << source.component;
   }
   std::vector<std::string> texts;
+  texts.reserve(said.size());
   for (const auto& [what, variable] : said) texts.push_back(sentence(what, text_of_components(variable)));
   return texts;
 }
@@ -166,8 +166,7 @@ std::optional<Dependences> written_from(const StageFacts& vertex, const Source& 
   }
   if (all) {
     std::ranges::sort(*all);
-    const auto rest = std::ranges::unique(*all);
-    all->erase(rest.begin(), rest.end());
+    all->erase(std::unique(all->begin(), all->end()), all->end());
   }
   return all;
 }

@@ -24,8 +24,8 @@ struct Influence {
   std::uint32_t source = 0;  ///< place in StageFacts::sources
   Flow flow = Flow::data;
   Target target = Target::colour;
-  bool through_table = false;  ///< by the coordinate of another texture
-  auto operator<=>(const Influence&) const = default;
+  bool through_table = false;                          ///< by the coordinate of another texture
+  auto operator<=>(const Influence&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 /// In rising order, each once. `volumes` names the samplers whose texels end the way; texels of other samplers

@@ -34,12 +34,20 @@ Walk::Number Walk::point(const TIntermNode& node, std::uint32_t which) {
   return values_.numbers.of(ValueNumbers::merged, {path_, high, low, which});
 }
 
+/// What tells a way that ends here from those that go on to the same meeting. Earlier ends count where they met
+/// what follows elsewhere: behind a switch. Behind loops they do by Target::ends_by.
+Walk::Set Walk::parting() {
+  const bool in_switch = std::ranges::any_of(targets_, [](const Target* target) { return !target->loop; });
+  return in_switch ? conditions_in_loop() : conditions_.branches;
+}
+
 Walk::Set Walk::conditions_in_loop() {
   return values_.sets.join(conditions_.branches, conditions_.passed);
 }
 
 Walk::Set Walk::conditions_in_function() {
-  return values_.sets.join(conditions_.around, conditions_in_loop());
+  const Set around = values_.sets.join(conditions_.around, conditions_.passed_around);
+  return values_.sets.join(around, conditions_in_loop());
 }
 
 Walk::Set Walk::conditions() {

@@ -17,7 +17,8 @@ void Walk::execute_loop(const TIntermLoop& loop) {
   const std::size_t number = loop_number(loop);
   const Conditions saved = conditions_;
   const std::optional<std::size_t> outer = std::exchange(loop_, number);
-  conditions_.around = conditions_in_function();
+  conditions_.passed_around = values_.sets.join(conditions_.passed_around, conditions_.passed);
+  conditions_.around = values_.sets.join(conditions_.around, parting());
   conditions_.branches = FlowSets::empty;
   Target target{.loop = true};
   targets_.push_back(&target);
@@ -87,14 +88,18 @@ bool Walk::widen(const TIntermLoop& loop, const State& entry, State& head, std::
 void Walk::leave_loop(const TIntermLoop& loop, const State& entry, Target& target) {
   taint_changed(target.left.state, entry, target.ends_by);
   taint_changed(target.returned.state, entry, target.ends_by);
-  const Set returned_by = values_.sets.join(target.returned.decided_by, target.ends_by);
-  if (target.returned.state.reachable) conditions_.passed = values_.sets.join(conditions_.passed, returned_by);
-  add_exit(*returns_.back(), target.returned.state, values_.sets.join(conditions_in_function(), returned_by),
-           point(loop, at_return));
-  for (Target* outer : targets_) {
-    if (target.returned.state.reachable) outer->lasting = values_.sets.join(outer->lasting, returned_by);
-  }
+  if (target.returned.state.reachable) leave_function(loop, target);
   state_ = std::move(target.left.state);
+}
+
+/// Out of the loop, and of those around it.
+void Walk::leave_function(const TIntermLoop& loop, const Target& target) {
+  const Set decided_by = values_.sets.join(target.returned.decided_by, target.ends_by);
+  add_exit(*returns_.back(), target.returned.state,
+           values_.sets.join(values_.sets.join(conditions_.around, parting()), decided_by),
+           point(loop, at_return));
+  conditions_.passed = values_.sets.join(conditions_.passed, decided_by);
+  for (Target* outer : targets_) outer->lasting = values_.sets.join(outer->lasting, decided_by);
 }
 
 /// What an iteration has changed depends on which iteration was the last.

@@ -91,6 +91,17 @@ void Walk::index_by(Place& place, const Scalar& index, std::size_t cells) {
   place.parts = choices[0];
 }
 
+/// It may as well be `other`.
+void Walk::add_choice(Place& place, const Place& other) {
+  if (place.starts == other.starts && place.index_numbers == other.index_numbers) return;
+  if (place.parts != other.parts) throw NotFollowed{"an index that changes while it is used"};
+  place.starts.insert(place.starts.end(), other.starts.begin(), other.starts.end());
+  place.index = values_.sets.join(place.index, other.index);
+  place.index_numbers.insert(place.index_numbers.end(), other.index_numbers.begin(), other.index_numbers.end());
+  if (place.index_numbers.empty())
+    place.index_numbers.push_back(values_.numbers.of(ValueNumbers::distinct, {Number(steps_)}));
+}
+
 Value Walk::read(const Place& place) {
   Value value;
   value.reserve(place.parts.size());
@@ -100,13 +111,13 @@ Value Walk::read(const Place& place) {
       continue;
     }
     std::vector<Number> numbers = place.index_numbers;
-    Set on = place.index;
+    std::vector<Set> sets{place.index};
     for (const std::uint32_t start : place.starts) {
       const Scalar& cell = state_.cells[start + part];
-      on = values_.sets.join(on, cell.on);
+      sets.push_back(cell.on);
       numbers.push_back(cell.number);
     }
-    value.push_back({on, values_.numbers.of(EOpIndexIndirect, numbers)});
+    value.push_back({values_.sets.join(sets), values_.numbers.of(EOpIndexIndirect, numbers)});
   }
   return value;
 }

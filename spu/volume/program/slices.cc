@@ -71,9 +71,11 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const SliceFinding&
   for (const SideEffect& effect : facts.side_effects) reasons.push_back("it writes to '" + effect.name + "'");
   for (const std::string& name : facts.not_followed) reasons.push_back("what " + name + " does is not known");
   if (finding.texels.empty()) reasons.emplace_back("colours do not depend on the volume");
-  for (std::size_t i = 1; i < finding.texels.size(); ++i)
-    reasons.push_back(
-        text_of_second(facts, facts.fetches[finding.texels[0]], facts.fetches[finding.texels[i]]));
+  for (std::size_t i = 1; i < finding.texels.size(); ++i) {
+    std::string reason =
+        text_of_second(facts, facts.fetches[finding.texels[0]], facts.fetches[finding.texels[i]]);
+    if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
+  }
   if (finding.texels_vary_in_loop) reasons.emplace_back("colours depend on several texels, fetched in a loop");
   for (const auto* list : {&finding.others, &finding.coordinate_others}) {
     for (std::string& reason : texts(facts, *list)) reasons.push_back(std::move(reason));

@@ -9,7 +9,8 @@ using namespace glslang;
 
 namespace {
 
-constexpr std::size_t max_steps = 3'000'000;
+/// A hundred times what the longest shader takes that was met.
+constexpr std::size_t max_steps = 200'000;
 
 /// Places of one node at which ways meet.
 enum Meeting : std::uint32_t { at_end, at_break, at_case };
@@ -94,7 +95,7 @@ void Walk::execute_return(const TIntermBranch& branch) {
   }
   for (Target* target : targets_)
     target->ends_by = values_.sets.join(target->ends_by, values_.sets.by(Flow::loop, conditions_in_function()));
-  add_exit(*returns_.back(), state_, conditions_in_function(), point(branch, at_break));
+  add_exit(*returns_.back(), state_, values_.sets.join(conditions_.around, parting()), point(branch, at_break));
   for (Target* target : targets_) end_way(*target);
   conditions_.passed = conditions_in_loop();
   state_.reachable = false;
@@ -109,7 +110,7 @@ void Walk::leave_target(const TIntermBranch& branch, Target& target) {
   const Set decided_by = conditions_in_loop();
   const Set ends_by = values_.sets.by(Flow::loop, decided_by);
   target.ends_by = values_.sets.join(target.ends_by, ends_by);
-  add_exit(target.left, state_, target.loop ? ends_by : decided_by, point(branch, at_break));
+  add_exit(target.left, state_, target.loop ? ends_by : parting(), point(branch, at_break));
   end_way(target);
   conditions_.passed = decided_by;
   state_.reachable = false;
@@ -118,7 +119,7 @@ void Walk::leave_target(const TIntermBranch& branch, Target& target) {
 void Walk::execute_continue(const TIntermBranch& branch) {
   for (auto target = targets_.rbegin(); target != targets_.rend(); ++target) {
     if (!(*target)->loop) continue;
-    add_exit((*target)->next, state_, conditions_in_loop(), point(branch, at_break));
+    add_exit((*target)->next, state_, parting(), point(branch, at_break));
     conditions_.passed = conditions_in_loop();
     state_.reachable = false;
     return;

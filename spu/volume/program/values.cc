@@ -12,6 +12,9 @@ namespace {
 /// Integers and floats are told apart: 1 / 2 is not 1.0 / 2.0.
 constexpr std::uint32_t of_exact = 1U << 24U;
 
+/// So many sets are joined at once: pairs of few are found again.
+constexpr std::size_t many = 16;
+
 Scalar component_of(const Value& operand, std::size_t i) {
   return operand[operand.size() == 1 ? 0 : std::min(i, operand.size() - 1)];
 }
@@ -159,6 +162,11 @@ Value Values::with(Value value, Set on) {
 }
 
 Values::Set Values::union_of(std::span<const Scalar> scalars) {
+  if (scalars.size() > many) {
+    std::vector<Set> each;
+    for (const Scalar& scalar : scalars) each.push_back(scalar.on);
+    return sets.join(each);
+  }
   Set all = FlowSets::empty;
   for (const Scalar& scalar : scalars) all = sets.join(all, scalar.on);
   return all;

@@ -9,7 +9,7 @@ namespace {
 
 using glslang::TType;
 
-constexpr std::uint32_t max_cells_of_variable = 4096;
+constexpr std::uint32_t max_cells_of_variable = 2048;
 constexpr std::uint64_t max_cells = 100'000;
 /// Nodes within nodes: the walk calls itself for every level.
 constexpr int max_depth = 1000;
@@ -99,7 +99,7 @@ SourceKind kind_of(const Variable& variable, Stage stage) {
   }
 }
 
-bool is_local(const Variable& variable) {
+bool begins_anew(const Variable& variable) {
   switch (variable.storage) {
     case glslang::EvqTemporary:
     case glslang::EvqIn:
@@ -213,6 +213,12 @@ const Function* Variables::function(std::string_view name) const {
   return found == functions_.end() ? nullptr : &found->second;
 }
 
+bool Variables::is_local(const glslang::TIntermSymbol& symbol, const Function& function) const {
+  const auto variable = by_id_.find(symbol.getId());
+  return variable != by_id_.end() &&
+         std::ranges::find(function.locals, variable->second) != function.locals.end();
+}
+
 void Variables::visit(const TIntermNode* node, Function* function, int depth) {
   if (node == nullptr) return;
   if (depth > max_depth) throw TooLarge();
@@ -234,7 +240,7 @@ void Variables::add(const glslang::TIntermSymbol& symbol, Function* function) {
   const auto [known, is_new] = by_id_.emplace(symbol.getId(), list_.size());
   if (is_new) {
     list_.push_back({.type = &type, .name = symbol.getName().c_str(), .storage = type.getQualifier().storage});
-    if (function != nullptr && is_local(list_.back())) function->locals.push_back(known->second);
+    if (function != nullptr && begins_anew(list_.back())) function->locals.push_back(known->second);
   }
   Variable& variable = list_[known->second];
   if (type.isArray()) variable.elements = std::max(variable.elements, elements_of(type, 0));

@@ -50,6 +50,8 @@ class Variables {
 
   const Variable& of(const glslang::TIntermSymbol& symbol) const { return list_[by_id_.at(symbol.getId())]; }
   std::span<const Variable> list() const { return list_; }
+  /// Whether the variable begins anew with every call of the function.
+  bool is_local(const glslang::TIntermSymbol& symbol, const Function& function) const;
   /// By the front end's name, which holds the parameters' types; null for functions without a core.
   const Function* function(std::string_view name) const;
   std::uint32_t cells() const { return cells_; }

@@ -10,6 +10,7 @@ using namespace glslang;
 Walk::Walk(Stage stage, const Variables& variables)
     : stage_(stage),
       variables_(variables),
+      effects_(variables),
       values_(variables.cells()),
       path_(values_.numbers.of(ValueNumbers::path, {})) {
   state_.cells.reserve(variables.cells());

@@ -14,6 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "spu/volume/program/effects.h"
 #include "spu/volume/program/operators.h"
 #include "spu/volume/program/values.h"
 #include "spu/volume/program/variables.h"
@@ -38,6 +39,11 @@ struct Place {
 
 /// The shader has no main function.
 struct NoMain {};
+
+/// What the analysis does not follow, and cannot take for anything.
+struct NotFollowed {
+  std::string what;
+};
 
 class Walk {
  public:
@@ -73,10 +79,11 @@ class Walk {
 
   /// Conditions that decide whether what is walked over is executed.
   struct Conditions {
-    Set outside = FlowSets::empty;   ///< of the calls
-    Set around = FlowSets::empty;    ///< in this function, around the innermost loop
-    Set branches = FlowSets::empty;  ///< around this statement, within the innermost loop
-    Set passed = FlowSets::empty;    ///< early exits passed on the way here
+    Set outside = FlowSets::empty;        ///< of the calls
+    Set around = FlowSets::empty;         ///< in this function, around the innermost loop
+    Set passed_around = FlowSets::empty;  ///< early exits passed on the way to that loop
+    Set branches = FlowSets::empty;       ///< around this statement, within the innermost loop
+    Set passed = FlowSets::empty;         ///< early exits passed on the way here
   };
 
   struct FoundFetch {
@@ -123,6 +130,7 @@ class Walk {
   bool widen(const glslang::TIntermLoop& loop, const State& entry, State& head, std::uint32_t iteration);
   void taint_changed(State& state, const State& entry, Set by);
   void leave_loop(const glslang::TIntermLoop& loop, const State& entry, Target& target);
+  void leave_function(const glslang::TIntermLoop& loop, const Target& target);
   std::size_t loop_number(const glslang::TIntermLoop& loop);
 
   // joins.cc
@@ -132,8 +140,9 @@ class Walk {
   /// For one chain of calls, a node and one of its meetings.
   Number point(const TIntermNode& node, std::uint32_t which);
   Set conditions();
-  Set conditions_in_function();
+  Set parting();
   Set conditions_in_loop();
+  Set conditions_in_function();
 
   // expressions.cc
   Value evaluate(const glslang::TIntermTyped* node);
@@ -155,11 +164,19 @@ class Walk {
   Value element_of(const Value& base, std::size_t element, std::size_t cells);
   Value any_element_of(const Value& base, const Scalar& index, std::size_t cells);
 
+  std::vector<Value> evaluate_assigned(const glslang::TIntermBinary& binary, bool with_left);
+
+  // order.cc
+  std::vector<Value> evaluate_operands(std::span<const glslang::TIntermTyped* const> operands);
+  std::vector<Value> one_after_the_other(std::span<const glslang::TIntermTyped* const> operands);
+  bool blend(std::vector<Scalar>& scalars, const std::vector<Scalar>& other, Number point);
+
   // places.cc
   std::optional<Place> place_of(const glslang::TIntermTyped* node);
   Place indexed(const glslang::TIntermBinary& binary, Place base);
   void keep_parts(Place& place, std::size_t first, std::size_t count);
   void index_by(Place& place, const Scalar& index, std::size_t cells);
+  void add_choice(Place& place, const Place& other);
   Value read(const Place& place);
   void write(const Place& place, const Value& value, int line);
   void write_perhaps(const Place& place, std::uint32_t start, Scalar& cell, const Scalar& given);
@@ -213,6 +230,7 @@ class Walk {
 
   Stage stage_;
   const Variables& variables_;
+  Effects effects_;
   Values values_;
   State state_;
   State emitted_{.cells = {}, .reachable = false};  ///< of a geometry stage

@@ -163,13 +163,15 @@ TEST(Failures, ComeBeforeTheFrontEndIsInTrouble) {
   std::string doubling = "float f0(float x) { return x; }\n";
   for (int i = 1; i < 40; ++i) {
     const std::string called = "f" + std::to_string(i - 1) + "(x)";
-    doubling += "float f" + std::to_string(i) + "(float x) { return " + called + " + " + called + "; }\n";
+    doubling.append("float f").append(std::to_string(i)).append("(float x) { return ");
+    doubling.append(called).append(" + ").append(called).append("; }\n");
   }
   EXPECT_THAT(what_fails(doubling + "void main() { gl_FragColor = vec4(f39(1.0)); }"), HasSubstr("too large"));
 }
 
 TEST(Analysis, IsSafeFromSeveralThreads) {
   std::vector<std::thread> threads;
+  threads.reserve(4);
   for (int i = 0; i < 4; ++i) {
     threads.emplace_back([i] {
       for (int k = 0; k < 20; ++k) {

@@ -76,7 +76,7 @@ TEST(BundledViewer, LightsByFurtherTexels) {
   EXPECT_THAT(finding.reasons, Contains("colours depend on a second texel of 'volume' at an offset"));
 }
 
-TEST(BundledViewer, IntegratesSlabsBetweenTwoCoordinates) {
+TEST(BundledViewer, IntegratesSegmentsBetweenTwoCoordinates) {
   const SliceFinding finding = finding_of("preintegrated");
   EXPECT_EQ(finding.texels.size(), 2U);
   EXPECT_TRUE(finding.others.empty());

@@ -31,7 +31,8 @@ const std::map<std::string, std::string>& known_misses() {
     std::ifstream file(ADVERSARY_KNOWN_MISSES);
     for (std::string line; std::getline(file, line);) {
       const std::size_t colon = line.find(": ");
-      if (!line.starts_with('#') && colon != std::string::npos) read[line.substr(0, colon)] = line.substr(colon + 2);
+      if (!line.starts_with('#') && colon != std::string::npos)
+        read[line.substr(0, colon)] = line.substr(colon + 2);
     }
     return read;
   }();

@@ -95,6 +95,7 @@ void LiveApplication::end() {
 Played play_back(const std::filesystem::path& trace, const std::string& chain) {
   launcher::EglContexts windows;
   spu::Options options;
+  options.speed_guard = false;
   options.chain = chain;
   spu::Player player(windows, options);
   Played played;

@@ -521,6 +521,7 @@ TEST_P(KeptTraces, ShowTheSameImagesOnOsmesa) {
   const std::string name = GetParam();
   const fs::path folder = fs::path(testing::TempDir()) / fmt::format("osmesa.{}.{}", name, getpid());
   spu::Options options;
+  options.speed_guard = false;
   options.chain = "driver";
   options.server_opengl = "osmesa";
   const launcher::Played played =

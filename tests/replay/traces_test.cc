@@ -107,6 +107,7 @@ class Kept : public testing::TestWithParam<Trace> {};
 TEST_P(Kept, TracesShowTheSameImagesNatively) {
   const Folder folder;
   spu::Options options;
+  options.speed_guard = false;
   options.chain = "driver";
   const launcher::Played played =
       launcher::play({.trace = trace_file(GetParam().name), .save_frames = folder.path()}, options);
@@ -223,6 +224,7 @@ TEST(CutOff, TracesPlayToTheirLastWholeBlock) {
   ASSERT_GE(starts.size(), std::size_t(frames));
   starts.push_back(bytes.size());
   spu::Options options;
+  options.speed_guard = false;
   options.chain = "driver";
   for (std::size_t block = 0; block + 1 < starts.size(); ++block) {
     // Within the block's header, within its data, and one byte before its end.
@@ -247,6 +249,7 @@ TEST(Damaged, TracesEndPlayingWithBlockAndOffset) {
   write(damaged, bytes);
   EXPECT_EQ(understudy("replay --native " + damaged.string()), 1);
   spu::Options options;
+  options.speed_guard = false;
   options.chain = "driver";
   try {
     launcher::play({.trace = damaged}, options);

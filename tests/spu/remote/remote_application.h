@@ -83,7 +83,7 @@ class RemoteApplication {
     if (core) window.version = link->versions().core;
     chains_.push_back(std::make_unique<Chain>(remote_driver(), std::make_shared<ShareGroup>(), &install,
                                               Surroundings{chains_.size() + 1, shares_with, link.get()}));
-    const auto session = std::make_shared<RenderSession>(Options{});
+    const auto session = std::make_shared<RenderSession>(Options{.speed_guard = false});
     EXPECT_EQ(assemble(*chains_.back(), "pack remote", session), std::nullopt);
     chains_.back()->make_current();
     return *chains_.back();

@@ -76,6 +76,8 @@ class AssemblyWalk {
 
   void execute(const Instruction& instruction) {
     const std::string& name = instruction.name;
+    if (std::ranges::any_of(instruction.operands, &std::string::empty))
+      throw Unsupported{"instruction " + name + " with an empty operand"};
     if (name == "OPTION") return choose(instruction.operands.at(0));
     if (name == "TEMP" || name == "ADDRESS") return;
     if (name == "ATTRIB" || name == "PARAM" || name == "OUTPUT" || name == "ALIAS")

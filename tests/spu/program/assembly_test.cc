@@ -83,6 +83,7 @@ TEST(AssemblyPrograms, ThatAreNotFollowedFail) {
   EXPECT_THAT(what("!!ARBfp1.0\nOPTION NV_fragment_program2;\nEND"), HasSubstr("OPTION NV_fragment_program2"));
   EXPECT_THAT(what("!!ARBfp1.0\nDDX result.color, fragment.position;\nEND"), HasSubstr("instruction DDX"));
   EXPECT_THAT(what("!!NVfp4.0\nEND"), HasSubstr("neither"));
+  EXPECT_THAT(what("!!ARBfp1.0\nSWZ result.color, fragment.color, 0, 1, ,;\nEND"), HasSubstr("empty operand"));
   EXPECT_THAT(what("!!ARBfp1.0\nTEX;\nEND"), HasSubstr("cannot be read"));
 }
 

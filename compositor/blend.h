@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include "volume/blending_operator.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

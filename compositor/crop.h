@@ -1,8 +1,8 @@
 // Only what shows need travel: the smallest rectangle that holds every pixel a sample has reached.
 #pragma once
 
+#include "volume/blending_operator.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -10,9 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "volume/description.h"
+#include "volume/frame_counts.h"
 #include "volume/image.h"
 #include "volume/reference/pixel_integral.h"
-#include "volume/request.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::compositor {
 

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "volume/brick/brick_store.h"
-#include "volume/brick/texel_box.h"
 
 namespace understudy::volume {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/texel_box.h"
 
 namespace understudy::volume {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "volume/request.h"
 #include "volume/visibility_order.h"
 
 namespace understudy::volume {

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/request.h"
+#include "volume/description.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 struct BrickGrid {
   std::array<int, 3> origin{};  ///< the cell at which the first brick begins

@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-namespace understudy::volume {
+#include "volume/rgba.h"
 
-using Rgba = std::array<float, 4>;
+namespace understudy::volume {
 
 /// A transfer function: N >= 2 premultiplied RGBA entries at low + i (high - low) / (N - 1), linear between
 /// entries and constant outside [low, high]. Values are normalised texel values (u8: v/255, u16: v/65535,

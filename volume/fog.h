@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "volume/classification.h"
+#include "volume/rgba.h"
 
 namespace understudy::volume {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -2,9 +2,13 @@
 #pragma once
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/request.h"
+#include "volume/description.h"
+#include "volume/rect.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Bounds every pixel centre whose ray meets `box` within the request's region and between the near and far
 /// plane; intersected with the request's window. Never too small, at most a pixel too large on each side,

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "volume/request.h"
+
 namespace understudy::volume {
 
 KdTree::KdTree(const VolumeDescription& volume, Partition partition)

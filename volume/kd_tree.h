@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "volume/brick/cell_lattice.h"
+#include "volume/description.h"
 #include "volume/partition.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 #include "volume/visibility_order.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 class KdTree {
  public:

@@ -1,10 +1,10 @@
 // The little double-precision algebra that the modules share: row-major 4x4 matrices on column vectors, and
-// vectors of three. Planes are kept as request.h keeps them (HalfSpace: normal . p + offset >= 0).
+// vectors of three. Planes are kept as in texture_space.h (HalfSpace: normal . p + offset >= 0).
 #pragma once
 
 #include <optional>
 
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

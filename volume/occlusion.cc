@@ -1,5 +1,7 @@
 #include "volume/occlusion.h"
 
+#include "volume/request.h"
+
 namespace understudy::volume {
 
 namespace {

@@ -4,9 +4,10 @@
 #pragma once
 
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Pixels, along both axes; tiles begin at multiples of it, in window coordinates.
 constexpr int occlusion_tile = 32;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "volume/block_costs.h"
-#include "volume/request.h"
+#include "volume/description.h"
 
 namespace understudy::volume {
 

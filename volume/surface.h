@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "volume/classification.h"
+#include "volume/rgba.h"
 
 namespace understudy::volume {
 

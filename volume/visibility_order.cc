@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "volume/request.h"
+
 namespace understudy::volume {
 
 namespace {

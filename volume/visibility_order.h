@@ -2,9 +2,11 @@
 #pragma once
 
 #include "volume/matrix.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 class VisibilityOrder {
  public:

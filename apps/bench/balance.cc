@@ -19,6 +19,7 @@
 #include "volume/file/volume_file.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/segment_scene.h"
+#include "volume/request.h"
 #include "volume/transfer_control_points.h"
 
 namespace {

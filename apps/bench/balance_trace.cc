@@ -10,8 +10,9 @@
 #include "compositor/balance/moves.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/expected_samples.h"
 #include "volume/raycast/ray_caster.h"
 

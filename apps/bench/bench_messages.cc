@@ -11,6 +11,8 @@
 #include "compositor/exchange/measure_message_cost.h"
 #include "compositor/exchange/mpi_communicator.h"
 #include "compositor/exchange/pixel_layout.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 
 namespace {
 

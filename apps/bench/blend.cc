@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "compositor/exchange/pixel_layout.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 
 namespace {
 

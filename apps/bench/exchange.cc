@@ -23,6 +23,8 @@
 #include "compositor/exchange/mpi_communicator.h"
 #ifdef UNDERSTUDY_ICET
 #include "apps/bench/icet_compositor.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 #endif
 
 namespace {

@@ -8,8 +8,11 @@
 #include "compositor/crop.h"
 #include "volume/brick/brick_store.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/ray_setup.h"
+#include "volume/request.h"
 
 namespace understudy::bench {
 

@@ -10,8 +10,14 @@
 #include "compositor/exchange/counted_exchange.h"
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
+#include "volume/blending_operator.h"
+#include "volume/description.h"
 #include "volume/kd_tree.h"
-#include "volume/request.h"
+#include "volume/rect.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::bench {
 

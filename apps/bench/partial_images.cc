@@ -7,9 +7,11 @@
 
 #include "compositor/crop.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
 #include "volume/kd_tree.h"
 #include "volume/matrix.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::bench {
 

@@ -20,12 +20,15 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/brick/cell_lattice.h"
+#include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
+#include "volume/image.h"
 #include "volume/matrix.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/pixel_integral.h"
 #include "volume/reference/segment_sum.h"
+#include "volume/request.h"
 
 namespace {
 

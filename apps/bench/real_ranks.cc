@@ -22,7 +22,9 @@
 #include "compositor/service/loading_service.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
+#include "volume/frame_counts.h"
 #include "volume/orbit_camera.h"
+#include "volume/request.h"
 #include "volume/transfer_control_points.h"
 
 namespace {

@@ -26,6 +26,7 @@
 #include "volume/orbit_camera.h"
 #include "volume/partition.h"
 #include "volume/raycast/expected_samples.h"
+#include "volume/request.h"
 #include "volume/transfer_control_points.h"
 
 namespace {

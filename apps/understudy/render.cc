@@ -16,6 +16,7 @@
 #include "apps/understudy/load_progress.h"
 #include "apps/understudy/loading_nodes.h"
 #include "apps/understudy/render_report.h"
+#include "volume/image.h"
 
 namespace understudy::launcher {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "compositor/service/loading_service.h"
 #include "volume/file/texel_stream.h"
+#include "volume/frame_counts.h"
 #include "volume/request.h"
 
 namespace understudy::launcher {

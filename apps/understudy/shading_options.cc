@@ -11,6 +11,7 @@
 
 #include "apps/understudy/number_list.h"
 #include "volume/brick/brick_store.h"
+#include "volume/surface.h"
 
 namespace understudy::launcher {
 namespace {

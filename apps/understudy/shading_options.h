@@ -7,7 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/blending_operator.h"
+#include "volume/integration_method.h"
+#include "volume/light.h"
+#include "volume/rgba.h"
+#include "volume/texture_space.h"
 
 namespace understudy::launcher {
 

@@ -11,7 +11,7 @@
 
 #include "volume/block_costs.h"
 #include "volume/partition.h"
-#include "volume/request.h"
+#include "volume/texel_box.h"
 
 namespace understudy::compositor {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/texel_box.h"
 
 namespace understudy::compositor {
 

@@ -4,7 +4,6 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 
 namespace understudy::compositor {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "volume/description.h"
 #include "volume/partition.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -7,6 +7,7 @@
 #include "compositor/balance/balancer.h"
 #include "compositor/balance/moves.h"
 #include "compositor/balance/tree.h"
+#include "volume/texel_box.h"
 
 namespace understudy::compositor {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "volume/partition.h"
+#include "volume/texel_box.h"
 
 namespace understudy::compositor {
 

@@ -8,6 +8,7 @@
 
 #include "compositor/exchange/pixel_layout.h"
 #include "compositor/exchange/schedule.h"
+#include "volume/rect.h"
 
 namespace understudy::compositor {
 

@@ -9,8 +9,8 @@
 
 #include "compositor/exchange/pixel_layout.h"
 #include "compositor/exchange/schedule.h"
+#include "volume/blending_operator.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -8,8 +8,8 @@
 #include "compositor/exchange/communicator.h"
 #include "compositor/exchange/pixel_layout.h"
 #include "compositor/exchange/schedule.h"
+#include "volume/blending_operator.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

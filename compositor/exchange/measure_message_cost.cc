@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compositor/blend.h"
+#include "volume/blending_operator.h"
 
 namespace understudy::compositor {
 

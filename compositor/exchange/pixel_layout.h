@@ -8,8 +8,8 @@
 
 #include "compositor/exchange/pixel_numbers.h"
 #include "compositor/exchange/settings.h"
+#include "volume/blending_operator.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -12,8 +12,9 @@
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/node/image_buffer.h"
+#include "volume/blending_operator.h"
+#include "volume/frame_counts.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -26,7 +26,9 @@
 #include "compositor/service/loads.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/rank_renderer.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "volume/request.h"
+
 namespace understudy::compositor {
 
 namespace {

@@ -14,7 +14,10 @@
 #include "compositor/exchange/communicator.h"
 #include "volume/image.h"
 #include "volume/occlusion.h"
-#include "volume/request.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::compositor {
 

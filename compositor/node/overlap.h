@@ -12,8 +12,8 @@
 #include "compositor/exchange/communicator.h"
 #include "compositor/node/compositing.h"
 #include "compositor/node/image_buffer.h"
+#include "volume/frame_counts.h"
 #include "volume/image.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 

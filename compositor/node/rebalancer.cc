@@ -10,7 +10,6 @@
 
 #include "compositor/balance/moves.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 #include "volume/raycast/expected_samples.h"
 
 namespace understudy::compositor {

@@ -4,6 +4,9 @@
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/rank_renderer.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 

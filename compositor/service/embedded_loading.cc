@@ -6,6 +6,9 @@
 #include "compositor/service/loads.h"
 #include "compositor/service/rank_renderer.h"
 #include "volume/file/file_error.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 

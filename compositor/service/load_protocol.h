@@ -6,6 +6,7 @@
 
 #include "compositor/service/loading_service.h"
 #include "volume/brick/histogram.h"
+#include "volume/description.h"
 
 namespace understudy::compositor {
 

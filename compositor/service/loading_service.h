@@ -10,6 +10,7 @@
 #include "compositor/service.h"
 #include "compositor/service/remote_service.h"
 #include "volume/brick/histogram.h"
+#include "volume/description.h"
 #include "volume/file/texel_stream.h"
 
 namespace understudy::compositor {

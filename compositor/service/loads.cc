@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "volume/description.h"
 #include "volume/file/file_error.h"
 
 namespace understudy::compositor {

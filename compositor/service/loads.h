@@ -12,6 +12,7 @@
 #include "compositor/service/rank_renderer.h"
 #include "volume/file/readable_files.h"
 #include "volume/file/texel_stream.h"
+#include "volume/frame_counts.h"
 
 namespace understudy::compositor {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compositor/service/wire.h"
+#include "volume/frame_counts.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {

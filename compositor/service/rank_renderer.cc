@@ -16,12 +16,12 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/time_limit.h"
 #include "volume/brick/brick_store.h"
-#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/brick_renderer.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/reference/pixel_integral.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -17,10 +17,15 @@
 #include "compositor/service/socket.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/histogram.h"
+#include "volume/description.h"
+#include "volume/frame_counts.h"
 #include "volume/image.h"
 #include "volume/partition.h"
 #include "volume/raycast/brick_renderer.h"
-#include "volume/request.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::compositor {
 

@@ -17,7 +17,7 @@
 #include "compositor/service/peer.h"
 #include "compositor/service/protocol.h"
 #include "compositor/service/sent_pre_integration_tables.h"
-#include "volume/brick/texel_box.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "spu/report/optimization.h"
-#include "volume/request.h"
+#include "volume/frame_counts.h"
 
 namespace understudy::spu {
 

@@ -24,6 +24,7 @@
 
 #include "spu/report/keys.h"
 #include "spu/report/skipped_work.h"
+#include "volume/frame_counts.h"
 
 namespace understudy::spu {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spu/report/counters.h"
+#include "volume/frame_counts.h"
 
 namespace understudy::spu {
 

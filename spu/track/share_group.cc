@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "volume/brick/texel_box.h"
-
 namespace understudy::spu {
 namespace {
 

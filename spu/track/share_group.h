@@ -14,7 +14,7 @@
 
 #include "dispatch/table.h"
 #include "spu/track/program_sources.h"
-#include "volume/request.h"
+#include "volume/texel_box.h"
 
 namespace understudy::spu {
 

@@ -7,8 +7,8 @@
 
 #include "spu/volume/context.h"
 #include "spu/volume/target.h"
+#include "volume/blending_operator.h"
 #include "volume/classification.h"
-#include "volume/request.h"
 
 namespace understudy::spu {
 

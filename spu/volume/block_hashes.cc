@@ -5,8 +5,6 @@
 #include <cstring>
 #include <limits>
 
-#include "volume/brick/texel_box.h"
-
 namespace understudy::spu {
 namespace {
 

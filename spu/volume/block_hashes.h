@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::spu {
 

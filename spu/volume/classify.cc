@@ -4,6 +4,7 @@
 
 #include "spu/track/track.h"
 #include "spu/volume/substitution.h"
+#include "volume/fog.h"
 
 namespace understudy::spu {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "spu/volume/context.h"
 #include "spu/volume/target.h"
-#include "volume/request.h"
+#include "volume/depth_image.h"
 
 namespace understudy::spu {
 

@@ -6,6 +6,7 @@
 
 #include "spu/volume/substitution.h"
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "spu/volume/context.h"
-#include "volume/request.h"
+#include "volume/depth_image.h"
 
 namespace understudy::spu {
 

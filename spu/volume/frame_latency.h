@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "compositor/service.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 

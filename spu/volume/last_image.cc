@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "volume/image.h"
+#include "volume/request.h"
+
 namespace understudy::spu {
 namespace {
 

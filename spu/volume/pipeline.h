@@ -12,7 +12,6 @@
 #include "spu/volume/context.h"
 #include "spu/volume/program_samplers.h"
 #include "spu/volume/target.h"
-#include "volume/request.h"
 
 namespace understudy::spu {
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "spu/volume/saved_state.h"
+#include "volume/blending_operator.h"
 
 namespace understudy::spu {
 namespace {

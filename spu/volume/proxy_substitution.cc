@@ -9,7 +9,10 @@
 #include "spu/volume/substitution.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

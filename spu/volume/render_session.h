@@ -14,6 +14,7 @@
 #include "spu/options.h"
 #include "spu/volume/frame_latency.h"
 #include "spu/volume/frame_ledger.h"
+#include "volume/description.h"
 
 namespace understudy::spu {
 

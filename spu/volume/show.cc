@@ -9,7 +9,10 @@
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/save_frames.h"
 #include "spu/volume/substitution.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

@@ -9,6 +9,7 @@
 #include "spu/volume/program_check.h"
 #include "spu/volume/verification/native_image.h"
 #include "spu/volume/volume_unit.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 

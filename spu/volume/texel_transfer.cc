@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 
 namespace understudy::spu {
 namespace {

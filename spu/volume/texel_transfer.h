@@ -7,6 +7,7 @@
 #include "compositor/service.h"
 #include "spu/volume/block_hashes.h"
 #include "spu/volume/texels.h"
+#include "volume/description.h"
 
 namespace understudy::spu {
 

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "volume/brick/texel_box.h"
-
 namespace understudy::spu {
 namespace {
 

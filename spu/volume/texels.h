@@ -11,7 +11,10 @@
 #include <string>
 
 #include "spu/volume/context.h"
-#include "volume/request.h"
+#include "volume/rgba.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::spu {
 

@@ -9,7 +9,7 @@
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/volume_unit.h"
-#include "volume/request.h"
+#include "volume/texel_box.h"
 
 namespace understudy::spu {
 namespace {

@@ -6,7 +6,8 @@
 #include "spu/volume/saved_state.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/texel_transfer.h"
-#include "volume/brick/texel_box.h"
+#include "volume/description.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 namespace {

@@ -17,10 +17,10 @@
 #include "spu/volume/saved_state.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/texel_transfer.h"
-#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

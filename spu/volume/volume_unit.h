@@ -33,6 +33,10 @@
 #include "spu/volume/speed_guard.h"
 #include "spu/volume/stack_detection.h"
 #include "spu/volume/verification/schedule.h"
+#include "volume/description.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

@@ -10,7 +10,7 @@
 #include "compositor/service/rank_renderer.h"
 #include "tests/attacks/server.h"
 #include "tests/clients/command_test.h"
-#include "volume/brick/texel_box.h"
+#include "volume/request.h"
 
 namespace attacks {
 namespace {

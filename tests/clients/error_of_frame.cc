@@ -18,6 +18,7 @@
 #include "volume/file/volume_file.h"
 #include "volume/matrix.h"
 #include "volume/reference/pixel_integral.h"
+#include "volume/request.h"
 
 namespace {
 

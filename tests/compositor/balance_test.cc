@@ -12,9 +12,11 @@
 #include "compositor/balance/tree.h"
 #include "tests/volume/scenes.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/expected_samples.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -13,6 +13,7 @@
 #include "tests/volume/scenes.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/segment_scene.h"
+#include "volume/request.h"
 
 namespace understudy::bench {
 namespace {

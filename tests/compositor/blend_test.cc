@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "compositor/crop.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {

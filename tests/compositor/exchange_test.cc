@@ -17,6 +17,8 @@
 #include "compositor/exchange/counted_exchange.h"
 #include "compositor/exchange/thread_communicator.h"
 #include "tests/compositor/forwarding_communicator.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::compositor {

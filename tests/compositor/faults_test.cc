@@ -19,6 +19,8 @@
 #include "tests/compositor/group_resources.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -9,6 +9,7 @@
 #include "apps/bench/frame_time.h"
 #include "tests/volume/scenes.h"
 #include "volume/orbit_camera.h"
+#include "volume/request.h"
 
 namespace understudy::bench {
 namespace {

@@ -10,6 +10,8 @@
 #include "compositor/service/broker.h"
 #include "tests/compositor/scratch_folder.h"
 #include "tests/volume/scenes.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor::testing {
 

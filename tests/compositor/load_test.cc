@@ -14,8 +14,10 @@
 #include "compositor/service/loading_service.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/brick_store.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -17,6 +17,9 @@
 #include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -9,6 +9,9 @@
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
 #include "tests/compositor/node_group.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -12,7 +12,9 @@
 #include "compositor/exchange/thread_communicator.h"
 #include "compositor/service/rank_renderer.h"
 #include "tests/compositor/group_scene.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

@@ -8,6 +8,9 @@
 
 #include "compositor/exchange/thread_communicator.h"
 #include "tests/compositor/node_group.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

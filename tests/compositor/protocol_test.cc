@@ -11,8 +11,10 @@
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/load_protocol.h"
+#include "volume/frame_counts.h"
 #include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

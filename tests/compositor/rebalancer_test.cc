@@ -15,8 +15,10 @@
 #include "compositor/node/node.h"
 #include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/partition.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 namespace {

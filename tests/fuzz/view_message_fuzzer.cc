@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "apps/understudy/view/view_message.h"
+#include "volume/request.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace understudy;

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
 
-#include "volume/brick/texel_box.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::spu {
 namespace {

@@ -13,7 +13,10 @@
 #include "tests/volume/fields.h"
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/reference/pixel_integral.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

@@ -8,6 +8,7 @@
 #include "spu/volume/proxy/cut_box.h"
 #include "spu/volume/proxy/cuts.h"
 #include "volume/matrix.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "volume/matrix.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 namespace {

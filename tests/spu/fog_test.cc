@@ -9,6 +9,7 @@
 
 #include "slice_scenes.h"
 #include "spu/report/counters.h"
+#include "volume/rgba.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -8,6 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
+
 namespace understudy::spu {
 namespace {
 

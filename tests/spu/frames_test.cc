@@ -13,6 +13,8 @@
 #include "spu/report/counters.h"
 #include "spu/volume/frame_ledger.h"
 #include "spu/volume/last_image.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::spu::testing {
 namespace {

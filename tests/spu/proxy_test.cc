@@ -8,6 +8,7 @@
 #include "box_ray_caster.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "volume/texel_box.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volume/matrix.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 namespace {

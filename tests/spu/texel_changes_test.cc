@@ -2,13 +2,15 @@
 // was loaded with the new texels from the start, bit for bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <random>
+#include <vector>
 
 #include "slice_scenes.h"
-#include "volume/brick/texel_box.h"
+#include "volume/texel_box.h"
 
 namespace understudy::spu::testing {
 namespace {

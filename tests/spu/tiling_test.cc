@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "volume/matrix.h"
+#include "volume/sampling.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::spu {
 namespace {

@@ -3,7 +3,10 @@
 #include <hwy/targets.h>
 
 #include "tests/volume/segment_scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/reference/pixel_integral.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -4,11 +4,14 @@
 
 #include <cstdio>
 #include <set>
+#include <string>
 
 #include "tests/volume/scenes.h"
-#include "volume/brick/texel_box.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "tests/volume/parts.h"
 #include "tests/volume/scenes.h"
-#include "volume/brick/texel_box.h"
 #include "volume/partition.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

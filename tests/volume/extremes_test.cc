@@ -5,7 +5,10 @@
 #include <limits>
 
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

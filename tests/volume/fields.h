@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "volume/brick/brick_store.h"
-#include "volume/request.h"
+#include "volume/description.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume::testing {
 

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/volume/parts.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <hwy/targets.h>
 
+#include <string>
+
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -9,7 +9,10 @@
 
 #include "tests/volume/random_scenes.h"
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "tests/volume/segment_scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -7,6 +7,8 @@
 #include <exception>
 
 #include "tests/volume/random_scenes.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 

@@ -2,7 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <string>
+
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -6,6 +6,10 @@
 #include <limits>
 
 #include "tests/volume/scenes.h"
+#include "volume/classification.h"
+#include "volume/texel_type.h"
+#include "volume/texture_filter.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume::testing {
 namespace {

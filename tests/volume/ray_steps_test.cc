@@ -6,8 +6,11 @@
 
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/volume/scenes.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

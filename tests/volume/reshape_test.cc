@@ -7,10 +7,12 @@
 #include "volume/block_costs.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/partition.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -3,10 +3,13 @@
 
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/segment_sum.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "volume/image.h"
+
 namespace understudy::volume::testing {
 namespace {
 

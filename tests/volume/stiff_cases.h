@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/volume/parts.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 

@@ -4,6 +4,7 @@
 #include "tests/volume/scenes.h"
 #include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -7,9 +7,12 @@
 #include <stdexcept>
 
 #include "tests/volume/segment_scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/raycast/surface_search.h"
 #include "volume/reference/illumination.h"
 #include "volume/reference/pixel_integral.h"
+#include "volume/request.h"
 
 namespace understudy::volume::testing {
 namespace {

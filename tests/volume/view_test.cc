@@ -7,8 +7,11 @@
 #include <stdexcept>
 
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 #include "volume/transfer_control_points.h"
 
 namespace understudy::volume::testing {

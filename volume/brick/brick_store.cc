@@ -11,8 +11,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "volume/brick/texel_box.h"
-
 namespace understudy::volume {
 
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/request.h"
+#include "volume/description.h"
 
 namespace understudy::volume {
 

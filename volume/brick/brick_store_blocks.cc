@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "volume/brick/brick_store.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

@@ -8,7 +8,8 @@
 
 #include <array>
 
-#include "volume/request.h"
+#include "volume/description.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

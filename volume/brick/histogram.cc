@@ -13,6 +13,9 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
+
 namespace understudy::volume {
 namespace {
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "volume/brick/texel_box.h"
 #include "volume/file/file_error.h"
+#include "volume/texel_box.h"
 
 namespace understudy::volume {
 

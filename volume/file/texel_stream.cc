@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "volume/brick/brick_store.h"
-#include "volume/brick/texel_box.h"
 #include "volume/file/file_error.h"
 
 namespace understudy::volume {

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "volume/file/volume_file.h"
-#include "volume/request.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

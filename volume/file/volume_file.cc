@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 #include "volume/file/file_error.h"
 #include "volume/file/nifti.h"
 #include "volume/file/nrrd.h"

@@ -15,7 +15,8 @@
 #include "volume/file/byte_source.h"
 #include "volume/file/readable_files.h"
 #include "volume/file/scalar_type.h"
-#include "volume/request.h"
+#include "volume/texel_box.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

@@ -7,7 +7,7 @@
 
 #include "volume/file/byte_source.h"
 #include "volume/file/scalar_type.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

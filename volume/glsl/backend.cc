@@ -12,7 +12,10 @@
 #include <utility>
 #include <variant>
 
+#include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 

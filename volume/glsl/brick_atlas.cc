@@ -8,6 +8,7 @@
 
 #include "volume/glsl/brick_size.h"
 #include "volume/glsl/texel_format.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume::glsl {
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "volume/glsl/texel_format.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume::glsl {
 

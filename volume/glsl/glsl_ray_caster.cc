@@ -21,6 +21,7 @@
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 

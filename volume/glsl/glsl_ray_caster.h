@@ -18,8 +18,10 @@
 #include <string>
 #include <vector>
 
+#include "volume/frame_counts.h"
 #include "volume/glsl/brick_size.h"
 #include "volume/glsl/device.h"
+#include "volume/image.h"
 #include "volume/raycast/brick_renderer.h"
 
 namespace understudy::volume::glsl {

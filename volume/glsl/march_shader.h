@@ -3,8 +3,9 @@
 
 #include <compare>
 
+#include "volume/blending_operator.h"
 #include "volume/glsl/functions.h"
-#include "volume/request.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::volume::glsl {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "volume/glsl/functions.h"
-#include "volume/request.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume::glsl {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "volume/glsl/functions.h"
-#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 

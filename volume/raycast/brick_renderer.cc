@@ -1,6 +1,7 @@
 #include "volume/raycast/brick_renderer.h"
 
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -8,10 +8,13 @@
 #include <span>
 
 #include "volume/brick/brick_store.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/occlusion.h"
-#include "volume/request.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 class BrickRenderer {
  public:

@@ -13,6 +13,7 @@
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

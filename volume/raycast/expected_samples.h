@@ -4,9 +4,11 @@
 
 #include "volume/block_costs.h"
 #include "volume/brick/brick_store.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Samples per unit of texture space around `t`, of all pixels; 0 behind the eye and where the request has
 /// none. Planes or steps: pixels times samples along their rays, by the determinant of (x, y, i) over t.

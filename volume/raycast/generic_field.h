@@ -9,6 +9,8 @@
 #include <cstring>
 
 #include "volume/raycast/kernel.h"
+#include "volume/rgba.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::volume {
 

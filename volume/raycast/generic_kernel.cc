@@ -5,9 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "volume/blending_operator.h"
+#include "volume/classification.h"
 #include "volume/raycast/generic_field.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

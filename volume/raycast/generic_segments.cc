@@ -7,6 +7,8 @@
 #include "volume/raycast/generic_field.h"
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/surface_search.h"
+#include "volume/rgba.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

@@ -5,7 +5,9 @@
 
 #include <cstdint>
 
+#include "volume/blending_operator.h"
 #include "volume/brick/brick_store.h"
+#include "volume/classification.h"
 #include "volume/raycast/fog_table.h"
 #include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/pre_integration_lookup.h"
@@ -13,7 +15,7 @@
 #include "volume/raycast/segment_scene.h"
 #include "volume/raycast/step_division.h"
 #include "volume/raycast/transfer_table.h"
-#include "volume/request.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::volume {
 

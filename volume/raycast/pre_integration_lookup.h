@@ -9,6 +9,7 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/classification.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

@@ -13,7 +13,6 @@
 #include <stdexcept>
 #include <variant>
 
-#include "volume/brick/texel_box.h"
 #include "volume/brick_grid.h"
 #include "volume/footprint.h"
 #include "volume/matrix.h"
@@ -26,6 +25,7 @@
 #include "volume/raycast/ray_setup.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/raycast/transfer_table.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -13,11 +13,16 @@
 #include <memory>
 #include <span>
 
+#include "volume/blending_operator.h"
 #include "volume/brick/brick_store.h"
+#include "volume/description.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/occlusion.h"
-#include "volume/request.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Most slice planes that are believed.
 constexpr int max_planes = 1 << 22;

@@ -149,6 +149,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include "volume/matrix.h"
 #include "volume/raycast/segment_scene.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -17,9 +17,12 @@
 #include <vector>
 
 #include "volume/brick/brick_store.h"
-#include "volume/request.h"
+#include "volume/sampling.h"
+#include "volume/texel_box.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// c + x X + y Y over normalised device coordinates.
 struct LinearInPixel {

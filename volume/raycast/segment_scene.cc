@@ -10,6 +10,7 @@
 
 #include "volume/footprint.h"
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/description.h"
+#include "volume/light.h"
+#include "volume/surface.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Whether a request has surfaces, light, segments or adaptive steps; other requests know nothing of all this.
 bool walks_segments(const RenderRequest& request);

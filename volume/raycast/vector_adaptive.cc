@@ -26,7 +26,9 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || \
     HWY_TARGET == HWY_AVX3_DL
 
+#include "volume/blending_operator.h"
 #include "volume/raycast/vector_segments-inl.h"
+#include "volume/texel_type.h"
 
 struct AdaptiveConstants : SegmentConstants {
   template <typename Source>

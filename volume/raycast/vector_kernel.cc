@@ -24,8 +24,10 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || \
     HWY_TARGET == HWY_AVX3_DL
 
+#include "volume/blending_operator.h"
 #include "volume/raycast/vector_field-inl.h"
 #include "volume/raycast/vector_slice_segments-inl.h"
+#include "volume/texel_type.h"
 
 /// `colour` after the row of fog (added colour, weight): components side by side.
 HWY_INLINE Floats fogged(Floats colour, Floats row) {

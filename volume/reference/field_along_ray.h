@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "volume/reference/slice_sum.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

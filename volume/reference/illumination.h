@@ -1,7 +1,10 @@
 // Light on a point of the field, in double precision: volume/light.h, literally.
 #pragma once
 
+#include "volume/description.h"
+#include "volume/light.h"
 #include "volume/reference/slice_sum.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

@@ -5,6 +5,7 @@
 
 #include "volume/matrix.h"
 #include "volume/reference/stored_field.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -5,8 +5,11 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/reference/ray_integral.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// The part of a pixel's ray that lies in the request's region, on the right side of its clip planes and before
 /// its opaque geometry, in texture space.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "volume/classification.h"
 #include "volume/reference/field_along_ray.h"
 #include "volume/reference/medium.h"
 

@@ -10,6 +10,7 @@
 #include "volume/matrix.h"
 #include "volume/reference/illumination.h"
 #include "volume/reference/ray_integral.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 namespace {

@@ -3,9 +3,13 @@
 // ray caster.
 #pragma once
 
+#include "volume/description.h"
+#include "volume/rect.h"
 #include "volume/reference/slice_sum.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// Composes all samples, segments and surfaces of `request`, whose samples lie on steps, over the pixels of
 /// `rect` that lie in its window; never terminates early. `field` is that of `volume`. Throws

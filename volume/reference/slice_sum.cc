@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -9,9 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/description.h"
+#include "volume/rect.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
 
 /// A field over texture space: normalised value in the first component, or RGBA. A NaN contributes nothing.
 using Field = std::function<std::array<double, 4>(const Vec3& t)>;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "volume/description.h"
 #include "volume/matrix.h"
 
 namespace understudy::volume {

@@ -6,6 +6,7 @@
 
 #include "volume/brick/brick_store.h"
 #include "volume/reference/field_along_ray.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
 

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
+
 namespace understudy::launcher::study {
 namespace {
 

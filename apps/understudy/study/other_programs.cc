@@ -13,6 +13,7 @@
 #include "apps/understudy/image.h"
 #include "apps/understudy/installation.h"
 #include "apps/understudy/study/viewer_command.h"
+#include "volume/image.h"
 
 namespace understudy::launcher::study {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volume/brick/brick_store.h"
+#include "volume/image.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/reference/slice_sum.h"

@@ -11,6 +11,7 @@
 
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
+#include "volume/texture_space.h"
 
 namespace understudy::launcher::study {
 namespace {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::launcher {
 namespace {

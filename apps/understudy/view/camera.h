@@ -4,7 +4,10 @@
 #include <array>
 
 #include "volume/orbit_camera.h"
-#include "volume/request.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::launcher {
 

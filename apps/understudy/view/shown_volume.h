@@ -10,6 +10,9 @@
 #include "apps/understudy/loading_nodes.h"
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/view_state.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::launcher {
 

@@ -7,6 +7,7 @@
 #include "apps/understudy/file_scene.h"
 #include "apps/understudy/view/camera.h"
 #include "apps/understudy/view/view_message.h"
+#include "volume/request.h"
 
 namespace understudy::launcher {
 

@@ -14,6 +14,8 @@
 #include "spu/report/counters.h"
 #include "spu/volume/budget/calibration.h"
 #include "spu/volume/budget/free_sampling.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 

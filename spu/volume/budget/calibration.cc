@@ -10,6 +10,7 @@
 
 #include "volume/footprint.h"
 #include "volume/raycast/segment_scene.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

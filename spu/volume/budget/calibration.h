@@ -7,6 +7,12 @@
 
 #include "compositor/service.h"
 #include "spu/volume/budget/free_sampling.h"
+#include "volume/description.h"
+#include "volume/image.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::spu {
 

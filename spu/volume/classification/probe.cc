@@ -8,6 +8,7 @@
 
 #include "spu/volume/classification/pre_integration.h"
 #include "spu/volume/saved_state.h"
+#include "volume/blending_operator.h"
 
 namespace understudy::spu {
 namespace {

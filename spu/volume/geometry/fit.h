@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "spu/volume/geometry/polygon.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

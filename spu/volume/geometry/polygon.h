@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

@@ -7,6 +7,7 @@
 
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/geometry/slices.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu {
 

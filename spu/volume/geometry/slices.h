@@ -7,7 +7,7 @@
 
 #include "spu/volume/geometry/fit.h"
 #include "spu/volume/geometry/polygon.h"
-#include "volume/request.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu {
 

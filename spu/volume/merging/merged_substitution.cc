@@ -11,8 +11,10 @@
 #include "spu/volume/saved_state.h"
 #include "spu/volume/texel_transfer.h"
 #include "spu/volume/verification/tile_comparison.h"
-#include "volume/brick/texel_box.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

@@ -5,7 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "volume/brick/texel_box.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::spu {
 namespace {

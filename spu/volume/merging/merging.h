@@ -10,6 +10,8 @@
 
 #include "spu/volume/merging/tiling.h"
 #include "spu/volume/substitution.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::spu {
 

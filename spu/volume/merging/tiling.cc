@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "volume/brick/cell_lattice.h"
-#include "volume/brick/texel_box.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {

@@ -8,7 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/sampling.h"
+#include "volume/texel_box.h"
+#include "volume/texture_filter.h"
 
 namespace understudy::spu {
 

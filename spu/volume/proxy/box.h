@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "spu/volume/geometry/polygon.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

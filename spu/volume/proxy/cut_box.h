@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "spu/volume/geometry/polygon.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

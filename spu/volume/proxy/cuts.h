@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "spu/volume/context.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::spu {
 

@@ -13,6 +13,7 @@
 
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu {
 

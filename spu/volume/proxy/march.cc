@@ -9,6 +9,7 @@
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

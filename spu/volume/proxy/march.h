@@ -17,9 +17,14 @@
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/jitter.h"
 #include "spu/volume/texels.h"
+#include "volume/blending_operator.h"
 #include "volume/classification.h"
 #include "volume/image.h"
-#include "volume/request.h"
+#include "volume/sampling.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::spu {
 

@@ -10,6 +10,7 @@
 #include "volume/footprint.h"
 #include "volume/matrix.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 namespace {

@@ -5,7 +5,11 @@
 #include <vector>
 
 #include "volume/image.h"
-#include "volume/request.h"
+#include "volume/texture_space.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::spu {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "volume/request.h"
+#include "volume/sampling.h"
 
 namespace understudy::spu {
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 
+#include "volume/request.h"
+
 namespace understudy::spu {
 namespace {
 

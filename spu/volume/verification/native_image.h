@@ -11,7 +11,11 @@
 #include "spu/volume/context.h"
 #include "spu/volume/float_framebuffer.h"
 #include "spu/volume/run.h"
-#include "volume/request.h"
+#include "volume/depth_image.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::spu {
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "volume/blending_operator.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "spu/volume/substitution.h"
 #include "spu/volume/verification/tile_comparison.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 
 namespace understudy::spu {
 namespace {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::launcher {
 namespace {

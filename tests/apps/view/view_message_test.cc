@@ -9,6 +9,7 @@
 #include <string>
 
 #include "apps/understudy/view/view_state.h"
+#include "volume/request.h"
 
 namespace understudy::launcher {
 namespace {

@@ -18,6 +18,8 @@
 #include "compositor/tcp/tcp_socket.h"
 #include "tests/compositor/node_group.h"
 #include "tests/compositor/tcp/line.h"
+#include "volume/blending_operator.h"
+#include "volume/image.h"
 
 namespace understudy::compositor::testing {
 namespace {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "volume/image.h"
+
 namespace understudy::spu {
 namespace {
 

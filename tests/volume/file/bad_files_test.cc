@@ -8,6 +8,7 @@
 
 #include "tests/volume/file/volume_files.h"
 #include "volume/file/file_error.h"
+#include "volume/texel_box.h"
 
 namespace understudy::volume::testing {
 namespace {

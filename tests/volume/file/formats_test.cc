@@ -9,9 +9,11 @@
 
 #include "tests/volume/file/volume_files.h"
 #include "volume/brick/brick_store.h"
+#include "volume/description.h"
 #include "volume/file/file_error.h"
 #include "volume/file/raw.h"
 #include "volume/kd_tree.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume::testing {
 namespace {

@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tests/volume/file/volume_files.h"
 #include "volume/file/file_error.h"
+#include "volume/texel_box.h"
+#include "volume/texel_type.h"
 
 namespace understudy::volume::testing {
 namespace {

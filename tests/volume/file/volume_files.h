@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "tests/apps/viewer/temporary_folder.h"
-#include "volume/brick/texel_box.h"
 #include "volume/file/volume_file.h"
+#include "volume/texel_box.h"
 
 namespace understudy::volume::testing {
 

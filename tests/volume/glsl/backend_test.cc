@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 
 #include "tests/volume/scenes.h"
+#include "volume/frame_counts.h"
 #include "volume/glsl/device.h"
+#include "volume/image.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/request.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.

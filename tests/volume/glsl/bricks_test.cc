@@ -8,7 +8,10 @@
 #include <optional>
 
 #include "tests/volume/glsl/gl_scenes.h"
+#include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 namespace {

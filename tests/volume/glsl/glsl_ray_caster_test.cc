@@ -10,7 +10,10 @@
 
 #include "tests/volume/glsl/gl_scenes.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/kd_tree.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 namespace {

@@ -5,7 +5,10 @@
 
 #include "tests/volume/properties.h"
 #include "tests/volume/stiff_cases.h"
+#include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
+#include "volume/image.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 namespace {

@@ -10,11 +10,14 @@
 #include "tests/volume/scenes.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
+#include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
+#include "volume/image.h"
 #include "volume/orbit_camera.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/reference/segment_sum.h"
+#include "volume/request.h"
 
 namespace understudy::volume::glsl {
 namespace {

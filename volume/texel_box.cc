@@ -1,7 +1,9 @@
-#include "volume/brick/texel_box.h"
+#include "volume/texel_box.h"
 
 #include <algorithm>
 #include <cstring>
+
+#include "volume/texel_type.h"
 
 namespace understudy::volume {
 

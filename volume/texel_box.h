@@ -1,12 +1,18 @@
 // Boxes of texels, and what lies in them: tightly packed, x fastest.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
-#include "volume/request.h"
-
 namespace understudy::volume {
+
+/// Half-open box of texels or cells.
+struct TexelBox {
+  std::array<int, 3> low{};
+  std::array<int, 3> high{};
+  bool operator==(const TexelBox&) const = default;
+};
 
 bool is_empty(const TexelBox& box);
 /// Whether `inner` lies in `outer`.

@@ -1,0 +1,18 @@
+// The depth of the opaque geometry that the application has drawn before its volume.
+#pragma once
+
+#include <vector>
+
+#include "volume/rect.h"
+
+namespace understudy::volume {
+
+/// Window depth in [0,1] of the opaque geometry already drawn: samples that are not nearer are hidden.
+struct DepthImage {
+  Rect rect;
+  std::vector<float> depth;  ///< rows bottom up
+  bool or_equal = false;     ///< GL_LEQUAL instead of GL_LESS
+  bool operator==(const DepthImage&) const = default;
+};
+
+}  // namespace understudy::volume

@@ -1,0 +1,10 @@
+// Red, green, blue and opacity. Whether colour is premultiplied stands where it is used.
+#pragma once
+
+#include <array>
+
+namespace understudy::volume {
+
+using Rgba = std::array<float, 4>;
+
+}  // namespace understudy::volume

@@ -1,0 +1,72 @@
+// Where the samples of a ray lie: on the planes of slices, or on constant steps along the ray.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "volume/texture_space.h"
+
+namespace understudy::volume {
+
+/// The application's own sample positions: planes normal . t = first + i * spacing in texture space, 0 <= i <
+/// count. Plane 0 is the front: under `over`, sample i covers sample i + 1.
+struct SlicePlanes {
+  Vec3 normal{};
+  double first = 0;
+  double spacing = 0;
+  int count = 0;
+  bool operator==(const SlicePlanes&) const = default;
+};
+
+/// How far into its first step every ray begins, as a tile of numbers that repeats over the window: some ray
+/// casters hide the rings of equal steps behind noise.
+struct RayOffsets {
+  int width = 0;
+  int height = 0;
+  std::vector<float> steps;  ///< rows bottom up
+
+  double at(int x, int y) const {
+    const auto column = std::size_t((x % width + width) % width);
+    const auto row = std::size_t((y % height + height) % height);
+    return double(steps[row * std::size_t(width) + column]);
+  }
+  bool operator==(const RayOffsets&) const = default;
+};
+
+/// The sample positions of a ray caster: constant steps along every ray, from where it enters the region. The
+/// unit of length is the step: a ray that is in the region from t0 to t1 is L = |metric (t1 - t0)| steps long.
+/// Sample i lies first + i steps from t0, i >= 0, up to L; where there are `offsets`, that of the pixel later.
+struct RaySteps {
+  /// Row-major; texture space to a space whose unit of length is the step. Or its first row alone, others zero:
+  /// then steps reach from plane to plane, however slantingly a ray crosses them.
+  std::array<double, 9> metric{};
+  /// Whether steps reach from plane to plane.
+  bool between_planes() const {
+    return std::all_of(metric.begin() + 3, metric.end(), [](double v) { return v == 0; });
+  }
+  double first = 0;
+  /// The ray is divided into n = floor(L + rounding) equal parts, n >= 1 (otherwise it has no samples); sample
+  /// i lies first + i parts from t0, 0 <= i < n.
+  bool divided = false;
+  double rounding = 0.5;
+  /// Samples up to so many steps behind the opaque geometry still count.
+  double past_depth = 0;
+  std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
+  bool operator==(const RaySteps&) const = default;
+};
+
+/// Where the second sample of a segment lies, whose first one lies on its plane: so many plane spacings further
+/// along the ray (0: none), and then away by a vector. It is not bound to the region, and may be anywhere that
+/// the texture's wrapping (repetition aside) gives it a value.
+struct SliceSegment {
+  double planes = 0;
+  Vec3 offset{};
+  /// The two samples are nowhere further apart than this, axis by axis in texture space.
+  Vec3 reach{};
+  bool operator==(const SliceSegment&) const = default;
+};
+
+}  // namespace understudy::volume

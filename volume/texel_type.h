@@ -1,0 +1,14 @@
+// In which numbers a volume's texels are kept and travel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace understudy::volume {
+
+enum class TexelType : std::uint8_t { u8, u16, f32, rgba8 };
+constexpr std::size_t bytes_per_texel(TexelType type) {
+  return type == TexelType::u8 ? 1 : type == TexelType::u16 ? 2 : 4;
+}
+
+}  // namespace understudy::volume

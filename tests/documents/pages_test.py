@@ -141,6 +141,14 @@ class Pages(unittest.TestCase):
         self.none([f"docs/troubleshooting.md: no row explains `{reason}`" for reason in thrown
                    if reason.strip() not in table.replace("`", "").replace("*", "")])
 
+    def test_examples_are_used_and_parse(self):
+        text = "".join(page.text for page in PAGES)
+        for file in sorted((ROOT / "examples").iterdir()):
+            with self.subTest(file=file.name):
+                self.assertIn(f"examples/{file.name}", text)
+                if file.read_text(encoding="utf-8").startswith("#!/bin/bash"):
+                    subprocess.run(["bash", "-n", file], check=True)
+
     def test_every_block_says_its_language(self):
         self.none([f"{page.name}:{block.line}: a code block without a language"
                    for page in PAGES for block in page.blocks if not block.language])

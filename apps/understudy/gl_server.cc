@@ -25,17 +25,17 @@
 #include "apps/understudy/signal_inbox.h"
 #include "compositor/service/connection.h"
 #include "compositor/service/limits.h"
-#include "spu/assemble.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_image.h"
+#include "spu/registry/assemble.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/report/counters.h"
 #include "spu/stream/call_answer.h"
 #include "spu/stream/event.h"
 #include "spu/tiles/tile.h"
 #include "spu/tiles/tile_workers.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::launcher {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-#include "spu/player/window_system.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::launcher {
 

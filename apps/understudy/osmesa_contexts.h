@@ -13,7 +13,7 @@
 
 #include "apps/understudy/offscreen_contexts.h"
 #include "spu/player/one_buffer.h"
-#include "spu/player/shown_image.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::launcher {
 

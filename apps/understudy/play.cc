@@ -12,10 +12,10 @@
 #include "apps/understudy/offscreen_contexts.h"
 #include "apps/understudy/read_image.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_image.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::launcher {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "apps/understudy/image.h"
-#include "spu/player/window_system.h"
 #include "spu/stream/decode.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::launcher {
 

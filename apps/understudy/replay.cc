@@ -13,7 +13,7 @@
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/run.h"
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 
 namespace understudy::launcher {
 namespace {

@@ -33,10 +33,10 @@
 #include "apps/understudy/trace_option.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/tcp/address.h"
-#include "spu/assemble.h"
 #include "spu/chain_text.h"
 #include "spu/former_names.h"
 #include "spu/options.h"
+#include "spu/registry/assemble.h"
 #include "spu/report/keys.h"
 #include "spu/report/report.h"
 

@@ -4,9 +4,9 @@
 
 #include <exception>
 
-#include "spu/assemble.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
+#include "spu/registry/assemble.h"
 #include "spu/stream/trace_file.h"
 
 namespace understudy::launcher {

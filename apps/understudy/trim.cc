@@ -11,12 +11,12 @@
 
 #include "apps/understudy/offscreen_contexts.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_image.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
 #include "spu/trim/prefix.h"
 #include "spu/trim/restoration.h"
 #include "spu/trim/shortened.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::launcher {
 namespace {

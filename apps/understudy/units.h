@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 
 namespace understudy::launcher {
 

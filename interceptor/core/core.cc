@@ -13,16 +13,16 @@
 #include <optional>
 
 #include "interceptor/core/redraw_request.h"
-#include "spu/assemble.h"
 #include "spu/chain.h"
 #include "spu/options.h"
+#include "spu/registry/assemble.h"
 #include "spu/remote/front_end.h"
 #include "spu/remote/remote.h"
 #include "spu/remote/server_connection.h"
 #include "spu/report/counters.h"
 #include "spu/report/report.h"
 #include "spu/track/share_group.h"
-#include "spu/volume/render_session.h"
+#include "spu/volume/session/render_session.h"
 
 namespace understudy::interceptor {
 namespace {

@@ -1,9 +1,9 @@
 #include "spu/perf/perf.h"
 
 #include "dispatch/call_words.h"
-#include "spu/argument_bytes.h"
 #include "spu/report/counters.h"
 #include "spu/shared_by_file.h"
+#include "spu/stream/argument_bytes.h"
 
 namespace understudy::spu {
 namespace {

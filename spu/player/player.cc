@@ -6,15 +6,15 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "spu/assemble.h"
-#include "spu/player/shown_image.h"
+#include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
 #include "spu/tiles/tile.h"
 #include "spu/tiles/tiles.h"
 #include "spu/track/share_group.h"
-#include "spu/volume/render_session.h"
+#include "spu/volume/session/render_session.h"
 #include "spu/volume/volume_unit.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::spu {
 namespace {

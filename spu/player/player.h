@@ -13,9 +13,9 @@
 
 #include "spu/chain.h"
 #include "spu/options.h"
-#include "spu/player/window_system.h"
 #include "spu/stream/decode.h"
 #include "spu/stream/record.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
 

@@ -9,7 +9,7 @@
 
 #include "dispatch/call_shape.h"
 #include "dispatch/call_words.h"
-#include "spu/argument_bytes.h"
+#include "spu/stream/argument_bytes.h"
 
 namespace understudy::spu {
 namespace {

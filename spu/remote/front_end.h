@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "spu/player/window_system.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
 

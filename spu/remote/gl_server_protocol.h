@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "spu/player/window_system.h"
 #include "spu/remote/chunks.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
 

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstdint>
 
-#include "spu/player/window_system.h"
 #include "spu/stream/begin_and_end.h"
 #include "spu/tiles/tile_scissor.h"
 #include "spu/unit_description.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
 

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "dispatch/call_words.h"
-#include "spu/player/shown_image.h"
 #include "spu/report/counters.h"
 #include "spu/shared_by_file.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
 #include "spu/tiles/window_use.h"
+#include "spu/window_system/shown_image.h"
 
 namespace understudy::spu {
 namespace {
@@ -74,7 +74,7 @@ bool window_divides(const DispatchTable& gl) {
                                GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE}) {
     if (ask_of_window(gl, colour, channel) > 8) return false;
   }
-  // Windows become whole by way of textures, which have such a depth (player/shown_image.h).
+  // Windows become whole by way of textures, which have such a depth (window_system/shown_image.h).
   const std::pair bits = depth_and_stencil_bits(gl);
   return bits == std::pair{0, 0} || bits == std::pair{24, 8};
 }

@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
-#include "spu/player/window_system.h"
 #include "spu/tiles/tile_scissor.h"
 #include "spu/tiles/tile_workers.h"
 #include "spu/trace/call_recorder.h"
 #include "spu/unit_description.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
 

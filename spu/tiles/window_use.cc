@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "dispatch/table.h"
-#include "spu/trim/call_role.h"
+#include "spu/track/call_role.h"
 
 namespace understudy::spu {
 namespace {

@@ -14,7 +14,7 @@
 #include "dispatch/call_shape.h"
 #include "spu/player/player.h"
 #include "spu/stream/record.h"
-#include "spu/trim/call_role.h"
+#include "spu/track/call_role.h"
 
 namespace understudy::spu {
 

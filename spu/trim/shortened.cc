@@ -7,7 +7,7 @@
 
 #include "dispatch/call_shape.h"
 #include "spu/stream/event.h"
-#include "spu/trim/call_role.h"
+#include "spu/track/call_role.h"
 
 namespace understudy::spu {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "spu/volume/geometry/slice_segment.h"
-#include "spu/volume/program_check.h"
+#include "spu/volume/recognition/program_check.h"
 #include "spu/volume/verification/native_image.h"
 #include "spu/volume/volume_unit.h"
 #include "volume/request.h"

@@ -6,11 +6,11 @@
 
 #include <stdexcept>
 
-#include "spu/assemble.h"
 #include "spu/player/player.h"
-#include "spu/player/shown_image.h"
+#include "spu/registry/assemble.h"
 #include "spu/stream/trace_file.h"
 #include "spu/track/share_group.h"
+#include "spu/window_system/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.

@@ -10,7 +10,7 @@
 
 #include "apps/understudy/egl_contexts.h"
 #include "spu/chain.h"
-#include "spu/player/window_system.h"
+#include "spu/window_system/window_system.h"
 
 namespace understudy::replay_test {
 

@@ -18,7 +18,7 @@
 #include "apps/understudy/image.h"
 #include "apps/understudy/play.h"
 #include "apps/understudy/read_image.h"
-#include "spu/player/shown_image.h"
+#include "spu/window_system/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.

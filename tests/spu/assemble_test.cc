@@ -1,5 +1,5 @@
 // Chains from text: which are assembled, and what is said of the others.
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Which blocks differ from what was sent.
-#include "spu/volume/block_hashes.h"
+#include "spu/volume/upload/block_hashes.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "dispatch/call_id.h"
-#include "spu/assemble.h"
 #include "spu/pass/pass.h"
+#include "spu/registry/assemble.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
 #include "tests/spu/mock_driver.h"

@@ -1,4 +1,4 @@
-#include "spu/volume/frame_latency.h"
+#include "spu/volume/session/frame_latency.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 
 #include "slice_scenes.h"
 #include "spu/report/counters.h"
-#include "spu/volume/frame_ledger.h"
-#include "spu/volume/last_image.h"
+#include "spu/volume/session/last_image.h"
+#include "spu/volume/timing/frame_ledger.h"
 #include "volume/image.h"
 #include "volume/request.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
 
 #if defined(__SANITIZE_ADDRESS__)

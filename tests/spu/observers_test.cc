@@ -10,7 +10,7 @@
 #include <string>
 
 #include "dispatch/call_words.h"
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
 #include "spu/track/share_group.h"
 #include "tests/spu/mock_driver.h"

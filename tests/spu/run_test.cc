@@ -1,4 +1,4 @@
-#include "spu/volume/run.h"
+#include "spu/volume/observation/run.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "dispatch/pass_through.h"
 #include "spu/stream/plain_calls.h"
-#include "spu/volume/client_arrays.h"
+#include "spu/volume/observation/client_arrays.h"
 
 namespace understudy::spu {
 namespace {

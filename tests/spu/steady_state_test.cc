@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 #include "spu/stream/plain_calls.h"
 #include "spu/track/share_group.h"
 #include "tests/spu/mock_driver.h"

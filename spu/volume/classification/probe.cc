@@ -7,7 +7,7 @@
 #include <random>
 
 #include "spu/volume/classification/pre_integration.h"
-#include "spu/volume/saved_state.h"
+#include "spu/volume/context/saved_state.h"
 #include "volume/blending_operator.h"
 
 namespace understudy::spu {

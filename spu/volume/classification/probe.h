@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "spu/volume/classification/fog.h"
-#include "spu/volume/context.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/capture.h"
-#include "spu/volume/pipeline.h"
-#include "spu/volume/texels.h"
+#include "spu/volume/pipeline/pipeline.h"
+#include "spu/volume/texture/texels.h"
 #include "volume/classification.h"
 
 namespace understudy::spu {

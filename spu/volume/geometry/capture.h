@@ -2,11 +2,11 @@
 // off, and transform feedback writes down the clip position and everything that the fragment stage would read.
 #pragma once
 
-#include "spu/volume/context.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/fit.h"
 #include "spu/volume/geometry/polygon.h"
-#include "spu/volume/program_stages.h"
-#include "spu/volume/run.h"
+#include "spu/volume/observation/run.h"
+#include "spu/volume/pipeline/program_stages.h"
 
 namespace understudy::spu {
 

@@ -4,9 +4,9 @@
 // about 0.4 ms.
 #pragma once
 
-#include "spu/volume/context.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/polygon.h"
-#include "spu/volume/run.h"
+#include "spu/volume/observation/run.h"
 
 namespace understudy::spu {
 

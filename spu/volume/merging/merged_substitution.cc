@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "spu/volume/depth.h"
+#include "spu/volume/context/saved_state.h"
+#include "spu/volume/depth/depth.h"
 #include "spu/volume/merging/merged_texels.h"
 #include "spu/volume/merging/merging.h"
-#include "spu/volume/saved_state.h"
-#include "spu/volume/texel_transfer.h"
+#include "spu/volume/upload/texel_transfer.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"

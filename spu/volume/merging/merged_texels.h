@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "spu/volume/merging/tiling.h"
-#include "spu/volume/texels.h"
+#include "spu/volume/texture/texels.h"
 
 namespace understudy::spu {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "spu/volume/context.h"
+#include "spu/volume/context/context.h"
 #include "volume/texture_space.h"
 
 namespace understudy::spu {

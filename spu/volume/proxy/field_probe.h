@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "spu/volume/context/saved_state.h"
+#include "spu/volume/observation/run.h"
 #include "spu/volume/proxy/cuts.h"
-#include "spu/volume/run.h"
-#include "spu/volume/saved_state.h"
-#include "spu/volume/texels.h"
+#include "spu/volume/texture/texels.h"
 #include "volume/classification.h"
 
 namespace understudy::spu {

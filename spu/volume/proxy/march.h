@@ -13,10 +13,10 @@
 
 #include "spu/track/share_group.h"
 #include "spu/volume/geometry/capture.h"
-#include "spu/volume/program_stages.h"
+#include "spu/volume/pipeline/program_stages.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/jitter.h"
-#include "spu/volume/texels.h"
+#include "spu/volume/texture/texels.h"
 #include "volume/blending_operator.h"
 #include "volume/classification.h"
 #include "volume/image.h"

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "spu/volume/context.h"
-#include "spu/volume/float_framebuffer.h"
-#include "spu/volume/run.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/context/float_framebuffer.h"
+#include "spu/volume/observation/run.h"
 #include "volume/depth_image.h"
 
 namespace understudy::volume {

@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "apps/understudy/gl_server.h"
-#include "spu/assemble.h"
+#include "spu/registry/assemble.h"
 #include "spu/remote/remote.h"
 #include "spu/track/share_group.h"
-#include "spu/volume/render_session.h"
+#include "spu/volume/session/render_session.h"
 #include "tests/apps/viewer/temporary_folder.h"
 
 namespace understudy::spu::staged {

@@ -1,5 +1,5 @@
 // The application draws where that is faster.
-#include "spu/volume/speed_guard.h"
+#include "spu/volume/timing/speed_guard.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,137 @@
+#include "spu/registry/assemble.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <vector>
+
+#include "spu/chain_json.h"
+#include "spu/chain_text.h"
+#include "spu/driver/driver.h"
+#include "spu/null/null.h"
+#include "spu/pack/pack.h"
+#include "spu/pass/pass.h"
+#include "spu/perf/perf.h"
+#include "spu/print/print.h"
+#include "spu/remote/remote.h"
+#include "spu/tiles/tile.h"
+#include "spu/tiles/tiles.h"
+#include "spu/trace/trace.h"
+#include "spu/track/description.h"
+#include "spu/unpack/unpack.h"
+#include "spu/volume/description.h"
+
+namespace understudy::spu {
+namespace {
+
+constexpr std::array units_by_name = {
+    &driver_description, &null_description,   &pack_description,  &pass_description,  &perf_description,
+    &print_description,  &remote_description, &tile_description,  &tiles_description, &trace_description,
+    &track_description,  &unpack_description, &volume_description};
+
+struct PlannedUnit {
+  const UnitDescription* description;
+  OptionValues options;
+};
+
+ChainSettings settings_of(std::string_view description) {
+  if (description.starts_with('@')) return read_chain_file(std::string(description.substr(1)));
+  if (description.ends_with(".json") && description.find('(') == std::string_view::npos) {
+    return read_chain_file(std::string(description));
+  }
+  return parse_chain(description);
+}
+
+const UnitDescription& find_unit(const UnitSetting& setting, UnitTable units) {
+  const auto found = std::find_if(units.begin(), units.end(),
+                                  [&](const UnitDescription* unit) { return setting.name == unit->name; });
+  if (found != units.end()) return **found;
+  std::vector<std::string> names;
+  for (const UnitDescription* unit : units) names.emplace_back(unit->name);
+  const std::string meant = nearest_name(setting.name, names);
+  throw ChainError(setting.where,
+                   fmt::format("no unit is named {}{} There are: {}", shown(setting.name),
+                               meant.empty() ? "." : "; did you mean " + meant + "?", fmt::join(names, ", ")));
+}
+
+std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
+  std::vector<PlannedUnit> planned;
+  for (const UnitSetting& setting : settings) {
+    const UnitDescription& unit = find_unit(setting, units);
+    const auto is_planned = [&](std::string_view name) {
+      return std::any_of(planned.begin(), planned.end(),
+                         [&](const PlannedUnit& before) { return name == before.description->name; });
+    };
+    if (!planned.empty() && planned.back().description->position == UnitPosition::last) {
+      throw ChainError(setting.where, fmt::format("{} stands behind {}, which must be last; move it before",
+                                                  unit.name, planned.back().description->name));
+    }
+    if (unit.position == UnitPosition::once && is_planned(unit.name)) {
+      throw ChainError(setting.where,
+                       fmt::format("{} can stand only once in a chain, and is there already", unit.name));
+    }
+    if (unit.needs != nullptr && !is_planned(unit.needs)) {
+      throw ChainError(setting.where,
+                       fmt::format("{0} needs {1} before it; write \"{1} {0}\"", unit.name, unit.needs));
+    }
+    planned.push_back({&unit, option_values(setting, unit.options)});
+  }
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    const char* wanted = planned[i].description->leads_to;
+    const char* otherwise = planned[i].description->or_leads_to;
+    const auto is_wanted = [&](const PlannedUnit& unit) {
+      const std::string_view name = unit.description->name;
+      return name == wanted || (otherwise != nullptr && name == otherwise);
+    };
+    if (wanted == nullptr || std::any_of(planned.begin() + std::ptrdiff_t(i), planned.end(), is_wanted))
+      continue;
+    throw ChainError(settings[i].where, fmt::format("{0} needs {1} behind it; write \"{0} {1}\"",
+                                                    planned[i].description->name, wanted));
+  }
+  if (planned.empty() || planned.back().description->position != UnitPosition::last) {
+    throw ChainError(settings.empty() ? "chain" : settings.back().where,
+                     "the chain must end in driver, the real OpenGL; write it last");
+  }
+  return planned;
+}
+
+}  // namespace
+
+UnitTable unit_table() {
+  return units_by_name;
+}
+
+std::optional<std::string> assemble(Chain& chain, std::string_view description,
+                                    const std::shared_ptr<RenderSession>& session, UnitTable units) {
+  try {
+    for (const PlannedUnit& unit : plan(settings_of(description), units)) {
+      if (unit.description->make != nullptr) {
+        chain.add(unit.description->make({chain, unit.options, session}));
+      }
+    }
+  } catch (const std::exception& error) {
+    // Units before the one that cannot be made count on those behind them.
+    chain.remove_units();
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+std::string resolved_chain(std::string_view description, const std::filesystem::path& folder, UnitTable units) {
+  ChainSettings settings = settings_of(description);
+  plan(settings, units);
+  for (UnitSetting& unit : settings) {
+    for (const UnitOption& option : find_unit(unit, units).options) {
+      if (option.type != OptionType::file) continue;
+      for (OptionSetting& setting : unit.options) {
+        if (setting.name == option.name && !setting.value.empty()) setting.value = folder / setting.value;
+      }
+    }
+  }
+  return chain_text(settings);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,50 @@
+#include "spu/volume/context/context.h"
+
+#include <cstdio>
+#include <string_view>
+
+namespace understudy::spu {
+namespace {
+
+/// From OpenGL 3.0 on.
+bool has_extension(const DispatchTable& gl, std::string_view name) {
+  GLint count = 0;
+  gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    const auto* extension = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, GLuint(i)));
+    if (extension != nullptr && name == extension) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+GlContext describe_context(const DispatchTable& gl) {
+  GlContext context;
+  context.gl = &gl;
+  // The version string exists in every version; GL_MAJOR_VERSION would raise an error before 3.0.
+  int major = 0;
+  int minor = 0;
+  const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
+  if (text != nullptr && std::sscanf(text, "%d.%d", &major, &minor) == 2)
+    context.version = 100 * major + 10 * minor;
+  if (context.version >= 320) {
+    GLint mask = 0;
+    gl.GetIntegerv(GL_CONTEXT_PROFILE_MASK, &mask);
+    context.core = (mask & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
+  } else if (context.version >= 310) {
+    context.core = true;  // 3.1 without ARB_compatibility; with it Mesa reports 3.2 or later
+  }
+  context.pipeline_statistics =
+      context.version >= 460 ||
+      (context.version >= 300 && has_extension(gl, "GL_ARB_pipeline_statistics_query"));
+  if (!context.core) {
+    gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
+    context.fragment_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_fragment_program");
+    context.fog_distance = context.version >= 300 && has_extension(gl, "GL_NV_fog_distance");
+    context.vertex_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_vertex_program");
+  }
+  return context;
+}
+
+}  // namespace understudy::spu

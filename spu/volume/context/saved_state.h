@@ -1,0 +1,66 @@
+// Our own drawing inside the application's context, without a trace.
+//
+// Probing, observing and presenting each need a known pipeline for a moment. A SavedState reads everything that
+// they may touch, sets what all of them want (no blending, no tests, own vertex array, tight pixel transfer),
+// and puts every item back when it goes. Nothing here raises a GL error, and the error flag is never read: it
+// is the application's.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spu/volume/context/context.h"
+
+namespace understudy::spu {
+
+class SavedState {
+ public:
+  explicit SavedState(const GlContext& context);
+  ~SavedState();
+  SavedState(const SavedState&) = delete;
+  SavedState& operator=(const SavedState&) = delete;
+
+  /// Remembers the texture and sampler object bound to a unit's target, so that the caller may bind its own.
+  /// The active unit stays the caller's choice until the SavedState goes.
+  void borrow_texture(GLenum target, int unit);
+
+  /// Of the capabilities that are switched off meanwhile.
+  bool was_enabled(GLenum capability) const;
+
+  GLuint draw_framebuffer() const { return GLuint(draw_framebuffer_); }
+
+ private:
+  struct BorrowedTexture {
+    GLenum target;
+    int unit;
+    GLint texture;
+    GLint sampler;
+  };
+  struct Capability {
+    GLenum name;
+    GLboolean enabled;
+  };
+
+  const DispatchTable& gl_;
+  bool core_;
+  int version_;
+  GLint draw_framebuffer_ = 0;
+  GLint read_framebuffer_ = 0;
+  GLint program_ = 0;
+  GLint vertex_array_ = 0;
+  GLint array_buffer_ = 0;
+  GLint pack_buffer_ = 0;
+  GLint unpack_buffer_ = 0;
+  GLint active_texture_ = 0;
+  std::array<GLint, 4> viewport_{};
+  std::array<GLint, 2> polygon_mode_{};
+  std::array<GLboolean, 4> color_mask_{};
+  GLboolean depth_mask_ = 0;
+  std::array<GLint, 4> blend_factors_{};
+  std::array<GLint, 2> blend_equations_{};
+  std::array<GLint, 16> pixel_store_{};
+  std::vector<Capability> capabilities_;
+  std::vector<BorrowedTexture> borrowed_;
+};
+
+}  // namespace understudy::spu

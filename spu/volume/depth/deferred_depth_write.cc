@@ -1,0 +1,93 @@
+#include "spu/volume/depth/deferred_depth_write.h"
+
+#include <array>
+#include <string_view>
+
+#include "dispatch/pass_through.h"
+#include "spu/track/calls.h"
+#include "spu/volume/observation/draw_slots.h"
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+VolumeUnit& here() {
+  return *Chain::current()->find<VolumeUnit>();
+}
+
+/// A draw with a depth test, or a read: the answer would depend on the deferred depth.
+struct NoteDepthUse {
+  static const DispatchTable& before(CallId call) {
+    VolumeUnit& unit = here();
+    // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
+    if (unit.inside_begin) return unit.chain().face(unit, Phase::watching);
+    const bool draw = kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists;
+    if (!draw || unit.context().gl->IsEnabled(GL_DEPTH_TEST)) unit.depth_looked_at();
+    return unit.chain().face(unit, Phase::watching);
+  }
+};
+
+void APIENTRY clear(GLbitfield mask) {
+  VolumeUnit& unit = here();
+  if ((mask & GL_DEPTH_BUFFER_BIT) != 0) unit.depth_cleared();
+  unit.next().Clear(mask);
+}
+
+void use_depth(bool used) {
+  VolumeUnit& unit = here();
+  if (used && !unit.inside_begin) unit.depth_looked_at();
+}
+
+void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                          void* pixels) {
+  use_depth(format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL);
+  VolumeUnit& unit = here();
+  unit.chain().face(unit, Phase::watching).ReadPixels(x, y, width, height, format, type, pixels);
+}
+
+void APIENTRY blit_framebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to_x0, GLint to_y0, GLint to_x1,
+                               GLint to_y1, GLbitfield mask, GLenum filter) {
+  use_depth((mask & GL_DEPTH_BUFFER_BIT) != 0);
+  VolumeUnit& unit = here();
+  unit.chain()
+      .face(unit, Phase::watching)
+      .BlitFramebuffer(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);
+}
+
+bool looks_at_depth(CallId call) {
+  if (call == CallId::End || kind_of(call) == CallKind::vertex) return false;
+  if (kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists) return true;
+  const std::string_view name = call_name(call);
+  // Framebuffers that change may give their depth texture away.
+  for (const std::string_view reader :
+       {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glCopyImageSubData", "glBlit",
+        "glDrawPixels", "glBitmap", "glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer", "glGetTexImage",
+        "glGetnTexImage", "glGetTextureImage", "glGetTextureSubImage"}) {
+    if (name.starts_with(reader)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void write_depth(const DispatchTable& gl, const Run& run) {
+  std::array<GLboolean, 4> mask{};
+  gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  run.replay(gl);
+  gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
+}
+
+void fill_depth_deferred_slots(DispatchTable& table) {
+  fill_watching_slots(table);
+  DispatchTable noting;
+  PassThrough<NoteDepthUse>::fill(noting);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    if (looks_at_depth(CallId(i))) set_slot(table, CallId(i), slot(noting, CallId(i)));
+  }
+  table.Clear = clear;
+  table.ReadPixels = read_pixels;
+  table.BlitFramebuffer = blit_framebuffer;
+}
+
+}  // namespace understudy::spu

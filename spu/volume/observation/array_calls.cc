@@ -1,0 +1,123 @@
+#include "spu/volume/observation/array_calls.h"
+
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+/// The table below, with the run closed where it still needs the arrays as they are.
+const DispatchTable& before_change() {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  if (unit.run_open() && (unit.run().reads_arrays || unit.run().inside_begin)) unit.close_run();
+  return unit.next();
+}
+
+/// The table below, with the run closed unless the answer is about arrays: nothing in a run changes those.
+const DispatchTable& before_question(GLenum name) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  bool about_arrays = false;
+  switch (name) {
+    case GL_ARRAY_BUFFER_BINDING:
+    case GL_ELEMENT_ARRAY_BUFFER_BINDING:
+    case GL_DRAW_INDIRECT_BUFFER_BINDING:
+    case GL_CLIENT_ACTIVE_TEXTURE:
+    case GL_PIXEL_UNPACK_BUFFER_BINDING:
+    case GL_PIXEL_PACK_BUFFER_BINDING:
+    case GL_MAJOR_VERSION:
+    case GL_MINOR_VERSION:
+    case GL_CONTEXT_PROFILE_MASK:
+    case GL_MAX_TEXTURE_COORDS:
+    case GL_MAX_VERTEX_ATTRIBS:
+    case GL_PRIMITIVE_RESTART:
+    case GL_PRIMITIVE_RESTART_FIXED_INDEX:
+    case GL_PRIMITIVE_RESTART_INDEX:
+    case GL_FOG_COORD_ARRAY_BUFFER_BINDING:
+    case GL_FOG_COORD_ARRAY:
+    case GL_SECONDARY_COLOR_ARRAY:
+      about_arrays = true;
+      break;
+    default:
+      // The enumerants of the fixed arrays stand together: enables, sizes, types, strides, pointers; bindings.
+      about_arrays = (name >= GL_VERTEX_ARRAY && name <= GL_EDGE_FLAG_ARRAY_POINTER) ||
+                     (name >= GL_FOG_COORD_ARRAY_TYPE && name <= GL_FOG_COORD_ARRAY) ||
+                     (name >= GL_SECONDARY_COLOR_ARRAY_SIZE && name <= GL_SECONDARY_COLOR_ARRAY) ||
+                     (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
+  }
+  if (unit.run_open() && (!about_arrays || unit.run().inside_begin)) unit.close_run();
+  return unit.next();
+}
+
+void APIENTRY get_integer(GLenum name, GLint* value) {
+  before_question(name).GetIntegerv(name, value);
+}
+void APIENTRY get_pointer(GLenum name, void** value) {
+  before_question(name).GetPointerv(name, value);
+}
+GLboolean APIENTRY is_enabled(GLenum name) {
+  return before_question(name).IsEnabled(name);
+}
+void APIENTRY get_attribute(GLuint index, GLenum name, GLint* value) {
+  // The current value is what the slices change.
+  before_question(name == GL_CURRENT_VERTEX_ATTRIB ? name : GL_VERTEX_ARRAY)
+      .GetVertexAttribiv(index, name, value);
+}
+void APIENTRY get_attribute_pointer(GLuint index, GLenum name, void** value) {
+  before_question(GL_VERTEX_ARRAY).GetVertexAttribPointerv(index, name, value);
+}
+// How far a draw may read; no run gives buffers another size.
+void APIENTRY get_buffer(GLenum target, GLenum name, GLint* value) {
+  before_question(GL_ARRAY_BUFFER_BINDING).GetBufferParameteriv(target, name, value);
+}
+void APIENTRY get_buffer_64(GLenum target, GLenum name, GLint64* value) {
+  before_question(GL_ARRAY_BUFFER_BINDING).GetBufferParameteri64v(target, name, value);
+}
+
+void APIENTRY bind_buffer(GLenum target, GLuint buffer) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  if (target == GL_ARRAY_BUFFER || target == GL_ELEMENT_ARRAY_BUFFER) {
+    before_change().BindBuffer(target, buffer);
+  } else {
+    unit.close_run();
+    unit.next().BindBuffer(target, buffer);
+  }
+}
+void APIENTRY client_active_texture(GLenum texture) {
+  before_change().ClientActiveTexture(texture);
+}
+void APIENTRY vertex_pointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  before_change().VertexPointer(size, type, stride, pointer);
+}
+void APIENTRY normal_pointer(GLenum type, GLsizei stride, const void* pointer) {
+  before_change().NormalPointer(type, stride, pointer);
+}
+void APIENTRY color_pointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  before_change().ColorPointer(size, type, stride, pointer);
+}
+void APIENTRY texture_coordinate_pointer(GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  before_change().TexCoordPointer(size, type, stride, pointer);
+}
+void APIENTRY attribute_pointer(GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
+                                const void* pointer) {
+  before_change().VertexAttribPointer(index, size, type, normalized, stride, pointer);
+}
+
+}  // namespace
+
+void fill_array_calls(DispatchTable& table) {
+  table.GetIntegerv = get_integer;
+  table.GetPointerv = get_pointer;
+  table.IsEnabled = is_enabled;
+  table.GetVertexAttribiv = get_attribute;
+  table.GetVertexAttribPointerv = get_attribute_pointer;
+  if (table.GetBufferParameteriv != nullptr) table.GetBufferParameteriv = get_buffer;
+  if (table.GetBufferParameteri64v != nullptr) table.GetBufferParameteri64v = get_buffer_64;
+  table.BindBuffer = bind_buffer;
+  table.ClientActiveTexture = client_active_texture;
+  table.VertexPointer = vertex_pointer;
+  table.NormalPointer = normal_pointer;
+  table.ColorPointer = color_pointer;
+  table.TexCoordPointer = texture_coordinate_pointer;
+  table.VertexAttribPointer = attribute_pointer;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,41 @@
+// Draws from the application's own memory, captured at the moment of the call.
+//
+// The memory may change before the run is drawn (one buffer refilled for every slice is common), so the draw is
+// kept as what OpenGL defines it to be: glBegin, one glArrayElement an index, glEnd, each array's value as an
+// immediate call.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spu/stream/record.h"
+#include "spu/volume/context/context.h"
+
+namespace understudy::spu {
+
+/// One enabled vertex array of the application.
+struct ClientArray {
+  enum class Role { vertex, normal, colour, texture_coordinate, generic } role = Role::vertex;
+  int index = 0;  ///< texture unit or generic attribute
+  int components = 4;
+  GLenum type = GL_FLOAT;
+  bool normalised = false;
+  std::size_t stride = 0;  ///< bytes
+  const std::byte* first = nullptr;
+};
+
+struct ArraySources {
+  bool client_memory = false;  ///< at least one array is read from the application's memory
+  std::vector<ClientArray> arrays;
+};
+
+/// Where the next array draw would read its vertices. A reason where the mixture is not one we capture.
+std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources);
+
+/// Appends the elements `indices` of the arrays as one glBegin/glEnd.
+void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
+                     const std::vector<std::uint32_t>& indices);
+
+}  // namespace understudy::spu

@@ -1,0 +1,423 @@
+#include "spu/volume/observation/draw_slots.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "dispatch/pass_through.h"
+#include "spu/stream/plain_calls.h"
+#include "spu/track/calls.h"
+#include "spu/volume/observation/array_calls.h"
+#include "spu/volume/observation/client_arrays.h"
+#include "spu/volume/observation/conditional_render.h"
+#include "spu/volume/observation/passing_calls.h"
+#include "spu/volume/observation/texture_changes.h"
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+/// More elements in one draw than this are no slices.
+constexpr GLsizei most_elements = 1 << 22;
+
+VolumeUnit& here() {
+  return *Chain::current()->find<VolumeUnit>();
+}
+
+struct CloseRun {
+  static const DispatchTable& before(CallId call) {
+    VolumeUnit& unit = here();
+    unit.close_run();
+    if (!passes_held_runs(call)) unit.settle_held();
+    // The call may be one that is looked at in the phase that is entered now.
+    const Phase phase = unit.chain().phase();
+    return phase == Phase::deferring ? unit.next() : unit.chain().face(unit, phase);
+  }
+};
+
+template <auto Slot>
+void APIENTRY switch_capability(GLenum capability) {
+  VolumeUnit& unit = here();
+  unit.close_run();
+  if (!passes_held_runs(capability)) unit.settle_held();
+  (unit.next().*Slot)(capability);
+}
+
+struct IntoRun {
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    VolumeUnit& unit = here();
+    if (unit.run_open()) {
+      append_plain_call(unit.run().calls(), call, words);
+    } else {
+      Records one;
+      append_plain_call(one, call, words);
+      make_plain_calls(one.words(), unit.next());
+    }
+    return 0;
+  }
+};
+
+/// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
+bool joins_run(VolumeUnit& unit) {
+  return unit.run_open() || unit.opens_run();
+}
+
+void APIENTRY begin(GLenum mode) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit)) {
+    unit.inside_begin = true;
+    return unit.next().Begin(mode);
+  }
+  append_call(unit.run().calls(), &DispatchTable::Begin, mode);
+  unit.run().inside_begin = true;
+  ++unit.run().draws;
+}
+
+void APIENTRY end_in_run() {
+  VolumeUnit& unit = here();
+  if (!unit.run_open()) return unit.next().End();
+  Run& run = unit.run();
+  append_call(run.calls(), &DispatchTable::End);
+  run.inside_begin = false;
+}
+
+void APIENTRY end_while_watching() {
+  VolumeUnit& unit = here();
+  unit.inside_begin = false;
+  unit.next().End();
+}
+
+void APIENTRY call_list(GLuint list) {
+  VolumeUnit& unit = here();
+  const auto record = unit.chain().group().list(list);
+  const bool slices = record && record->draws && record->only_geometry;
+  if (!slices || !joins_run(unit)) {
+    unit.settle();
+    return unit.next().CallList(list);
+  }
+  append_call(unit.run().calls(), &DispatchTable::CallList, list);
+  ++unit.run().draws;
+}
+
+/// Whether a count is that of slices: whatever is in error, or enormous, the application draws itself.
+bool all_wait(std::span<const GLsizei> counts) {
+  return std::all_of(counts.begin(), counts.end(),
+                     [](GLsizei count) { return count >= 0 && count <= most_elements; });
+}
+
+/// Adds one draw of vertices `first[i]`... to the run; false when its arrays are not of a kind that can wait.
+bool defer_arrays(VolumeUnit& unit, GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count) {
+  ArraySources sources;
+  if (!all_wait(count) || std::any_of(first.begin(), first.end(), [](GLint f) { return f < 0; }) ||
+      read_array_sources(unit.context(), sources))
+    return false;
+  Run& run = unit.run();
+  if (sources.client_memory) {
+    for (std::size_t i = 0; i < count.size(); ++i) {
+      std::vector<std::uint32_t> indices(static_cast<std::size_t>(count[i]));
+      std::iota(indices.begin(), indices.end(), std::uint32_t(first[i]));
+      append_elements(run.calls(), sources, mode, indices);
+    }
+    run.expanded_arrays = true;
+  } else if (count.size() == 1) {
+    append_call(run.calls(), &DispatchTable::DrawArrays, mode, first[0], count[0]);
+    run.reads_arrays = true;
+  } else {
+    run.draw_arrays(mode, first, count);
+  }
+  ++run.draws;
+  return true;
+}
+
+void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
+  VolumeUnit& unit = here();
+  if (joins_run(unit) && defer_arrays(unit, mode, {&first, 1}, {&count, 1})) return;
+  unit.settle();
+  unit.next().DrawArrays(mode, first, count);
+}
+
+void APIENTRY multi_draw_arrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
+  VolumeUnit& unit = here();
+  const auto n = std::size_t(std::max(draws, 0));
+  if (n > 0 && joins_run(unit) && defer_arrays(unit, mode, {first, n}, {count, n})) return;
+  unit.settle();
+  unit.next().MultiDrawArrays(mode, first, count, draws);
+}
+
+std::size_t index_size(GLenum type) {
+  return type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : type == GL_UNSIGNED_INT ? 4 : 0;
+}
+
+/// The indices of `range`, which lie in the application's memory.
+std::vector<std::uint32_t> elements_in_memory(const ElementPart& range, std::size_t size) {
+  std::vector<std::uint32_t> elements;
+  elements.reserve(std::size_t(range.count));
+  for (GLsizei i = 0; i < range.count; ++i) {
+    const auto* at = static_cast<const std::byte*>(range.offset) + std::size_t(i) * size;
+    std::uint32_t value = 0;
+    std::memcpy(&value, at, size);  // little-endian, as every platform with OpenGL drivers of this kind is
+    elements.push_back(value + std::uint32_t(range.base_vertex));
+  }
+  return elements;
+}
+
+bool defer_elements(VolumeUnit& unit, GLenum mode, std::span<const ElementPart> ranges, GLenum type) {
+  const DispatchTable& gl = unit.next();
+  ArraySources sources;
+  const std::size_t size = index_size(type);
+  const bool can_wait = std::all_of(ranges.begin(), ranges.end(), [](const ElementPart& range) {
+    return range.count >= 0 && range.count <= most_elements;
+  });
+  if (!can_wait || size == 0 || read_array_sources(unit.context(), sources)) return false;
+  GLint element_buffer = 0;
+  gl.GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+  Run& run = unit.run();
+  const bool somewhere = std::all_of(ranges.begin(), ranges.end(),
+                                     [](const ElementPart& range) { return range.offset != nullptr; });
+  if (element_buffer != 0 && !sources.client_memory) {
+    run.draw_elements(mode, ranges, type);
+  } else if (element_buffer == 0 && sources.client_memory && somewhere) {
+    for (const ElementPart& range : ranges)
+      append_elements(run.calls(), sources, mode, elements_in_memory(range, size));
+    run.expanded_arrays = true;
+  } else {
+    return false;
+  }
+  ++run.draws;
+  return true;
+}
+
+/// One range of elements: the run takes it, or the application draws.
+bool joins_run(VolumeUnit& unit, GLenum mode, const ElementPart& range, GLenum type) {
+  if (joins_run(unit) && defer_elements(unit, mode, {&range, 1}, type)) return true;
+  unit.settle();
+  return false;
+}
+
+void APIENTRY draw_elements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, {count, indices}, type)) unit.next().DrawElements(mode, count, type, indices);
+}
+
+void APIENTRY draw_range_elements(GLenum mode, GLuint start, GLuint stop, GLsizei count, GLenum type,
+                                  const void* indices) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, {count, indices}, type))
+    unit.next().DrawRangeElements(mode, start, stop, count, type, indices);
+}
+
+void APIENTRY draw_elements_base_vertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                        GLint base_vertex) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, {count, indices, base_vertex}, type))
+    unit.next().DrawElementsBaseVertex(mode, count, type, indices, base_vertex);
+}
+
+void APIENTRY draw_range_elements_base_vertex(GLenum mode, GLuint start, GLuint stop, GLsizei count,
+                                              GLenum type, const void* indices, GLint base_vertex) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, {count, indices, base_vertex}, type))
+    unit.next().DrawRangeElementsBaseVertex(mode, start, stop, count, type, indices, base_vertex);
+}
+
+/// Several ranges by one call, without base vertices where `base_vertices` is null.
+bool joins_run(VolumeUnit& unit, GLenum mode, GLsizei draws, const GLsizei* count, const void* const* indices,
+               const GLint* base_vertices, GLenum type) {
+  std::vector<ElementPart> ranges;
+  ranges.reserve(std::size_t(std::max(draws, 0)));
+  for (GLsizei i = 0; i < draws; ++i)
+    ranges.push_back({count[i], indices[i], base_vertices != nullptr ? base_vertices[i] : 0});
+  if (!ranges.empty() && joins_run(unit) && defer_elements(unit, mode, ranges, type)) return true;
+  unit.settle();
+  return false;
+}
+
+void APIENTRY multi_draw_elements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                                  GLsizei draws) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, draws, count, indices, nullptr, type))
+    unit.next().MultiDrawElements(mode, count, type, indices, draws);
+}
+
+void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count, GLenum type,
+                                              const void* const* indices, GLsizei draws,
+                                              const GLint* base_vertices) {
+  VolumeUnit& unit = here();
+  if (!joins_run(unit, mode, draws, count, indices, base_vertices, type))
+    unit.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
+}
+
+/// As OpenGL lays draws out in a buffer.
+struct ArraysCommand {
+  GLuint count, instances, first, base_instance;
+};
+struct ElementsCommand {
+  GLuint count, instances, first_index;
+  GLint base_vertex;
+  GLuint base_instance;
+};
+
+/// The draws that `indirect` points at; none where they cannot be read, are in error, or have instances.
+template <class Command>
+std::vector<Command> indirect_commands(VolumeUnit& unit, const void* indirect, GLsizei draws, GLsizei stride) {
+  constexpr GLsizei most_draws = 1 << 16;
+  const DispatchTable& gl = unit.next();
+  const std::size_t step = stride != 0 ? std::size_t(stride) : sizeof(Command);
+  if (draws <= 0 || draws > most_draws || stride < 0 || step % 4 != 0) return {};
+  const std::size_t bytes = step * std::size_t(draws - 1) + sizeof(Command);
+  std::vector<std::byte> memory(bytes);
+  GLint buffer = 0;
+  gl.GetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &buffer);
+  if (buffer != 0) {
+    GLint size = 0;
+    GLint mapped = 0;
+    gl.GetBufferParameteriv(GL_DRAW_INDIRECT_BUFFER, GL_BUFFER_SIZE, &size);
+    gl.GetBufferParameteriv(GL_DRAW_INDIRECT_BUFFER, GL_BUFFER_MAPPED, &mapped);
+    const auto offset = reinterpret_cast<std::uintptr_t>(indirect);
+    if (mapped != 0 || offset % 4 != 0 || offset > std::size_t(size) || bytes > std::size_t(size) - offset)
+      return {};
+    gl.GetBufferSubData(GL_DRAW_INDIRECT_BUFFER, GLintptr(offset), GLsizeiptr(bytes), memory.data());
+  } else if (!unit.context().core && indirect != nullptr) {
+    std::memcpy(memory.data(), indirect, bytes);
+  } else {
+    return {};
+  }
+  std::vector<Command> commands(static_cast<std::size_t>(draws));
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    std::memcpy(&commands[i], memory.data() + i * step, sizeof(Command));
+  const bool plain = std::all_of(commands.begin(), commands.end(), [](const Command& command) {
+    return command.instances == 1 && command.base_instance == 0 && command.count <= GLuint(most_elements);
+  });
+  return plain ? commands : std::vector<Command>{};
+}
+
+bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
+  if (joins_run(unit)) {
+    std::vector<GLint> first;
+    std::vector<GLsizei> count;
+    for (const auto& command : indirect_commands<ArraysCommand>(unit, indirect, draws, stride)) {
+      first.push_back(GLint(command.first));
+      count.push_back(GLsizei(command.count));
+    }
+    if (!count.empty() && defer_arrays(unit, mode, first, count)) return true;
+  }
+  unit.settle();
+  return false;
+}
+
+bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, GLenum type, const void* indirect, GLsizei draws,
+                          GLsizei stride) {
+  if (joins_run(unit)) {
+    std::vector<ElementPart> parts;
+    for (const auto& command : indirect_commands<ElementsCommand>(unit, indirect, draws, stride)) {
+      const std::uintptr_t offset = std::uintptr_t(command.first_index) * index_size(type);
+      parts.push_back({GLsizei(command.count), reinterpret_cast<const void*>(offset), command.base_vertex});
+    }
+    GLint element_buffer = 0;
+    unit.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+    if (element_buffer != 0 && !parts.empty() && defer_elements(unit, mode, parts, type)) return true;
+  }
+  unit.settle();
+  return false;
+}
+
+void APIENTRY draw_arrays_indirect(GLenum mode, const void* indirect) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, indirect, 1, 0)) unit.next().DrawArraysIndirect(mode, indirect);
+}
+
+void APIENTRY draw_elements_indirect(GLenum mode, GLenum type, const void* indirect) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, type, indirect, 1, 0))
+    unit.next().DrawElementsIndirect(mode, type, indirect);
+}
+
+void APIENTRY multi_draw_arrays_indirect(GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, indirect, draws, stride))
+    unit.next().MultiDrawArraysIndirect(mode, indirect, draws, stride);
+}
+
+void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void* indirect, GLsizei draws,
+                                           GLsizei stride) {
+  VolumeUnit& unit = here();
+  if (!joins_run_indirectly(unit, mode, type, indirect, draws, stride))
+    unit.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
+}
+
+/// More textures in a row than this are no stack.
+constexpr std::size_t most_slices = 4096;
+
+void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
+  VolumeUnit& unit = here();
+  const bool slice = unit.run_open() && unit.run().pipeline().stack && target == GL_TEXTURE_2D &&
+                     texture != 0 && !unit.run().inside_begin && unit.run().draws < most_slices;
+  if (slice) return unit.run().bind_slice(texture);
+  unit.close_run();
+  unit.next().BindTexture(target, texture);
+}
+
+/// Who names the unit again before every slice changes nothing.
+void APIENTRY active_texture_in_run(GLenum texture) {
+  VolumeUnit& unit = here();
+  const Pipeline* const pipeline = unit.run_open() ? &unit.run().pipeline() : nullptr;
+  if (pipeline != nullptr && pipeline->stack && texture == GLenum(GL_TEXTURE0 + pipeline->volume.unit) &&
+      !unit.run().inside_begin)
+    return;
+  unit.close_run();
+  unit.next().ActiveTexture(texture);
+}
+
+void fill_draws(DispatchTable& table) {
+  table.Begin = begin;
+  table.CallList = call_list;
+  table.DrawArrays = draw_arrays;
+  table.DrawArraysEXT = draw_arrays;
+  table.MultiDrawArrays = multi_draw_arrays;
+  table.MultiDrawArraysEXT = multi_draw_arrays;
+  table.DrawElements = draw_elements;
+  table.DrawRangeElements = draw_range_elements;
+  table.DrawRangeElementsEXT = draw_range_elements;
+  table.DrawElementsBaseVertex = draw_elements_base_vertex;
+  table.DrawRangeElementsBaseVertex = draw_range_elements_base_vertex;
+  table.DrawArraysIndirect = draw_arrays_indirect;
+  table.DrawElementsIndirect = draw_elements_indirect;
+  table.MultiDrawArraysIndirect = multi_draw_arrays_indirect;
+  table.MultiDrawElementsIndirect = multi_draw_elements_indirect;
+  table.MultiDrawElements = multi_draw_elements;
+  table.MultiDrawElementsEXT = multi_draw_elements;
+  table.MultiDrawElementsBaseVertex = multi_draw_elements_base_vertex;
+}
+
+}  // namespace
+
+void fill_watching_slots(DispatchTable& table) {
+  fill_draws(table);
+  fill_texture_change_slots(table);
+  fill_conditional_render_slots(table);
+  table.End = end_while_watching;
+}
+
+void fill_deferring_slots(DispatchTable& table) {
+  PassThrough<CloseRun>::fill(table);
+  DispatchTable appending{};
+  AsWords<IntoRun>::fill_plain(appending);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    if (kind_of(CallId(i)) != CallKind::vertex) continue;
+    if (const AnyFunction append = slot(appending, CallId(i))) set_slot(table, CallId(i), append);
+  }
+  table.End = end_in_run;
+  table.BindTexture = bind_texture_in_run;
+  table.BindTextureEXT = bind_texture_in_run;
+  table.ActiveTexture = active_texture_in_run;
+  table.ActiveTextureARB = active_texture_in_run;
+  table.Enable = switch_capability<&DispatchTable::Enable>;
+  table.Disable = switch_capability<&DispatchTable::Disable>;
+  fill_draws(table);
+  fill_array_calls(table);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,80 @@
+// A run: consecutive draws of slices with one pipeline, kept instead of drawn until it is known what they mean.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "spu/stream/record.h"
+#include "spu/volume/pipeline/pipeline.h"
+
+namespace understudy::spu {
+
+/// Elements of one draw from the bound element buffer; `offset` as the application gave it.
+struct ElementPart {
+  GLsizei count = 0;
+  const void* offset = nullptr;
+  GLint base_vertex = 0;
+};
+
+class Run {
+ public:
+  /// `calls` are cleared, and last longer than the run: their memory serves the next one.
+  Run(Pipeline pipeline, Records& calls) : pipeline_(std::move(pipeline)), calls_(calls) {
+    calls_.clear();
+    // Bound already, but every replay ends with the last one.
+    if (pipeline_.stack) bind_slice(pipeline_.volume.texture);
+  }
+
+  const Pipeline& pipeline() const { return pipeline_; }
+
+  /// A stack's next slice: the texture is bound, and feedback told its number.
+  void bind_slice(GLuint texture);
+  /// The stack's textures in the order of drawing; without those that nothing was drawn with in the end.
+  std::vector<GLuint> slices() const;
+  /// The texture that the volume is known by: of a stack one of its ends, whichever is drawn first.
+  GLuint volume_texture() const;
+
+  /// Where deferred calls go; all of them are plain.
+  Records& calls() { return calls_; }
+  /// Draws from buffers that are more than one plain call: one glMultiDrawArrays, or one draw of elements whose
+  /// indices lie in the bound element buffer.
+  void draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count);
+  void draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type);
+  /// Array draws were kept as immediate calls, which move the current attributes; the arrays would not have.
+  bool expanded_arrays = false;
+  /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
+  bool reads_arrays = false;
+  bool inside_begin = false;
+  std::size_t draws = 0;
+
+  /// Makes the calls on `gl`, in order.
+  void replay(const DispatchTable& gl) const;
+
+ private:
+  /// One call; its parts stand in the four vectors below from `part` on.
+  struct BufferDraw {
+    std::size_t position;  ///< words of deferred calls before it
+    GLenum mode;
+    GLenum type;  ///< of the indices; 0: there are none
+    std::size_t part;
+    std::size_t parts;
+  };
+  void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
+
+  struct StackSlice {
+    GLuint texture;
+    std::size_t draws_before;
+  };
+
+  Pipeline pipeline_;
+  Records& calls_;
+  std::vector<StackSlice> slices_;
+  std::vector<BufferDraw> buffer_draws_;
+  std::vector<GLsizei> counts_;
+  std::vector<GLint> first_;  ///< vertices, where there are no indices
+  std::vector<GLint> base_vertex_;
+  std::vector<const void*> offsets_;
+};
+
+}  // namespace understudy::spu

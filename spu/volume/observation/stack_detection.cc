@@ -1,0 +1,58 @@
+#include "spu/volume/observation/stack_detection.h"
+
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+/// So many textures of one size, one after the other, may be a volume; smaller ones are glyphs and icons.
+constexpr int suspicious_length = 16;
+constexpr GLsizei smallest_edge = 16;
+
+void defined(VolumeUnit& unit, GLenum target, GLint level, GLsizei width, GLsizei height) {
+  if (target != GL_TEXTURE_2D || level != 0 || !unit.stack_detection.continues(width, height)) return;
+  GLint texture = 0;
+  unit.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
+  if (unit.stack_detection.add(GLuint(texture))) unit.stack_defined();
+}
+
+void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,
+                           GLint border, GLenum format, GLenum type, const void* pixels) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  const DispatchTable& next = unit.next();
+  next.TexImage2D(target, level, internal_format, width, height, border, format, type, pixels);
+  defined(unit, target, level, width, height);
+}
+
+void APIENTRY tex_storage_2d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
+                             GLsizei height) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  unit.next().TexStorage2D(target, levels, internal_format, width, height);
+  defined(unit, target, 0, width, height);
+}
+}  // namespace
+
+bool StackDetection::continues(GLsizei width, GLsizei height) {
+  const bool same = width == width_ && height == height_;
+  if (!same) {
+    width_ = width;
+    height_ = height;
+    last_ = 0;
+    length_ = 1;
+  }
+  return same && width >= smallest_edge && height >= smallest_edge;
+}
+
+bool StackDetection::add(GLuint texture) {
+  // A film goes into one and the same texture.
+  if (texture == last_) return false;
+  last_ = texture;
+  return ++length_ == suspicious_length;
+}
+
+void fill_stack_detection_slots(DispatchTable& table) {
+  table.TexImage2D = tex_image_2d;
+  table.TexStorage2D = tex_storage_2d;
+}
+
+}  // namespace understudy::spu

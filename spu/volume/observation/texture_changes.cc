@@ -1,0 +1,162 @@
+#include "spu/volume/observation/texture_changes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "dispatch/pass_through.h"
+#include "spu/track/calls.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/volume_unit.h"
+#include "volume/texel_box.h"
+
+namespace understudy::spu {
+namespace {
+
+VolumeUnit& here() {
+  return *Chain::current()->find<VolumeUnit>();
+}
+
+/// The textures of `dimensions` dimensions bound to the active unit are about to change.
+void bound_textures_change(VolumeUnit& unit, int dimensions) {
+  constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
+      {{GL_TEXTURE_BINDING_1D, 0},
+       {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_RECTANGLE},
+       {GL_TEXTURE_BINDING_3D, 0}}};
+  for (const GLenum binding : bindings[std::size_t(dimensions - 1)]) {
+    GLint texture = 0;
+    if (binding != 0) unit.context().gl->GetIntegerv(binding, &texture);
+    if (texture != 0) unit.chain().group().texture_changed(GLuint(texture));
+  }
+}
+
+struct NoteTextureChange {
+  static const DispatchTable& before(CallId call) {
+    VolumeUnit& unit = here();
+    if (kind_of(call) == CallKind::bound_texture && !unit.inside_begin) {
+      bound_textures_change(unit, texture_dimensions(call));
+    } else {
+      unit.chain().group().some_texture_changed();
+    }
+    return unit.next();
+  }
+};
+
+/// Commands of direct state access name the texture in their first argument.
+template <auto Slot>
+struct ChangesNamedTexture;
+template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
+struct ChangesNamedTexture<Slot> {
+  static void APIENTRY call(GLuint texture, A... arguments) {
+    VolumeUnit& unit = here();
+    unit.chain().group().texture_changed(texture);
+    (unit.next().*Slot)(texture, arguments...);
+  }
+};
+
+/// The box of an upload; empty where its numbers make no sense, and nothing is uploaded.
+volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth) {
+  const auto end = [](GLint low, GLsizei extent) {
+    return int(std::clamp<std::int64_t>(std::int64_t(low) + extent, low, std::numeric_limits<int>::max()));
+  };
+  return {{x, y, z}, {end(x, width), end(y, height), end(z, depth)}};
+}
+
+/// A box of one level of the texture bound to `target` is about to change.
+void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) {
+  VolumeUnit& unit = here();
+  GLint texture = 0;
+  if (target == GL_TEXTURE_3D && level == 0 && !unit.inside_begin)
+    unit.context().gl->GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
+  if (texture != 0) {
+    unit.chain().group().texture_changed(GLuint(texture), box);
+  } else {
+    NoteTextureChange::before(CallId::TexSubImage3D);
+  }
+}
+
+void named_box_changes(GLuint texture, GLint level, const volume::TexelBox& box) {
+  ShareGroup& group = here().chain().group();
+  if (level == 0) {
+    group.texture_changed(texture, box);
+  } else {
+    group.texture_changed(texture);
+  }
+}
+
+void APIENTRY tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                               GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels) {
+  bound_box_changes(target, level, box_of(x, y, z, width, height, depth));
+  here().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels);
+}
+
+void APIENTRY copy_tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLint from_x,
+                                    GLint from_y, GLsizei width, GLsizei height) {
+  bound_box_changes(target, level, box_of(x, y, z, width, height, 1));
+  here().next().CopyTexSubImage3D(target, level, x, y, z, from_x, from_y, width, height);
+}
+
+void APIENTRY texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                                   GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                   const void* pixels) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
+  here().next().TextureSubImage3D(texture, level, x, y, z, width, height, depth, format, type, pixels);
+}
+
+void APIENTRY copy_texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLint from_x,
+                                        GLint from_y, GLsizei width, GLsizei height) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, 1));
+  here().next().CopyTextureSubImage3D(texture, level, x, y, z, from_x, from_y, width, height);
+}
+
+void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                                  GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                  const void* value) {
+  named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
+  here().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type, value);
+}
+
+/// Of a copy only the destination changes. Its box is as large as the source's, or smaller where the source is
+/// compressed; what is compressed itself is no volume. Renderbuffers are no textures.
+template <auto Slot>
+void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLint from_x, GLint from_y,
+                         GLint from_z, GLuint to, GLenum to_target, GLint to_level, GLint x, GLint y, GLint z,
+                         GLsizei width, GLsizei height, GLsizei depth) {
+  if (to_target == GL_TEXTURE_3D) {
+    named_box_changes(to, to_level, box_of(x, y, z, width, height, depth));
+  } else if (to_target != GL_RENDERBUFFER) {
+    here().chain().group().texture_changed(to);
+  }
+  (here().next().*Slot)(from, from_target, from_level, from_x, from_y, from_z, to, to_target, to_level, x, y, z,
+                        width, height, depth);
+}
+
+}  // namespace
+
+void fill_texture_change_slots(DispatchTable& table) {
+  DispatchTable changes = table;
+  PassThrough<NoteTextureChange>::fill(changes);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    const CallKind kind = kind_of(CallId(i));
+    if (kind == CallKind::bound_texture || kind == CallKind::unknown_texture) {
+      set_slot(table, CallId(i), slot(changes, CallId(i)));
+    }
+  }
+  using Table = DispatchTable;
+  table.TextureStorage1D = ChangesNamedTexture<&Table::TextureStorage1D>::call;
+  table.TextureStorage2D = ChangesNamedTexture<&Table::TextureStorage2D>::call;
+  table.TextureStorage3D = ChangesNamedTexture<&Table::TextureStorage3D>::call;
+  table.TextureSubImage1D = ChangesNamedTexture<&Table::TextureSubImage1D>::call;
+  table.TextureSubImage2D = ChangesNamedTexture<&Table::TextureSubImage2D>::call;
+  table.TextureSubImage3D = texture_sub_image_3d;
+  table.CopyTextureSubImage3D = copy_texture_sub_image_3d;
+  table.TexSubImage3D = tex_sub_image_3d;
+  table.CopyTexSubImage3D = copy_tex_sub_image_3d;
+  table.ClearTexImage = ChangesNamedTexture<&Table::ClearTexImage>::call;
+  table.ClearTexSubImage = clear_tex_sub_image;
+  table.CopyImageSubData = copy_image<&Table::CopyImageSubData>;
+  table.CopyImageSubDataNV = copy_image<&Table::CopyImageSubDataNV>;
+}
+
+}  // namespace understudy::spu

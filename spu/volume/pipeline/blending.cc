@@ -1,0 +1,146 @@
+#include "spu/volume/pipeline/blending.h"
+
+#include <array>
+#include <variant>
+
+namespace understudy::spu {
+namespace {
+
+using volume::Operator;
+
+struct Factors {
+  GLint source = 0;
+  GLint destination = 0;
+  bool operator==(const Factors&) const = default;
+};
+
+GLint integer(const DispatchTable& gl, GLenum name) {
+  GLint value = 0;
+  gl.GetIntegerv(name, &value);
+  return value;
+}
+
+/// The operator of an equation that takes no factors.
+std::optional<Operator> extremum(GLint equation) {
+  if (equation == GL_MAX) return Operator::max;
+  if (equation == GL_MIN) return Operator::min;
+  return std::nullopt;
+}
+
+/// Front to back needs an alpha that lives in the framebuffer, and changes with every slice.
+std::optional<std::string> read_front_to_back(const Factors& alpha, bool written, Blending& blending) {
+  if (!written) return "the slices blend by a destination alpha that the framebuffer lacks or that is masked";
+  blending.op = Operator::over;
+  blending.premultiplied = true;
+  const bool covers =
+      alpha == Factors{GL_ONE_MINUS_DST_ALPHA, GL_ONE} || alpha == Factors{GL_ONE, GL_ONE_MINUS_SRC_ALPHA};
+  if (blending.front_to_back == FrontToBack::room && covers) return std::nullopt;
+  if (blending.front_to_back == FrontToBack::transparency &&
+      alpha == Factors{GL_ZERO, GL_ONE_MINUS_SRC_ALPHA}) {
+    return std::nullopt;
+  }
+  return "the slices blend front to back, but their alpha does not";
+}
+
+std::optional<std::string> read_colour(GLint equation, const Factors& factors, Blending& blending) {
+  if (const auto op = extremum(equation)) {
+    blending.op = *op;
+    blending.premultiplied = true;
+    return std::nullopt;
+  }
+  if (equation != GL_FUNC_ADD) return "the blend equation is a subtraction";
+  if (factors == Factors{GL_ONE_MINUS_DST_ALPHA, GL_ONE}) {
+    blending.front_to_back = FrontToBack::room;
+    return std::nullopt;
+  }
+  if (factors == Factors{GL_DST_ALPHA, GL_ONE}) {
+    blending.front_to_back = FrontToBack::transparency;
+    return std::nullopt;
+  }
+  blending.premultiplied = factors.source == GL_ONE;
+  if (factors.source == GL_ONE || factors.source == GL_SRC_ALPHA) {
+    if (factors.destination == GL_ONE_MINUS_SRC_ALPHA) {
+      blending.op = Operator::over;
+      return std::nullopt;
+    }
+    if (factors.destination == GL_ONE) {
+      blending.op = Operator::add;
+      return std::nullopt;
+    }
+  }
+  return "the blend function is none of over, under and sum";
+}
+
+std::optional<std::string> read_alpha(GLint equation, const Factors& factors, Blending& blending) {
+  AlphaBlending& alpha = blending.alpha;
+  if (const auto op = extremum(equation)) {
+    alpha.op = *op;
+    return std::nullopt;
+  }
+  if (equation != GL_FUNC_ADD) return "the blend equation of alpha is a subtraction";
+  if (factors == Factors{GL_ZERO, GL_ONE}) {
+    alpha.untouched = true;
+    return std::nullopt;
+  }
+  // d + (1 - d) s = s + (1 - s) d
+  if (factors == Factors{GL_ONE, GL_ONE_MINUS_SRC_ALPHA} ||
+      factors == Factors{GL_ONE_MINUS_DST_ALPHA, GL_ONE}) {
+    alpha.op = Operator::over;
+    return std::nullopt;
+  }
+  if (factors.source == GL_ONE || factors.source == GL_SRC_ALPHA) {
+    alpha.squared = factors.source == GL_SRC_ALPHA;
+    if (factors.destination == GL_ONE) {
+      alpha.op = Operator::add;
+      return std::nullopt;
+    }
+    // The sum of squares has to be attenuated by the colour's own transparency.
+    if (factors.destination == GL_ONE_MINUS_SRC_ALPHA && blending.op == Operator::over) {
+      alpha.op = Operator::over;
+      return std::nullopt;
+    }
+  }
+  return "the blend function of alpha is neither over nor a sum";
+}
+
+}  // namespace
+
+std::optional<std::string> read_blending(const DispatchTable& gl, const Target& target, Blending& blending) {
+  const Factors colour{integer(gl, GL_BLEND_SRC_RGB), integer(gl, GL_BLEND_DST_RGB)};
+  const Factors alpha{integer(gl, GL_BLEND_SRC_ALPHA), integer(gl, GL_BLEND_DST_ALPHA)};
+  const GLint alpha_equation = integer(gl, GL_BLEND_EQUATION_ALPHA);
+  std::array<GLboolean, 4> mask{};
+  gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
+  const bool alpha_written = mask[3] && target.alpha_bits > 0;
+  if (auto reason = read_colour(integer(gl, GL_BLEND_EQUATION_RGB), colour, blending)) return reason;
+  if (blending.front_to_back != FrontToBack::no) {
+    if (alpha_equation != GL_FUNC_ADD) return "the slices blend front to back, but their alpha does not";
+    return read_front_to_back(alpha, alpha_written, blending);
+  }
+  if (alpha_written) return read_alpha(alpha_equation, alpha, blending);
+  blending.alpha.untouched = true;
+  return std::nullopt;
+}
+
+volume::Classification alpha_as_colour(const volume::Classification& classification,
+                                       const AlphaBlending& alpha) {
+  if (const auto* function = std::get_if<volume::TransferFunction>(&classification)) {
+    volume::TransferFunction gathered = *function;
+    for (volume::Rgba& entry : gathered.entries) {
+      entry = {alpha.squared ? entry[3] * entry[3] : entry[3], 0, 0, entry[3]};
+    }
+    return gathered;
+  }
+  if (const auto* pairs = std::get_if<volume::PreIntegrationTable>(&classification)) {
+    volume::PreIntegrationTable gathered = *pairs;
+    for (volume::Rgba& entry : gathered.entries) entry = {entry[3], 0, 0, entry[3]};
+    gathered.multiply_by_alpha = alpha.squared;
+    return gathered;
+  }
+  volume::LinearMap map = std::get<volume::LinearMap>(classification);
+  for (std::size_t column = 0; column < 4; ++column) map.matrix[column] = map.matrix[12 + column];
+  map.multiply_by_alpha = alpha.squared;
+  return map;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,314 @@
+#include "spu/volume/pipeline/pipeline.h"
+
+#include <algorithm>
+
+namespace understudy::spu {
+namespace {
+
+GLint integer(const DispatchTable& gl, GLenum name) {
+  GLint value = 0;
+  gl.GetIntegerv(name, &value);
+  return value;
+}
+
+GLenum binding_of(GLenum target) {
+  switch (target) {
+    case GL_TEXTURE_1D:
+      return GL_TEXTURE_BINDING_1D;
+    case GL_TEXTURE_2D:
+      return GL_TEXTURE_BINDING_2D;
+    case GL_TEXTURE_3D:
+      return GL_TEXTURE_BINDING_3D;
+    case GL_TEXTURE_RECTANGLE:
+      return GL_TEXTURE_BINDING_RECTANGLE;
+    default:
+      return 0;
+  }
+}
+
+GLuint bound_texture(const DispatchTable& gl, GLenum target, int unit) {
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+  const GLint texture = integer(gl, binding_of(target));
+  gl.ActiveTexture(GLenum(active));
+  return GLuint(texture);
+}
+
+/// Texture target of a sampler uniform's type; 0 for samplers that volume viewers' tables do not use.
+GLenum target_of_sampler(GLenum type) {
+  switch (type) {
+    case GL_SAMPLER_1D:
+      return GL_TEXTURE_1D;
+    case GL_SAMPLER_2D:
+      return GL_TEXTURE_2D;
+    case GL_SAMPLER_3D:
+      return GL_TEXTURE_3D;
+    case GL_SAMPLER_2D_RECT:
+      return GL_TEXTURE_RECTANGLE;
+    default:
+      return 0;
+  }
+}
+
+/// Of the 2-D textures that a program samples, the one on the active unit: who draws slice after slice binds
+/// them there.
+void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
+  const auto slice = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
+    return sampled.target == GL_TEXTURE_2D && sampled.unit == active && sampled.texture != 0;
+  });
+  if (slice == pipeline.others.end()) return;
+  pipeline.stack = true;
+  pipeline.volume = *slice;
+  pipeline.others.erase(slice);
+}
+
+/// Using another program, and then this one again, resets what was chosen.
+bool has_subroutines(const GlContext& context, GLuint program) {
+  if (context.version < 400) return false;
+  const auto count = [&](GLenum stage) {
+    GLint uniforms = 0;
+    context.gl->GetProgramStageiv(program, stage, GL_ACTIVE_SUBROUTINE_UNIFORMS, &uniforms);
+    return uniforms;
+  };
+  return count(GL_FRAGMENT_SHADER) + count(GL_VERTEX_SHADER) > 0;
+}
+
+/// The one 3-D texture and the tables that a program samples, or the slice of a stack; a reason where that is
+/// not the shape of it.
+std::optional<std::string> read_program_textures(const GlContext& context, const ShareGroup& group,
+                                                 ProgramSamplers& samplers, bool stacks, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  const std::shared_ptr<const ProgramRecord> record = group.programs().program(pipeline.program);
+  if (record == nullptr) return std::nullopt;  // never linked in our sight: no 3-D sampler known
+  int volumes = 0;
+  for (const SamplerUniform& sampler : samplers.of(gl, pipeline.program, record->link)) {
+    const GLenum target = target_of_sampler(sampler.type);
+    GLint unit = 0;
+    gl.GetUniformiv(pipeline.program, sampler.location, &unit);
+    if (target == 0) continue;
+    SampledTexture sampled{target, unit, bound_texture(gl, target, unit), sampler.location};
+    // A 3-D sampler without a texture (a mask that is not in use) gives the same everywhere: PyMOL has one.
+    if (target == GL_TEXTURE_3D && sampled.texture != 0) {
+      ++volumes;
+      pipeline.volume = sampled;
+    } else {
+      pipeline.others.push_back(sampled);
+    }
+  }
+  if (volumes > 1) return "the program samples more than one 3-D texture";
+  if (pipeline.volume.texture != 0 && has_subroutines(context, pipeline.program))
+    return "the program chooses its subroutines, which measuring it would forget";
+  if (volumes == 0 && stacks) take_slice(gl, pipeline);
+  if (pipeline.volume.texture != 0) {
+    if (!record->fragment_source_known) return "the program's fragment shader source is not known";
+    if (record->other_shader_stages) return "the program has geometry or tessellation stages";
+    pipeline.vertex_shader = record->vertex_shader;
+  }
+  return std::nullopt;
+}
+
+/// Whether the text of the bound fragment assembly program can name a 3-D texture at all: a target is spelled
+/// one way only.
+bool may_sample_3d(const DispatchTable& gl) {
+  GLint length = 0;
+  gl.GetProgramivARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_LENGTH_ARB, &length);
+  if (length <= 0) return false;
+  std::string text(std::size_t(length), ' ');
+  gl.GetProgramStringARB(GL_FRAGMENT_PROGRAM_ARB, GL_PROGRAM_STRING_ARB, text.data());
+  return text.find("3D") != std::string::npos;
+}
+
+/// Assembly programs do not tell what they sample: any texture that is bound may be it.
+std::optional<std::string> read_assembly_textures(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  if (!may_sample_3d(gl)) return std::nullopt;
+  pipeline.assembly = true;
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  const GLint units = integer(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
+  int volumes = 0;
+  for (int unit = 0; unit < units; ++unit) {
+    gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+    for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_RECTANGLE, GL_TEXTURE_3D}) {
+      const auto texture = GLuint(integer(gl, binding_of(target)));
+      if (texture == 0) continue;
+      if (target == GL_TEXTURE_3D) {
+        ++volumes;
+        pipeline.volume = {target, unit, texture, -1};
+      } else {
+        pipeline.others.push_back({target, unit, texture, -1});
+      }
+    }
+  }
+  gl.ActiveTexture(GLenum(active));
+  if (volumes > 1) return "an assembly program runs while more than one 3-D texture is bound";
+  return std::nullopt;
+}
+
+/// User clip planes cut a vertex assembly program's result only where it asks for that, which it does not tell.
+std::optional<std::string> read_vertex_assembly(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  if (!context.vertex_assembly || !gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return std::nullopt;
+  const GLint planes = integer(gl, GL_MAX_CLIP_PLANES);
+  for (GLint i = 0; i < planes; ++i) {
+    if (gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) return "clip planes cut what a vertex assembly program draws";
+  }
+  return std::nullopt;
+}
+
+/// Fog by the distance from the eye's plane is a map of the position, as the camera is.
+std::optional<std::string> read_fog(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  pipeline.fog = true;
+  if (integer(gl, GL_FOG_COORD_SRC) != GL_FRAGMENT_DEPTH)
+    return "fog is enabled, by coordinates of the application's own";
+  if (context.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB))
+    return "fog is enabled, by coordinates of a vertex assembly program";
+  if (context.fog_distance && integer(gl, GL_FOG_DISTANCE_MODE_NV) == GL_EYE_RADIAL_NV)
+    return "fog is enabled, by the distance from the eye's point";
+  return std::nullopt;
+}
+
+std::optional<std::string> read_fixed_function_textures(const GlContext& context, bool stacks,
+                                                        Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  if (context.fragment_assembly && gl.IsEnabled(GL_FRAGMENT_PROGRAM_ARB)) {
+    auto reason = read_assembly_textures(context, pipeline);
+    if (!reason && pipeline.volume.texture != 0) reason = read_vertex_assembly(context);
+    return reason;
+  }
+  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  int enabled_units = 0;
+  for (int unit = 0; unit < context.fixed_function_units; ++unit) {
+    gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
+    if (gl.IsEnabled(GL_TEXTURE_3D)) {
+      pipeline.volume = {GL_TEXTURE_3D, unit, GLuint(integer(gl, GL_TEXTURE_BINDING_3D)), -1};
+      ++enabled_units;
+    } else if (gl.IsEnabled(GL_TEXTURE_2D) || gl.IsEnabled(GL_TEXTURE_1D) ||
+               gl.IsEnabled(GL_TEXTURE_CUBE_MAP)) {
+      ++enabled_units;
+    }
+  }
+  gl.ActiveTexture(GLenum(active));
+  if (stacks && pipeline.volume.texture == 0 && enabled_units == 1) {
+    const auto slice = GLuint(integer(gl, GL_TEXTURE_BINDING_2D));
+    if (active == GL_TEXTURE0 && slice != 0 && gl.IsEnabled(GL_TEXTURE_2D)) {
+      pipeline.stack = true;
+      pipeline.volume = {GL_TEXTURE_2D, 0, slice, -1};
+    }
+  }
+  if (pipeline.volume.texture == 0) return std::nullopt;
+  if (enabled_units > 1) return "more than one texture unit takes part in fixed function";
+  if (pipeline.volume.unit != 0) return "the volume is not on texture unit 0 in fixed function";
+  if (auto reason = read_vertex_assembly(context)) return reason;
+  if (gl.IsEnabled(GL_FOG)) return read_fog(context, pipeline);
+  return std::nullopt;
+}
+
+/// Queries in progress whose answer our own drawing would change.
+std::optional<std::string> read_queries(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  const auto in_progress = [&](GLenum target) {
+    GLint query = 0;
+    gl.GetQueryiv(target, GL_CURRENT_QUERY, &query);
+    return query != 0;
+  };
+  if (in_progress(GL_SAMPLES_PASSED) || (context.version >= 330 && in_progress(GL_ANY_SAMPLES_PASSED)) ||
+      (context.version >= 430 && in_progress(GL_ANY_SAMPLES_PASSED_CONSERVATIVE))) {
+    return "an occlusion query surrounds the slices";
+  }
+  if (context.version >= 300 &&
+      (in_progress(GL_PRIMITIVES_GENERATED) || in_progress(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN))) {
+    return "a query counts the primitives of the slices";
+  }
+  if (context.pipeline_statistics) {
+    for (const GLenum target :
+         {GL_VERTICES_SUBMITTED, GL_PRIMITIVES_SUBMITTED, GL_VERTEX_SHADER_INVOCATIONS,
+          GL_FRAGMENT_SHADER_INVOCATIONS, GL_CLIPPING_INPUT_PRIMITIVES, GL_CLIPPING_OUTPUT_PRIMITIVES}) {
+      if (in_progress(target)) return "a query counts what the slices' pipeline does";
+    }
+  }
+  return std::nullopt;
+}
+
+/// Within a slice all samples of a pixel get the colour at its centre, as from our image, unless each sample
+/// is shaded or masked by itself.
+std::optional<std::string> read_sample_operations(const GlContext& context, const Target& target) {
+  const DispatchTable& gl = *context.gl;
+  if (target.samples == 0 || !gl.IsEnabled(GL_MULTISAMPLE)) return std::nullopt;
+  if (gl.IsEnabled(GL_SAMPLE_ALPHA_TO_COVERAGE) || gl.IsEnabled(GL_SAMPLE_ALPHA_TO_ONE))
+    return "opacity becomes the coverage of a multisampled framebuffer";
+  if (gl.IsEnabled(GL_SAMPLE_COVERAGE) || (context.version >= 320 && gl.IsEnabled(GL_SAMPLE_MASK)))
+    return "only some samples of a multisampled framebuffer are drawn";
+  if (context.version >= 400 && gl.IsEnabled(GL_SAMPLE_SHADING))
+    return "the samples of a multisampled framebuffer are shaded one by one";
+  return std::nullopt;
+}
+
+/// What around the fragments keeps us from standing in.
+std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
+  const DispatchTable& gl = *context.gl;
+  pipeline.target = read_target(gl);
+  if (!pipeline.target.normalised && !pipeline.target.floating)
+    return "the framebuffer's colours are neither normalised nor float";
+  if (auto reason = read_blending(gl, pipeline.target, pipeline.blending)) return reason;
+  if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
+  if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
+  if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
+  if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
+  std::array<GLint, 2> mode{};
+  gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
+  if (mode[0] != GL_FILL) return "polygons are not filled";
+  if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
+  if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
+  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
+                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
+    return "clip control turns or moves the view volume";
+  }
+  pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
+  if (pipeline.depth_test) {
+    const GLint compare = integer(gl, GL_DEPTH_FUNC);
+    GLboolean write = GL_FALSE;
+    gl.GetBooleanv(GL_DEPTH_WRITEMASK, &write);
+    pipeline.depth_write = write;
+    if (compare == GL_ALWAYS && !write) {
+      pipeline.depth_test = false;
+    } else if (compare != GL_LESS && compare != GL_LEQUAL) {
+      return "the depth function is neither LESS nor LEQUAL";
+    }
+    pipeline.depth_or_equal = compare == GL_LEQUAL;
+    if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
+      return "slices drawn front to back write depth, and so hide each other";
+  }
+  if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
+    return "the application is in feedback or select mode";
+  if (auto reason = read_queries(context)) return reason;
+  if (context.version >= 400) {
+    if (integer(gl, GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE) != 0) return "transform feedback is active";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
+                              bool stacks) {
+  const DispatchTable& gl = *context.gl;
+  Pipeline pipeline;
+  pipeline.program = GLuint(integer(gl, GL_CURRENT_PROGRAM));
+  std::optional<std::string> reason;
+  if (pipeline.program != 0) {
+    reason = read_program_textures(context, group, samplers, stacks, pipeline);
+  } else if (!context.core) {
+    reason = read_fixed_function_textures(context, stacks, pipeline);
+  }
+  if (pipeline.volume.texture == 0) return NotAVolume{};
+  if (!gl.IsEnabled(GL_BLEND)) reason = "blending is disabled: what is drawn replaces what is there";
+  if (!reason) reason = read_surroundings(context, pipeline);
+  // One textured quad is no sign of a volume: nothing is said of it.
+  if (reason && pipeline.stack) return NotAVolume{};
+  if (reason) return LeftAlone{pipeline.volume.texture, *reason};
+  return pipeline;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,58 @@
+// Which draws may be a volume: the state that surrounds them, read from the driver when a draw is about to
+// happen.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/blending.h"
+#include "spu/volume/pipeline/program_samplers.h"
+#include "spu/volume/pipeline/target.h"
+
+namespace understudy::spu {
+
+/// A texture unit that the pipeline samples.
+struct SampledTexture {
+  GLenum target = 0;
+  int unit = 0;
+  GLuint texture = 0;
+  GLint sampler_location = -1;  ///< in the application's program; -1 for fixed function
+  bool operator==(const SampledTexture&) const = default;
+};
+
+/// The pipeline of a run of slices.
+struct Pipeline {
+  GLuint program = 0;          ///< 0: fixed function
+  bool assembly = false;       ///< fragments are an ARB assembly program's; `program` is 0
+  bool vertex_shader = false;  ///< false: fixed-function vertices, observed by feedback
+  SampledTexture volume;
+  bool stack = false;                  ///< `volume` is the first of a stack of 2-D textures, perhaps
+  std::vector<SampledTexture> others;  ///< look-up tables of the program
+  bool fog = false;  ///< fixed function fades fragments by their distance from the eye's plane
+  Blending blending;
+  Target target;
+  bool depth_test = false;
+  bool depth_or_equal = false;
+  bool depth_write = false;
+};
+
+/// The draw has nothing to do with volumes: left alone without a word.
+struct NotAVolume {};
+/// The draw samples a volume, but in a way that is not taken over; the reason goes to the report.
+struct LeftAlone {
+  GLuint texture = 0;
+  std::string reason;
+};
+
+using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;
+
+/// Reads the current state. Outside glBegin/glEnd only. With `stacks`, what is drawn through a 2-D texture may
+/// be a slice, too.
+PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group, ProgramSamplers& samplers,
+                              bool stacks);
+
+}  // namespace understudy::spu

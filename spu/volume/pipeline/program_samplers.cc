@@ -1,0 +1,39 @@
+#include "spu/volume/pipeline/program_samplers.h"
+
+#include <array>
+
+namespace understudy::spu {
+namespace {
+
+std::vector<SamplerUniform> read_samplers(const DispatchTable& gl, GLuint program) {
+  std::vector<SamplerUniform> samplers;
+  GLint linked = 0;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+  if (!linked) return samplers;
+  GLint uniforms = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &uniforms);
+  for (GLint i = 0; i < uniforms; ++i) {
+    std::array<char, 256> name{};
+    GLint size = 0;
+    GLenum type = 0;
+    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    if (type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_2D_RECT) {
+      samplers.push_back({name.data(), type, gl.GetUniformLocation(program, name.data())});
+    }
+  }
+  return samplers;
+}
+
+}  // namespace
+
+const std::vector<SamplerUniform>& ProgramSamplers::of(const DispatchTable& gl, GLuint program,
+                                                       std::uint64_t link) {
+  auto& [known_link, samplers] = known_[program];
+  if (known_link != link) {
+    samplers = read_samplers(gl, program);
+    known_link = link;
+  }
+  return samplers;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,484 @@
+#include "spu/volume/pipeline/program_stages.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "spu/volume/program/analysis.h"
+
+namespace understudy::spu {
+namespace {
+
+struct UniformShape {
+  int components = 0;
+  enum class Kind { real, integer, natural, matrix } kind = Kind::real;
+};
+
+/// How a uniform type is read and written; components 0 for types that no volume shader met so far uses.
+UniformShape shape_of(GLenum type) {
+  using Kind = UniformShape::Kind;
+  switch (type) {
+    case GL_FLOAT:
+      return {1, Kind::real};
+    case GL_FLOAT_VEC2:
+      return {2, Kind::real};
+    case GL_FLOAT_VEC3:
+      return {3, Kind::real};
+    case GL_FLOAT_VEC4:
+      return {4, Kind::real};
+    case GL_FLOAT_MAT2:
+      return {4, Kind::matrix};
+    case GL_FLOAT_MAT3:
+      return {9, Kind::matrix};
+    case GL_FLOAT_MAT4:
+      return {16, Kind::matrix};
+    case GL_UNSIGNED_INT:
+      return {1, Kind::natural};
+    case GL_UNSIGNED_INT_VEC2:
+      return {2, Kind::natural};
+    case GL_UNSIGNED_INT_VEC3:
+      return {3, Kind::natural};
+    case GL_UNSIGNED_INT_VEC4:
+      return {4, Kind::natural};
+    case GL_INT_VEC2:
+    case GL_BOOL_VEC2:
+      return {2, Kind::integer};
+    case GL_INT_VEC3:
+    case GL_BOOL_VEC3:
+      return {3, Kind::integer};
+    case GL_INT_VEC4:
+    case GL_BOOL_VEC4:
+      return {4, Kind::integer};
+    case GL_INT:
+    case GL_BOOL:
+    case GL_SAMPLER_1D:
+    case GL_SAMPLER_2D:
+    case GL_SAMPLER_3D:
+    case GL_SAMPLER_CUBE:
+    case GL_SAMPLER_2D_RECT:
+    case GL_SAMPLER_1D_SHADOW:
+    case GL_SAMPLER_2D_SHADOW:
+      return {1, Kind::integer};
+    default:
+      return {};
+  }
+}
+
+bool is_sampler(GLenum type) {
+  return type == GL_SAMPLER_1D || type == GL_SAMPLER_2D || type == GL_SAMPLER_3D || type == GL_SAMPLER_CUBE ||
+         type == GL_SAMPLER_2D_RECT || type == GL_SAMPLER_1D_SHADOW || type == GL_SAMPLER_2D_SHADOW;
+}
+
+template <class Visit>
+void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
+  GLint count = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
+  for (GLint i = 0; i < count; ++i) {
+    std::array<char, 256> name{};
+    GLint size = 0;
+    GLenum type = 0;
+    gl.GetActiveUniform(program, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    std::string text = name.data();
+    // Arrays are listed by their first element.
+    const bool array = text.ends_with("[0]");
+    if (array) text.resize(text.size() - 3);
+    for (GLint element = 0; element < size; ++element) {
+      visit(array ? text + "[" + std::to_string(element) + "]" : text, type);
+    }
+  }
+}
+
+void copy_uniform(const DispatchTable& gl, GLuint from, GLint source, GLuint to, GLint target, GLenum type) {
+  using Kind = UniformShape::Kind;
+  const UniformShape shape = shape_of(type);
+  std::array<GLfloat, 16> real{};
+  std::array<GLint, 4> integer{};
+  std::array<GLuint, 4> natural{};
+  gl.UseProgram(to);
+  switch (shape.kind) {
+    case Kind::real:
+      gl.GetUniformfv(from, source, real.data());
+      if (shape.components == 1) gl.Uniform1fv(target, 1, real.data());
+      if (shape.components == 2) gl.Uniform2fv(target, 1, real.data());
+      if (shape.components == 3) gl.Uniform3fv(target, 1, real.data());
+      if (shape.components == 4) gl.Uniform4fv(target, 1, real.data());
+      break;
+    case Kind::matrix:
+      gl.GetUniformfv(from, source, real.data());
+      if (shape.components == 4) gl.UniformMatrix2fv(target, 1, GL_FALSE, real.data());
+      if (shape.components == 9) gl.UniformMatrix3fv(target, 1, GL_FALSE, real.data());
+      if (shape.components == 16) gl.UniformMatrix4fv(target, 1, GL_FALSE, real.data());
+      break;
+    case Kind::integer:
+      gl.GetUniformiv(from, source, integer.data());
+      if (shape.components == 1) gl.Uniform1iv(target, 1, integer.data());
+      if (shape.components == 2) gl.Uniform2iv(target, 1, integer.data());
+      if (shape.components == 3) gl.Uniform3iv(target, 1, integer.data());
+      if (shape.components == 4) gl.Uniform4iv(target, 1, integer.data());
+      break;
+    case Kind::natural:
+      gl.GetUniformuiv(from, source, natural.data());
+      if (shape.components == 1) gl.Uniform1uiv(target, 1, natural.data());
+      if (shape.components == 2) gl.Uniform2uiv(target, 1, natural.data());
+      if (shape.components == 3) gl.Uniform3uiv(target, 1, natural.data());
+      if (shape.components == 4) gl.Uniform4uiv(target, 1, natural.data());
+      break;
+  }
+}
+
+GLuint compile(const DispatchTable& gl, GLenum stage, const std::vector<std::string>& sources, GLuint program) {
+  for (const std::string& source : sources) {
+    const GLuint shader = gl.CreateShader(stage);
+    const char* text = source.c_str();
+    gl.ShaderSource(shader, 1, &text, nullptr);
+    gl.CompileShader(shader);
+    gl.AttachShader(program, shader);
+    gl.DeleteShader(shader);  // lives as long as it is attached
+  }
+  return program;
+}
+
+bool linked(const DispatchTable& gl, GLuint program) {
+  gl.LinkProgram(program);
+  GLint status = 0;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &status);
+  return status != 0;
+}
+
+std::string link_log(const DispatchTable& gl, GLuint program) {
+  std::array<char, 200> log{};
+  gl.GetProgramInfoLog(program, GLsizei(log.size()), nullptr, log.data());
+  return log.data();
+}
+
+/// The name under which a vertex shader writes what the fragment stage reads. Mesa lists gl_TexCoord[0], once
+/// lowered, as gl_in_TexCoord0.
+std::string written_name(const std::string& read) {
+  for (const std::string_view prefix : {"gl_in_TexCoord", "gl_TexCoord"}) {
+    if (!read.starts_with(prefix)) continue;
+    const std::size_t digit = read.find_first_of("0123456789", prefix.size());
+    if (digit == std::string::npos) return read;
+    const std::size_t end = read.find_first_not_of("0123456789", digit);
+    return "gl_TexCoord[" + read.substr(digit, end == std::string::npos ? end : end - digit) + "]";
+  }
+  if (read == "gl_Color") return "gl_FrontColor";
+  if (read == "gl_SecondaryColor") return "gl_FrontSecondaryColor";
+  if (read == "gl_FogFragCoord") return read;
+  return read;
+}
+
+/// Asks the fragment stage, linked alone, what it reads.
+void describe_fragment_stage(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
+  const DispatchTable& gl = *context.gl;
+  const GLuint program = compile(gl, GL_FRAGMENT_SHADER, record.fragment_sources, gl.CreateProgram());
+  gl.ProgramParameteri(program, GL_PROGRAM_SEPARABLE, GL_TRUE);
+  if (!linked(gl, program)) {
+    stages.trouble = "the fragment shader does not link alone";
+  } else {
+    GLint count = 0;
+    gl.GetProgramInterfaceiv(program, GL_PROGRAM_INPUT, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; ++i) {
+      std::array<char, 256> name{};
+      gl.GetProgramResourceName(program, GL_PROGRAM_INPUT, GLuint(i), GLsizei(name.size()), nullptr,
+                                name.data());
+      const std::array<GLenum, 3> asked{GL_TYPE, GL_ARRAY_SIZE, GL_LOCATION};
+      std::array<GLint, 3> answer{};
+      gl.GetProgramResourceiv(program, GL_PROGRAM_INPUT, GLuint(i), 3, asked.data(), 3, nullptr, answer.data());
+      StageInput input;
+      input.name = written_name(name.data());
+      input.type = GLenum(answer[0]);
+      input.location = answer[2];
+      const UniformShape shape = shape_of(input.type);
+      if (input.name == "gl_FragCoord" || input.name == "gl_FrontFacing" || input.name == "gl_PointCoord") {
+        if (stages.trouble.empty()) stages.trouble = "the fragment shader reads " + input.name;
+        continue;
+      }
+      if (shape.components == 0 || shape.kind == UniformShape::Kind::matrix || answer[1] > 1) {
+        if (stages.trouble.empty())
+          stages.trouble = "the fragment shader reads " + input.name + ", of a type that is not probed";
+        continue;
+      }
+      input.components = shape.components;
+      input.integer = shape.kind != UniformShape::Kind::real;
+      stages.inputs.push_back(input);
+    }
+  }
+  for_each_uniform(gl, program, [&](const std::string& name, GLenum type) {
+    stages.uniforms.push_back({name, type});
+  });
+  GLint blocks = 0;
+  if (context.version >= 310) gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  stages.uniform_blocks = blocks > 0;
+  gl.DeleteProgram(program);
+}
+
+const char* glsl_type(const StageInput& input) {
+  switch (input.type) {
+    case GL_FLOAT:
+      return "float";
+    case GL_FLOAT_VEC2:
+      return "vec2";
+    case GL_FLOAT_VEC3:
+      return "vec3";
+    case GL_FLOAT_VEC4:
+      return "vec4";
+    case GL_INT:
+      return "int";
+    case GL_UNSIGNED_INT:
+      return "uint";
+    case GL_INT_VEC2:
+      return "ivec2";
+    case GL_INT_VEC3:
+      return "ivec3";
+    case GL_INT_VEC4:
+      return "ivec4";
+    default:
+      return "vec4";
+  }
+}
+
+/// The application's vertex stage, linked to capture gl_Position and the inputs of `names`; 0 and the driver's
+/// words where that does not link.
+GLuint link_observer(const GlContext& context, const ProgramRecord& record, GLuint application,
+                     const std::vector<const char*>& names, std::string& trouble) {
+  const DispatchTable& gl = *context.gl;
+  const GLuint program = compile(gl, GL_VERTEX_SHADER, record.vertex_sources, gl.CreateProgram());
+  GLint attributes = 0;
+  gl.GetProgramiv(application, GL_ACTIVE_ATTRIBUTES, &attributes);
+  for (GLint i = 0; i < attributes; ++i) {
+    std::array<char, 256> name{};
+    GLint size = 0;
+    GLenum type = 0;
+    gl.GetActiveAttrib(application, GLuint(i), GLsizei(name.size()), nullptr, &size, &type, name.data());
+    const GLint location = gl.GetAttribLocation(application, name.data());
+    if (location >= 0) gl.BindAttribLocation(program, GLuint(location), name.data());
+  }
+  std::vector<const char*> captured{"gl_Position"};
+  captured.insert(captured.end(), names.begin(), names.end());
+  gl.TransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
+  if (linked(gl, program)) return program;
+  trouble = link_log(gl, program);
+  gl.DeleteProgram(program);
+  return 0;
+}
+
+std::string interpolation_of(const program::StageFacts& facts, const std::string& name) {
+  for (const program::Input& input : facts.inputs) {
+    if (input.name != name) continue;
+    if (input.interpolation == program::Interpolation::flat) return "flat";
+    if (input.interpolation == program::Interpolation::no_perspective) return "noperspective";
+  }
+  return {};
+}
+
+void read_fragment_text(const ProgramRecord& record, ProgramStages& stages) {
+  program::StageFinding finding = program::analyse(program::Stage::fragment, record.fragment_sources);
+  if (auto* facts = std::get_if<program::StageFacts>(&finding)) {
+    for (StageInput& input : stages.inputs) input.interpolation = interpolation_of(*facts, input.name);
+    stages.facts = std::make_shared<const program::StageFacts>(std::move(*facts));
+  } else {
+    stages.facts_trouble = "the fragment shader is not understood: " + std::get<program::Failure>(finding).what;
+  }
+}
+
+}  // namespace
+
+ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
+  ProgramStages stages;
+  describe_fragment_stage(context, record, stages);
+  read_fragment_text(record, stages);
+  if (!record.vertex_shader) return stages;
+
+  std::string trouble;
+  std::vector<const char*> names;
+  for (const StageInput& input : stages.inputs) names.push_back(input.name.c_str());
+  stages.observer = link_observer(context, record, application, names, trouble);
+  if (stages.observer == 0) {
+    // A fragment stage linked alone keeps all that it declares; the vertex stage may write only some of it.
+    names.clear();
+    for (StageInput& input : stages.inputs) {
+      const GLuint alone = link_observer(context, record, application, {input.name.c_str()}, trouble);
+      input.written = alone != 0;
+      if (input.written) names.push_back(input.name.c_str());
+      context.gl->DeleteProgram(alone);
+    }
+    stages.observer = link_observer(context, record, application, names, trouble);
+  }
+  if (stages.observer == 0 && stages.trouble.empty())
+    stages.trouble = "the vertex shader does not link for capture: " + trouble;
+  return stages;
+}
+
+namespace {
+
+/// How the probe's outputs are declared: drivers want what the fragment stage has beside its inputs.
+struct OutputDeclaration {
+  const char* smooth;  ///< of those that are interpolated smoothly
+  bool locations;
+};
+
+constexpr std::array<OutputDeclaration, 4> output_declarations{
+    {{"", false}, {"smooth", false}, {"", true}, {"smooth", true}}};
+
+/// The vertex stage of a probe.
+std::string probe_source(const GlContext& context, const std::vector<StageInput>& inputs,
+                         const std::string& coordinate, const OutputDeclaration& declaration) {
+  std::string declarations = context.core ? "#version 150\n" : "#version 130\n";
+  if (declaration.locations) declarations += "#extension GL_ARB_separate_shader_objects : enable\n";
+  const auto placed = [&](const StageInput& input) {
+    return declaration.locations && input.location >= 0 ? fmt::format("layout(location = {}) ", input.location)
+                                                        : std::string();
+  };
+  std::string body;
+  int others = 0;
+  for (const StageInput& input : inputs) {
+    const std::string type = glsl_type(input);
+    if (!input.name.starts_with("gl_"))
+      declarations += fmt::format("{}{} out {} {};\n", placed(input),
+                                  input.integer                  ? "flat"
+                                  : !input.interpolation.empty() ? input.interpolation.c_str()
+                                                                 : declaration.smooth,
+                                  type, input.name);
+    if (input.name == coordinate) {
+      body += "  " + input.name +
+              (input.components == 2   ? " = unit;\n"
+               : input.components == 3 ? " = vec3(unit, 0.5);\n"
+                                       : " = vec4(unit, 0.5, 1.0);\n");
+    } else {
+      static constexpr std::array<const char*, 5> swizzle = {"", ".x", ".xy", ".xyz", ".xyzw"};
+      const std::string slope =
+          input.integer
+              ? ""
+              : fmt::format(" + unit.x * understudy_across[{0}] + unit.y * understudy_up[{0}]", others);
+      body += fmt::format("  {} = {}((understudy_value[{}]{}){});\n", input.name, type, others, slope,
+                          swizzle[std::size_t(input.components)]);
+      ++others;
+    }
+  }
+  if (others > 0) {
+    for (const char* name : {"value", "across", "up"})
+      declarations += fmt::format("uniform vec4 understudy_{}[{}];\n", name, others);
+  }
+  return declarations +
+         "void main() {\n"
+         "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+         "  vec2 unit = 0.5 * corner + 0.5;\n"
+         "  gl_Position = vec4(corner, 0.0, 1.0);\n" +
+         body + "}\n";
+}
+
+}  // namespace
+
+GLuint probe_program(const GlContext& context, const ProgramRecord* record,
+                     const std::vector<StageInput>& inputs, const std::string& coordinate,
+                     std::string& trouble) {
+  const DispatchTable& gl = *context.gl;
+  for (const OutputDeclaration& declaration : output_declarations) {
+    const std::string source = probe_source(context, inputs, coordinate, declaration);
+    const GLuint program = gl.CreateProgram();
+    compile(gl, GL_VERTEX_SHADER, {source}, program);
+    if (record != nullptr) compile(gl, GL_FRAGMENT_SHADER, record->fragment_sources, program);
+    if (linked(gl, program)) return program;
+    if (trouble.empty()) trouble = "the fragment shader does not link with a probe: " + link_log(gl, program);
+    gl.DeleteProgram(program);
+  }
+  return 0;
+}
+
+void copy_uniforms(const GlContext& context, GLuint from, GLuint to) {
+  const DispatchTable& gl = *context.gl;
+  for_each_uniform(gl, to, [&](const std::string& name, GLenum type) {
+    if (name.starts_with("gl_")) return;  // fixed-function state, the same for both
+    const GLint source = gl.GetUniformLocation(from, name.c_str());
+    const GLint target = gl.GetUniformLocation(to, name.c_str());
+    if (source >= 0 && target >= 0 && shape_of(type).components > 0)
+      copy_uniform(gl, from, source, to, target, type);
+  });
+  GLint blocks = 0;
+  if (context.version >= 310) gl.GetProgramiv(to, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  for (GLint block = 0; block < blocks; ++block) {
+    std::array<char, 256> name{};
+    gl.GetActiveUniformBlockName(to, GLuint(block), GLsizei(name.size()), nullptr, name.data());
+    const GLuint source = gl.GetUniformBlockIndex(from, name.data());
+    GLint binding = 0;
+    if (source == GL_INVALID_INDEX) continue;
+    gl.GetActiveUniformBlockiv(from, source, GL_UNIFORM_BLOCK_BINDING, &binding);
+    gl.UniformBlockBinding(to, GLuint(block), GLuint(binding));
+  }
+}
+
+namespace {
+
+/// Larger blocks are not part of what OpenGL guarantees.
+constexpr GLint most_block_bytes = 1 << 16;
+
+/// Of a uniform block of the fragment stage; nothing where the buffer cannot be read.
+std::optional<std::vector<std::byte>> block_contents(const DispatchTable& gl, GLuint program, GLuint block) {
+  GLint binding = 0, bytes = 0, buffer = 0, bound = 0, mapped = 0;
+  GLint64 start = 0, room = 0;
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_BINDING, &binding);
+  gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_DATA_SIZE, &bytes);
+  gl.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, GLuint(binding), &buffer);
+  gl.GetInteger64i_v(GL_UNIFORM_BUFFER_START, GLuint(binding), &start);
+  if (buffer == 0 || bytes <= 0 || bytes > most_block_bytes) return std::nullopt;
+  gl.GetIntegerv(GL_COPY_READ_BUFFER_BINDING, &bound);
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(buffer));
+  gl.GetBufferParameteriv(GL_COPY_READ_BUFFER, GL_BUFFER_MAPPED, &mapped);
+  gl.GetBufferParameteri64v(GL_COPY_READ_BUFFER, GL_BUFFER_SIZE, &room);
+  std::optional<std::vector<std::byte>> contents;
+  if (mapped == GL_FALSE && start + bytes <= room) {
+    contents.emplace(std::size_t(bytes));
+    gl.GetBufferSubData(GL_COPY_READ_BUFFER, GLintptr(start), bytes, contents->data());
+  }
+  gl.BindBuffer(GL_COPY_READ_BUFFER, GLuint(bound));
+  return contents;
+}
+
+/// Numbers that differ where the blocks' contents do; one that equals nothing where they cannot be read.
+void append_block_contents(const DispatchTable& gl, GLuint program, std::vector<UniformValue>& values) {
+  GLint blocks = 0;
+  gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  for (GLuint block = 0; block < GLuint(blocks); ++block) {
+    GLint by_fragments = 0;
+    gl.GetActiveUniformBlockiv(program, block, GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER, &by_fragments);
+    if (by_fragments == GL_FALSE) continue;
+    const auto contents = block_contents(gl, program, block);
+    if (!contents) {
+      values.push_back({{}, 0, std::numeric_limits<float>::quiet_NaN()});
+      continue;
+    }
+    const std::string_view text(reinterpret_cast<const char*>(contents->data()), contents->size());
+    // 64 bits as four numbers that floats hold.
+    for (std::uint64_t hash = std::hash<std::string_view>()(text), part = 0; part < 4; ++part, hash >>= 16)
+      values.push_back({{}, 0, float(hash & 0xffff)});
+  }
+}
+
+}  // namespace
+
+std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
+                                                  const ProgramStages& stages) {
+  const DispatchTable& gl = *context.gl;
+  std::vector<UniformValue> values;
+  for (const StageUniform& uniform : stages.uniforms) {
+    const GLint location = gl.GetUniformLocation(application, uniform.name.c_str());
+    const UniformShape shape = shape_of(uniform.type);
+    if (location < 0 || shape.components == 0) continue;
+    const bool chooses = !is_sampler(uniform.type) && (shape.kind == UniformShape::Kind::integer ||
+                                                       shape.kind == UniformShape::Kind::natural);
+    std::array<GLfloat, 16> value{};
+    gl.GetUniformfv(application, location, value.data());
+    for (int c = 0; c < shape.components; ++c)
+      values.push_back({uniform.name, c, value[std::size_t(c)], chooses});
+  }
+  if (stages.uniform_blocks) append_block_contents(gl, application, values);
+  return values;
+}
+
+}  // namespace understudy::spu

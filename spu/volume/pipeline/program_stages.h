@@ -1,0 +1,73 @@
+// The application's program, taken apart: its vertex stage alone, to capture what it computes, and its fragment
+// stage under a vertex stage of ours, to show it chosen samples.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/program/facts.h"
+
+namespace understudy::spu {
+
+/// A varying that the fragment stage reads.
+struct StageInput {
+  std::string name;  ///< as a vertex shader writes it: "gl_TexCoord[0]", "gl_FrontColor", "coordinate"
+  GLenum type = GL_FLOAT_VEC4;
+  int components = 4;
+  bool integer = false;
+  int location = -1;            ///< as the driver has placed it, where the fragment stage stands alone
+  std::string interpolation{};  ///< "flat", "noperspective"; empty: smooth
+  bool written = true;          ///< false: the vertex stage declares it at most, and no colour can depend on it
+};
+
+/// A uniform by name; array elements stand alone.
+struct StageUniform {
+  std::string name;
+  GLenum type = GL_FLOAT;
+};
+
+/// Programs built from the sources of one link of the application's program. The names live in its context.
+struct ProgramStages {
+  std::vector<StageInput> inputs;      ///< of the fragment stage, as far as they can be captured
+  std::vector<StageUniform> uniforms;  ///< of the fragment stage: the camera's matrices are not among them
+  bool uniform_blocks = false;         ///< the fragment stage reads uniform buffers
+  GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
+                        ///< as floats; 0: none
+  std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
+  std::shared_ptr<const program::StageFacts> facts;  ///< what the fragment stage's text says; null: nothing
+  std::string facts_trouble;                         ///< why not
+};
+
+/// One number of a uniform, or of what tells the contents of a uniform block.
+struct UniformValue {
+  std::string_view name;  ///< of StageUniform; empty: of a block
+  int component = 0;
+  float value = 0;
+  bool chooses = false;  ///< an integer or a truth value: what branches are usually decided by
+};
+
+/// Needs the program's record; `application` is the program itself, for attribute locations.
+ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application);
+
+/// The application's fragment stage (or fixed-function fragments when `record` is null) under a vertex stage
+/// that covers the viewport with one triangle. The input named `coordinate` (gl_TexCoord[0] for fixed function)
+/// runs over [0,1]^2 with third component 1/2; the k-th other input has the value understudy_value[k] +
+/// x understudy_across[k] + y understudy_up[k] at (x, y) of the same square (integers: the first alone).
+/// Returns 0 and sets `trouble` when it does not link.
+GLuint probe_program(const GlContext& context, const ProgramRecord* record,
+                     const std::vector<StageInput>& inputs, const std::string& coordinate,
+                     std::string& trouble);
+
+/// Gives every uniform and uniform block of `to` the value it has in `from`, by name.
+void copy_uniforms(const GlContext& context, GLuint from, GLuint to);
+
+/// What the fragment stage's uniforms and uniform blocks hold in `application` now.
+std::vector<UniformValue> fragment_uniform_values(const GlContext& context, GLuint application,
+                                                  const ProgramStages& stages);
+
+}  // namespace understudy::spu

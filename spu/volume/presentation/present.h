@@ -1,0 +1,40 @@
+// The image goes back where the slices would have been drawn: into whatever framebuffer the application has
+// bound.
+#pragma once
+
+#include <array>
+
+#include "spu/volume/context/context.h"
+#include "spu/volume/pipeline/blending.h"
+#include "volume/image.h"
+
+namespace understudy::spu {
+
+/// Draws images under the blending of the slices they stand for, with the application's scissor and colour
+/// mask. Holds one texture, one program and one vertex array of the context it was made in.
+class Presenter {
+ public:
+  explicit Presenter(const GlContext& context) : context_(context) {}
+
+  /// Colour and alpha as the slices would have left them. `alpha` is the image of alpha_as_colour() where
+  /// `blending.alpha_stands_apart()`.
+  void present(const volume::ImageView& image, const Blending& blending, const Target& target,
+               const volume::ImageView* alpha);
+
+ private:
+  bool prepare();
+  void show(const volume::ImageView& image) const;
+  void present_front_to_back(FrontToBack kind, const volume::ImageView& image, const Target& target,
+                             const std::array<GLboolean, 4>& mask) const;
+  void present_alpha(const AlphaBlending& alpha, const volume::ImageView& image) const;
+
+  const GlContext& context_;
+  GLuint program_ = 0;
+  GLuint texture_ = 0;
+  GLuint vertex_array_ = 0;
+  GLint origin_ = -1;  ///< location of the uniform that places the rectangle
+  GLint first_as_alpha_ = -1;
+  GLint shown_ = -1;  ///< how much of the colour has been drawn; negative: it is drawn in one
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,199 @@
+#include "spu/volume/recognition/program_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+namespace understudy::spu {
+namespace {
+
+using program::Influence;
+using program::Source;
+using program::SourceKind;
+using program::StageFacts;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Texels of idle samplers end the way as the volume's do: nothing reaches colours through them.
+std::vector<std::string> ends_of_ways(const SamplerRoles& roles) {
+  std::vector<std::string> names = roles.volume;
+  names.insert(names.end(), roles.idle.begin(), roles.idle.end());
+  return names;
+}
+
+/// Tables whose contents are tracked (spu/track) and can be given to a probe.
+bool is_known_table(const program::SamplerType& type) {
+  using program::TextureShape;
+  return !type.array && !type.shadow && !type.multisample &&
+         (type.shape == TextureShape::line || type.shape == TextureShape::plane ||
+          type.shape == TextureShape::rectangle);
+}
+
+std::string refusal_of_tables(const StageFacts& facts, const std::vector<std::string>& tables,
+                              const SamplerRoles& roles) {
+  for (const program::Fetch& fetch : facts.fetches) {
+    if (!contains(tables, fetch.sampler) || contains(roles.idle, fetch.sampler)) continue;
+    if (!is_known_table(fetch.type))
+      return fmt::format("colours come from '{}', a {}, whose contents are not followed", fetch.sampler,
+                         text(fetch.type));
+  }
+  return {};
+}
+
+std::string refusal_of_side_effects(const StageFacts& facts) {
+  if (!facts.side_effects.empty())
+    return fmt::format("the fragment shader writes to '{}'", facts.side_effects.front().name);
+  return {};
+}
+
+/// Names with and without the array element that queries of OpenGL add.
+bool same_variable(const std::string& a, const std::string& b) {
+  return a == b || a == b + "[0]" || b == a + "[0]";
+}
+
+const StageInput* input_of(const ProgramStages& stages, const std::string& name) {
+  // A shader reads gl_Color where the vertex stage writes gl_FrontColor.
+  const auto found = std::ranges::find_if(stages.inputs, [&](const StageInput& input) {
+    return same_variable(input.name, name) || (name == "gl_Color" && input.name == "gl_FrontColor") ||
+           (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
+  });
+  return found == stages.inputs.end() ? nullptr : &*found;
+}
+
+/// The same for all fragments of the run, or measured as fog.
+bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, const Influence& influence,
+                 const Source& source) {
+  const StageInput* const input = input_of(stages, source.name);
+  if (input == nullptr || input->name == fragment.coordinate) return false;
+  const auto index = std::size_t(input - stages.inputs.data());
+  if (index >= fragment.range.low.size()) return false;
+  const auto component = std::size_t(source.component);
+  if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
+  // A fade that is decided by a number (PyMOL's fog) is measured as one that is computed from it.
+  return influence.target == program::Target::colour && !influence.through_table;
+}
+
+/// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
+/// second one looks for the maximum more closely.
+bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
+  std::set<std::size_t> loops;
+  return std::ranges::any_of(finding.samples, [&](std::size_t index) {
+    const program::Fetch& fetch = facts.fetches[index];
+    return !contains(roles.idle, fetch.sampler) && fetch.loop && !loops.insert(*fetch.loop).second;
+  });
+}
+
+std::string sentence(std::string text) {
+  return "the fragment shader: " + std::move(text);
+}
+
+}  // namespace
+
+SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+                           const std::vector<SamplerUniform>& samplers) {
+  SamplerRoles roles;
+  for (const SamplerUniform& sampler : samplers) {
+    if (sampler.location == pipeline.volume.sampler_location) {
+      roles.volume.push_back(sampler.name);
+      continue;
+    }
+    const auto other = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
+      return sampled.sampler_location == sampler.location;
+    });
+    if (other != pipeline.others.end()) {
+      if (other->texture == 0) roles.idle.push_back(sampler.name);
+      continue;
+    }
+    GLint unit = 0;
+    gl.GetUniformiv(pipeline.program, sampler.location, &unit);
+    if (unit == pipeline.volume.unit) roles.volume.push_back(sampler.name);
+  }
+  return roles;
+}
+
+const ProgramFindings* ProgramText::findings(std::span<const std::string> fragment_sources,
+                                             const SamplerRoles& roles, std::span<const UniformValue> values) {
+  std::vector<program::KnownUniform> known;
+  if (readings_ < most_readings) {
+    for (const UniformValue& value : values) {
+      if (value.chooses) known.push_back({std::string(value.name), value.component, double(value.value)});
+    }
+  }
+  if (readings_ > 0 && known == known_ && (!findings_ || findings_->roles == roles))
+    return findings_ ? &*findings_ : nullptr;
+  ++readings_;
+  known_ = std::move(known);
+  findings_.reset();
+  program::StageFinding read = program::analyse(program::Stage::fragment, fragment_sources, known_);
+  if (const auto* failure = std::get_if<program::Failure>(&read)) {
+    trouble_ = "the fragment shader is not understood: " + failure->what;
+    return nullptr;
+  }
+  findings_.emplace(std::get<program::StageFacts>(std::move(read)), roles);
+  const std::vector<std::string> volumes = ends_of_ways(roles);
+  findings_->slices = slice_finding(findings_->facts, volumes);
+  findings_->ray = ray_finding(findings_->facts, volumes);
+  return &*findings_;
+}
+
+std::string refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
+                              const FragmentInputs& fragment, bool slice_segments) {
+  const StageFacts& facts = findings.facts;
+  const SamplerRoles& roles = findings.roles;
+  if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
+  const program::SliceFinding& finding = findings.slices;
+  std::vector<std::size_t> texels;
+  std::ranges::copy_if(finding.texels, std::back_inserter(texels),
+                       [&](std::size_t fetch) { return !contains(roles.idle, facts.fetches[fetch].sampler); });
+  if (texels.empty()) return "no colour of the fragment shader depends on the volume's texels";
+  const std::size_t most = slice_segments ? 2 : 1;
+  if ((texels.size() > most || finding.texels_vary_in_loop) && !finding.reasons.empty())
+    return sentence(finding.reasons.front());
+  if (std::string reason = refusal_of_tables(facts, finding.tables, roles); !reason.empty()) return reason;
+  std::vector<Influence> unexplained = finding.coordinate_others;
+  for (const Influence& influence : finding.others) {
+    const Source& source = facts.sources[influence.source];
+    if (source.kind == SourceKind::varying && is_measured(stages, fragment, influence, source)) continue;
+    unexplained.push_back(influence);
+  }
+  if (unexplained.empty()) return {};
+  return sentence(texts(facts, unexplained).front());
+}
+
+std::string refusal_of_ray_caster(const ProgramFindings& findings) {
+  const StageFacts& facts = findings.facts;
+  if (std::string reason = refusal_of_side_effects(facts); !reason.empty()) return reason;
+  const program::RayFinding& finding = findings.ray;
+  if (!finding.loop) return "no loop of the fragment shader samples the volume";
+  if (std::string reason = refusal_of_tables(facts, finding.tables, findings.roles); !reason.empty())
+    return reason;
+  if (mixes_samples(facts, finding, findings.roles))
+    return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
+           "lighting)";
+  if (!finding.data.empty()) return sentence(texts(facts, finding.data).front());
+  return {};
+}
+
+VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
+                                            std::span<const UniformValue> values) {
+  const auto only_colours = [&](const UniformValue& value) {
+    return !value.chooses &&
+           std::ranges::none_of(findings.slices.uniforms, [&](const program::UniformUse& use) {
+             const Source& source = findings.facts.sources[use.source];
+             if (!use.discard && !use.branch && !use.coordinate) return false;
+             if (value.name.empty()) return source.kind == SourceKind::uniform_block;
+             return source.component == value.component && same_variable(source.name, std::string(value.name));
+           });
+  };
+  using Effect = VerificationSchedule::Effect;
+  VerificationSchedule::Inputs inputs;
+  for (const UniformValue& value : values)
+    inputs.push_back({value.value, only_colours(value) ? Effect::measured : Effect::unknown});
+  return inputs;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,29 @@
+// From a texture to the render service: all texels once, and then only those that differ.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "compositor/service.h"
+#include "spu/volume/texture/texels.h"
+#include "spu/volume/upload/block_hashes.h"
+#include "volume/description.h"
+
+namespace understudy::spu {
+
+/// Bytes of texels.
+struct Transferred {
+  std::uint64_t sent = 0;
+  std::uint64_t left_out = 0;  ///< of the whole volume, because the service has them already
+};
+
+/// Sends all of `volume.stored`; `hashes` are new.
+Transferred send_volume(compositor::RenderService& service, const volume::VolumeDescription& volume,
+                        TexelSource& source, BlockHashes& hashes);
+
+/// Reads `regions` again and sends what differs there from what `hashes` know. Where something does, the
+/// version of `volume` grows; otherwise the service hears nothing.
+Transferred send_changes(compositor::RenderService& service, volume::VolumeDescription& volume,
+                         std::span<const volume::TexelBox> regions, TexelSource& source, BlockHashes& hashes);
+
+}  // namespace understudy::spu

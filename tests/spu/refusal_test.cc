@@ -1,7 +1,9 @@
 // Whatever is not understood is not substituted, bit for bit, with its reason.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "slice_scenes.h"
+#include "spu/volume/context/context.h"
 
 namespace understudy::spu::testing {
 namespace {
@@ -121,6 +123,40 @@ TEST(Refusals, ShadersWhoseColourDependsOnPositionAreLeft) {
   app->use_chain(false);
   scene.draw(*app, 20);
   EXPECT_EQ(under, app->read_pixels());
+}
+
+// The front end that reads shaders knows extensions that the driver does not: what the driver compiles counts.
+TEST(Refusals, AreDecidedOnTheBranchThatTheDriverCompiles) {
+  const std::string by_sample = "shown = texture1D(table, texture3D(field, gl_TexCoord[0].xyz).r);\n";
+  const std::string by_place = by_sample + "shown *= gl_TexCoord[0].y;\n";
+  const auto shader = [](const std::string& extension, const std::string& with, const std::string& without) {
+    return "#version 120\nuniform sampler3D field; uniform sampler1D table;\nvoid main() {\n  vec4 "
+           "shown;\n#ifdef " +
+           extension + "\n  " + with + "#else\n  " + without + "#endif\n  gl_FragColor = shown;\n}\n";
+  };
+  const char* const present = "GL_ARB_shader_image_load_store";
+  const char* const absent = "GL_NV_mesh_shader";
+  struct Case {
+    std::string source;
+    bool substituted;
+  };
+  for (const Case& each :
+       {Case{shader(present, by_sample, by_place), true}, Case{shader(present, by_place, by_sample), false},
+        Case{shader(absent, by_place, by_sample), true}, Case{shader(absent, by_sample, by_place), false}}) {
+    auto app = GlApplication::start(Profile::compatibility);
+    if (!app) GTEST_SKIP() << "no EGL context here";
+    const std::vector<std::string> extensions = describe_context(app->driver()).extensions;
+    EXPECT_THAT(extensions, ::testing::Contains(present));
+    EXPECT_THAT(extensions, ::testing::Not(::testing::Contains(absent)));
+    const SliceScene scene = client_arrays_table();
+    scene.set_up(*app);
+    replace_shader(*app, GL_FRAGMENT_SHADER, each.source.c_str());
+    scene.draw(*app, 20);
+    app->read_pixels();
+    EXPECT_EQ(app->substituted(), each.substituted ? 1U : 0U) << each.source << app->last_reason();
+    if (each.substituted) continue;
+    EXPECT_EQ(app->last_reason(), "the fragment shader: colours depend on varying gl_TexCoord[0].y");
+  }
 }
 
 TEST(Refusals, ASingleSliceIsLeft) {

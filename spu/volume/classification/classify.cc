@@ -78,7 +78,8 @@ const ProgramFindings& VolumeUnit::findings(const Substitution& s, std::span<con
   }
   const DispatchTable& gl = *context().gl;
   const SamplerRoles roles = sampler_roles(gl, s.pipeline, samplers_.of(gl, program, record->link));
-  const ProgramFindings* const found = text.findings(record->fragment_sources, roles, values);
+  const ProgramFindings* const found =
+      text.findings(record->fragment_sources, context().extensions, roles, values);
   if (found == nullptr) throw Refusal{text.trouble()};
   return *found;
 }

@@ -1,5 +1,6 @@
 #include "spu/volume/context/context.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 
@@ -7,14 +8,19 @@ namespace understudy::spu {
 namespace {
 
 /// From OpenGL 3.0 on.
-bool has_extension(const DispatchTable& gl, std::string_view name) {
+std::vector<std::string> extensions_of(const DispatchTable& gl) {
+  std::vector<std::string> extensions;
   GLint count = 0;
   gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
   for (GLint i = 0; i < count; ++i) {
     const auto* extension = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, GLuint(i)));
-    if (extension != nullptr && name == extension) return true;
+    if (extension != nullptr) extensions.emplace_back(extension);
   }
-  return false;
+  return extensions;
+}
+
+bool has_extension(const GlContext& context, std::string_view name) {
+  return std::ranges::find(context.extensions, name) != context.extensions.end();
 }
 
 }  // namespace
@@ -35,14 +41,14 @@ GlContext describe_context(const DispatchTable& gl) {
   } else if (context.version >= 310) {
     context.core = true;  // 3.1 without ARB_compatibility; with it Mesa reports 3.2 or later
   }
+  if (context.version >= 300) context.extensions = extensions_of(gl);
   context.pipeline_statistics =
-      context.version >= 460 ||
-      (context.version >= 300 && has_extension(gl, "GL_ARB_pipeline_statistics_query"));
+      context.version >= 460 || has_extension(context, "GL_ARB_pipeline_statistics_query");
   if (!context.core) {
     gl.GetIntegerv(GL_MAX_TEXTURE_UNITS, &context.fixed_function_units);
-    context.fragment_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_fragment_program");
-    context.fog_distance = context.version >= 300 && has_extension(gl, "GL_NV_fog_distance");
-    context.vertex_assembly = context.version >= 300 && has_extension(gl, "GL_ARB_vertex_program");
+    context.fragment_assembly = has_extension(context, "GL_ARB_fragment_program");
+    context.fog_distance = has_extension(context, "GL_NV_fog_distance");
+    context.vertex_assembly = has_extension(context, "GL_ARB_vertex_program");
   }
   return context;
 }

@@ -1,6 +1,9 @@
 // What the volume unit must know about the context it stands in.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "dispatch/table.h"
 
 namespace understudy::spu {
@@ -13,7 +16,9 @@ struct GlContext {
   bool fragment_assembly = false;     ///< GL_ARB_fragment_program
   bool vertex_assembly = false;       ///< GL_ARB_vertex_program
   bool fog_distance = false;          ///< GL_NV_fog_distance
-  int fixed_function_units = 0;       ///< texture units of the fixed-function pipeline; 0 in core profiles
+  std::vector<std::string>
+      extensions{};              ///< the driver's, GL_ARB_gpu_shader5 and so on; of OpenGL 3.0 and later
+  int fixed_function_units = 0;  ///< texture units of the fixed-function pipeline; 0 in core profiles
 
   /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.
   bool sufficient() const { return version >= 300; }

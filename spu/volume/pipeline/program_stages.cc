@@ -277,14 +277,13 @@ std::string interpolation_of(const program::StageFacts& facts, const std::string
   return {};
 }
 
-void read_fragment_text(const ProgramRecord& record, ProgramStages& stages) {
-  program::StageFinding finding = program::analyse(program::Stage::fragment, record.fragment_sources);
-  if (auto* facts = std::get_if<program::StageFacts>(&finding)) {
-    for (StageInput& input : stages.inputs) input.interpolation = interpolation_of(*facts, input.name);
-    stages.facts = std::make_shared<const program::StageFacts>(std::move(*facts));
-  } else {
-    stages.facts_trouble = "the fragment shader is not understood: " + std::get<program::Failure>(finding).what;
-  }
+/// What queries do not tell. A text that is not understood leaves all inputs smooth: its volume is refused.
+void read_interpolation(const GlContext& context, const ProgramRecord& record, ProgramStages& stages) {
+  const program::StageFinding finding =
+      program::analyse(program::Stage::fragment, record.fragment_sources, {}, context.extensions);
+  const auto* facts = std::get_if<program::StageFacts>(&finding);
+  if (facts == nullptr) return;
+  for (StageInput& input : stages.inputs) input.interpolation = interpolation_of(*facts, input.name);
 }
 
 }  // namespace
@@ -292,7 +291,7 @@ void read_fragment_text(const ProgramRecord& record, ProgramStages& stages) {
 ProgramStages take_apart(const GlContext& context, const ProgramRecord& record, GLuint application) {
   ProgramStages stages;
   describe_fragment_stage(context, record, stages);
-  read_fragment_text(record, stages);
+  read_interpolation(context, record, stages);
   if (!record.vertex_shader) return stages;
 
   std::string trouble;

@@ -2,7 +2,6 @@
 // stage under a vertex stage of ours, to show it chosen samples.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +9,6 @@
 
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
-#include "spu/volume/program/facts.h"
 
 namespace understudy::spu {
 
@@ -39,8 +37,6 @@ struct ProgramStages {
   GLuint observer = 0;  ///< vertex stage; captures gl_Position, then every input that is written, interleaved
                         ///< as floats; 0: none
   std::string trouble;  ///< why the fragment stage cannot be shown chosen samples; empty: it can
-  std::shared_ptr<const program::StageFacts> facts;  ///< what the fragment stage's text says; null: nothing
-  std::string facts_trouble;                         ///< why not
 };
 
 /// One number of a uniform, or of what tells the contents of a uniform block.

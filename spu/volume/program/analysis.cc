@@ -17,9 +17,9 @@ StageFinding walked(Stage stage, const ParsedStage& parsed, std::span<const Know
 
 }  // namespace
 
-StageFinding analyse(Stage stage, std::span<const std::string> sources,
-                     std::span<const KnownUniform> known) noexcept try {
-  const auto parsed = parse(stage, sources);
+StageFinding analyse(Stage stage, std::span<const std::string> sources, std::span<const KnownUniform> known,
+                     const std::optional<std::span<const std::string>>& extensions) noexcept try {
+  const auto parsed = parse(stage, sources, extensions);
   if (const auto* failure = std::get_if<Failure>(&parsed)) return *failure;
   return walked(stage, std::get<ParsedStage>(parsed), known);
 } catch (const TooLarge&) {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "spu/volume/program/driver_macros.h"
+
 namespace understudy::spu::program {
 namespace {
 
@@ -71,6 +73,7 @@ struct ParsedStage::Held {
     const char* text = source.c_str();
     const int length = int(source.size());
     auto& shader = shaders.emplace_back(std::make_unique<glslang::TShader>(language));
+    shader->setPreamble(macro_preamble);
     shader->setStringsWithLengths(&text, &length, 1);
     if (!shader->parse(GetDefaultResources(), 110, false, messages)) return first_error(shader->getInfoLog());
     tree = shader->getIntermediate();
@@ -101,7 +104,8 @@ int ParsedStage::version() const {
   return held_->tree->getVersion();
 }
 
-std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources) {
+std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources,
+                                         const std::optional<std::span<const std::string>>& extensions) {
   if (sources.empty()) return Failure{Failure::Kind::parse, "no source is known"};
   if (is_too_large(sources)) return Failure{Failure::Kind::too_large, "the shader is too large to read"};
   if (!initialise()) return Failure{Failure::Kind::unsupported, "the GLSL front end does not start"};
@@ -109,7 +113,9 @@ std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::strin
   const EShLanguage language = language_of(stage);
   std::string error;
   for (const std::string& source : sources) {
-    if (error.empty()) error = held->add(language, source);
+    const auto text = with_driver_macros(source, extensions ? &*extensions : nullptr);
+    if (const auto* failure = std::get_if<Failure>(&text)) return *failure;
+    if (error.empty()) error = held->add(language, std::get<std::string>(text));
   }
   if (error.empty()) error = held->link(language);
   if (!error.empty()) return Failure{Failure::Kind::parse, error};

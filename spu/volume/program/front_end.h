@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -28,11 +29,14 @@ class ParsedStage {
   explicit ParsedStage(std::unique_ptr<Held> held);
   std::unique_ptr<Held> held_;
 
-  friend std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources);
+  friend std::variant<ParsedStage, Failure> parse(
+      Stage stage, std::span<const std::string> sources,
+      const std::optional<std::span<const std::string>>& extensions);
 };
 
-/// Initialises glslang in the first call of a process, and never ends it: other threads may be parsing while
-/// the process exits.
-std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources);
+/// Of texts that ask for extensions, `extensions` are the answer (driver_macros.h). Initialises glslang in the
+/// first call of a process, and never ends it: other threads may be parsing while the process exits.
+std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::string> sources,
+                                         const std::optional<std::span<const std::string>>& extensions);
 
 }  // namespace understudy::spu::program

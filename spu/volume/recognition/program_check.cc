@@ -116,7 +116,8 @@ SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
 }
 
 const ProgramFindings* ProgramText::findings(std::span<const std::string> fragment_sources,
-                                             const SamplerRoles& roles, std::span<const UniformValue> values) {
+                                             std::span<const std::string> extensions, const SamplerRoles& roles,
+                                             std::span<const UniformValue> values) {
   std::vector<program::KnownUniform> known;
   if (readings_ < most_readings) {
     for (const UniformValue& value : values) {
@@ -128,7 +129,7 @@ const ProgramFindings* ProgramText::findings(std::span<const std::string> fragme
   ++readings_;
   known_ = std::move(known);
   findings_.reset();
-  program::StageFinding read = program::analyse(program::Stage::fragment, fragment_sources, known_);
+  program::StageFinding read = program::analyse(program::Stage::fragment, fragment_sources, known_, extensions);
   if (const auto* failure = std::get_if<program::Failure>(&read)) {
     trouble_ = "the fragment shader is not understood: " + failure->what;
     return nullptr;

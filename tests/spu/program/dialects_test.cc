@@ -108,6 +108,24 @@ TEST(Dialects, LinkSeveralShadersOfAStage) {
   EXPECT_THAT(reaches(std::get<StageFacts>(finding), "gl_FragColor"), ElementsAre("texel of 'table'.x"));
 }
 
+TEST(Dialects, AskForTheDriversExtensions) {
+  const std::vector<std::string> sources{
+      "#version 330\n#if defined(GL_ARB_gpu_shader5) && \\\n __VERSION__ >= 330\n#define picked "
+      "a\n#else\n#define picked b\n#endif\n"
+      "in vec4 a, b; out vec4 colour; void main() { colour = picked;\n#ifdef GL_ES\ncolour.x = "
+      "0.0;\n#endif\n}\n"};
+  const std::vector<std::string> many{"GL_EXT_other", "GL_ARB_gpu_shader5"};
+  const std::vector<std::string> none;
+  const StageFinding with = analyse(Stage::fragment, sources, {}, many);
+  const StageFinding without = analyse(Stage::fragment, sources, {}, none);
+  EXPECT_THAT(reaches(std::get<StageFacts>(with), "colour"), ElementsAre("varying a.x"));
+  EXPECT_THAT(reaches(std::get<StageFacts>(without), "colour"), ElementsAre("varying b.x"));
+  EXPECT_THAT(what_fails(sources[0]), HasSubstr("depends on GL_ARB_gpu_shader5"));
+  EXPECT_THAT(what_fails("#ifdef __GLSL_CG_DATA_TYPES\n#endif\nvoid main() {}"),
+              HasSubstr("__GLSL_CG_DATA_TYPES"));
+  EXPECT_THAT(what_fails("#define __own 1\n#if __own\n#endif\nvoid main() {}"), IsEmpty());
+}
+
 TEST(VertexStages, SayWhatVaryingsComeFrom) {
   const StageFacts facts = facts_of(
       "#version 120\nuniform vec4 tint; uniform mat4 m; attribute vec3 p; varying vec3 tc; varying vec4 "

@@ -1,28 +1,30 @@
 // adversary list
-// adversary run NAME FOLDER [--frames N] [--exact]
+// adversary run NAME FOLDER [--frames N] [--edge N] [--exact]
+// adversary show random_SEED
 //
-// Runs one scenario and leaves what it showed: FOLDER/frame_NNNN.pam (RGBA of 8 bits, rows from below) and
-// facts.txt.
+// Runs one scenario (random_SEED: one that was made by chance) and leaves what it showed: FOLDER/frame_NNNN.pam
+// (RGBA of 8 bits, rows from below) and facts.txt.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 
+#include "tests/adversary/random_scenario.h"
 #include "tests/adversary/scenario.h"
 
 namespace adversary {
 namespace {
 
-constexpr int edge = 256;
-
 struct Arguments {
   std::string name;
   std::filesystem::path folder;
   int frames = 30;
+  int edge = 256;
   Precision precision = Precision::viewer;
 };
 
@@ -31,7 +33,14 @@ void list() {
     std::cout << name << "\t" << text_of(scenario.expectation) << "\t" << scenario.sentence << "\n";
 }
 
+/// Of `random_SEED`; none for other names.
+std::optional<unsigned> seed_of(const std::string& name) {
+  if (!name.starts_with("random_")) return std::nullopt;
+  return static_cast<unsigned>(std::stoul(name.substr(7)));
+}
+
 Scenario find(const std::string& name) {
+  if (const auto seed = seed_of(name)) return random_scenario(*seed).scenario;
   for (const NamedScenario& each : all_scenarios())
     if (each.name == name) return each.scenario;
   throw std::runtime_error("there is no scenario " + name + "; `adversary list` names all");
@@ -59,7 +68,7 @@ void show_frame(Canvas& canvas, const DrawFrame& draw, int frame, const std::fil
 void run(const Arguments& arguments) {
   const Scenario scenario = find(arguments.name);
   std::filesystem::create_directories(arguments.folder);
-  Canvas canvas(scenario.profile, arguments.precision, edge, edge);
+  Canvas canvas(scenario.profile, arguments.precision, arguments.edge, arguments.edge);
   const DrawFrame draw = scenario.start(canvas);
   for (int frame = 0; frame < arguments.frames; ++frame) show_frame(canvas, draw, frame, arguments.folder);
   std::ofstream facts(arguments.folder / "facts.txt");
@@ -68,7 +77,8 @@ void run(const Arguments& arguments) {
 
 Arguments parsed(std::span<char*> words) {
   if (words.size() < 4)
-    throw std::runtime_error("usage: adversary list | run NAME FOLDER [--frames N] [--exact]");
+    throw std::runtime_error(
+        "usage: adversary list | run NAME FOLDER [--frames N] [--edge N] [--exact] | show random_SEED");
   Arguments arguments{.name = words[2], .folder = words[3]};
   for (std::size_t i = 4; i < words.size(); ++i) {
     const std::string word = words[i];
@@ -76,6 +86,8 @@ Arguments parsed(std::span<char*> words) {
       arguments.precision = Precision::exact;
     else if (word == "--frames" && i + 1 < words.size())
       arguments.frames = std::stoi(words[++i]);
+    else if (word == "--edge" && i + 1 < words.size())
+      arguments.edge = std::stoi(words[++i]);
     else
       throw std::runtime_error("unknown option " + word);
   }
@@ -89,6 +101,8 @@ int main(int count, char** words) {
   try {
     if (count == 2 && std::string(words[1]) == "list")
       adversary::list();
+    else if (count == 3 && std::string(words[1]) == "show")
+      std::cout << adversary::random_fragment_shader(adversary::seed_of(words[2]).value());
     else
       adversary::run(adversary::parsed({words, static_cast<std::size_t>(count)}));
     return 0;

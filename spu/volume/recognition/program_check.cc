@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 
 namespace understudy::spu {
 namespace {
@@ -77,13 +76,26 @@ bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, co
   return influence.target == program::Target::colour && !influence.through_table;
 }
 
+/// Whether loop `inner` is run through in one iteration of `outer`: it is that loop, or stands in it.
+bool is_within(const StageFacts& facts, std::size_t inner, std::size_t outer) {
+  for (std::optional<std::size_t> loop = inner; loop; loop = facts.loops[*loop].outer) {
+    if (*loop == outer) return true;
+  }
+  return false;
+}
+
 /// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
 /// second one looks for the maximum more closely.
 bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
-  std::set<std::size_t> loops;
+  std::vector<std::size_t> loops;
   return std::ranges::any_of(finding.samples, [&](std::size_t index) {
     const program::Fetch& fetch = facts.fetches[index];
-    return !contains(roles.idle, fetch.sampler) && fetch.loop && !loops.insert(*fetch.loop).second;
+    if (contains(roles.idle, fetch.sampler) || !fetch.loop) return false;
+    const bool mixes = std::ranges::any_of(loops, [&](std::size_t other) {
+      return is_within(facts, *fetch.loop, other) || is_within(facts, other, *fetch.loop);
+    });
+    loops.push_back(*fetch.loop);
+    return mixes;
   });
 }
 

@@ -150,10 +150,67 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
   return best;
 }
 
+constexpr float same_but_for_rounding = 0.02F;
+/// Lighting needs a gradient, however small: by so much of the range of values the fields rise that show it.
+constexpr float slight_rise = 1e-5F;
+
+bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
+  const float rise = slight_rise * (measured.range[1] - measured.range[0]);
+  const std::array one{value};
+  const Rgba flat = probe.at(ray.x, ray.y, one).front();
+  const Rgba sloping = probe.at_slope(ray.x, ray.y, one, rise).front();
+  return !(largest_difference(flat, sloping) <= same_but_for_rounding);
+}
+
+/// Whether the colour changes by leaps at `value`: a slope there says nothing about lighting.
+bool is_at_step(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
+  const float rise = slight_rise * (measured.range[1] - measured.range[0]);
+  const std::array around{std::max(value - rise, measured.range[0]), value,
+                          std::min(value + rise, measured.range[1])};
+  const auto colours = probe.at(ray.x, ray.y, around);
+  return !(largest_difference(colours[0], colours[1]) <= same_but_for_rounding &&
+           largest_difference(colours[1], colours[2]) <= same_but_for_rounding);
+}
+
+/// A value whose field lets about half of the light through a ray.
+struct TranslucentRay {
+  Ray ray;
+  float value = 0;
+};
+
+/// On the longest ray on which there is one: where samples are nearly opaque, only short rays let light
+/// through.
+std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, FieldProbe& probe,
+                                              const RaysThroughBox& rays, const volume::RaySteps& texels,
+                                              const March& march, const std::vector<float>& values) {
+  constexpr float too_far_from_half = 0.48F;
+  constexpr std::size_t looked_at = 4;
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  const Ray longest{middle[0], middle[1], way ? steps_of_way(texels, *way) : 0};
+  for (const double part : {1.0, 0.25, 0.0625}) {
+    const Ray ray = part == 1 ? longest : ray_of_length(rays, texels, part * longest.length);
+    const auto fragments = probe.at(ray.x, ray.y, values);
+    std::vector<std::pair<float, float>> by_distance;  // from half, and the value
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      const float distance = std::abs(amount(march, fragments[i]) - 0.5F);
+      if (reached(fragments[i]) && distance < too_far_from_half) by_distance.emplace_back(distance, values[i]);
+    }
+    std::ranges::sort(by_distance);
+    by_distance.resize(std::min(by_distance.size(), looked_at));
+    for (const auto& [distance, value] : by_distance) {
+      if (!is_at_step(measured, probe, ray, value)) return TranslucentRay{ray, value};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Counts of samples on rays all over the box.
 std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
                                                                 const RaysThroughBox& rays,
                                                                 const March& march) {
+  // Where nearly nothing is let through any more, programs stop, or one sample makes no difference.
+  constexpr float most_counted = 0.99F;
   const bool already = measured.run.pipeline().blending.premultiplied;
   std::vector<CountedRay> counted;
   std::vector<double> amounts;
@@ -166,7 +223,8 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
       const int column = int(i) % probe.width();
       const int row = y + int(i) / probe.width();
       const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
-      if (!way) continue;
+      const float seen = amount(march, premultiplied(fragments[i], already));
+      if (!way || (!march.sum && seen > most_counted)) continue;
       counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});
       colours.push_back(premultiplied(fragments[i], already));
       amounts.push_back(double(amount(march, colours.back())));
@@ -466,24 +524,17 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   if (march.extreme && (!reference_way || steps_of_way(texels, *reference_way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
 
-  // A value that lets about half of the light through the whole box.
-  march.translucent = values[tried / 2];
-  float nearest = 0.48F;
-  for (std::size_t i = 0; i < through.size() && !march.extreme; ++i) {
-    const float far_from_half = std::abs(amount(march, through[i]) - 0.5F);
-    if (!reached(through[i]) || far_from_half > nearest) continue;
-    nearest = far_from_half;
-    march.translucent = values[i];
+  if (march.extreme) {
+    march.translucent = values[tried / 2];
+    if (depends_on_gradient(measured, probe, {middle[0], middle[1]}, march.translucent))
+      return "the colour depends on the gradient (lighting)";
+  } else {
+    const auto found = translucent_ray(measured, probe, rays, texels, march, values);
+    if (!found) return "no value is translucent on any ray: samples cannot be counted";
+    if (depends_on_gradient(measured, probe, found->ray, found->value))
+      return "the colour depends on the gradient (lighting)";
+    march.translucent = found->value;
   }
-  if (nearest == 0.48F && !march.extreme)
-    return "no value is translucent over the whole box: its samples cannot be counted";
-
-  // Lighting needs a gradient, however small.
-  const float slight = 1e-5F * (measured.range[1] - measured.range[0]);
-  const std::array one{march.translucent};
-  const Rgba flat = probe.at(middle[0], middle[1], one).front();
-  const Rgba sloping = probe.at_slope(middle[0], middle[1], one, slight).front();
-  if (!(largest_difference(flat, sloping) <= 0.02F)) return "the colour depends on the gradient (lighting)";
 
   if (march.sum) {
     constexpr double none = 0.02;  // of a texel

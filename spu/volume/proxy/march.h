@@ -58,7 +58,7 @@ struct March {
   std::optional<PlainSum> sum;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
-  float translucent = 0;           ///< a value whose field lets a long ray through
+  float translucent = 0;           ///< a value whose field lets light through a ray, the longest that does
   bool clipped = false;            ///< whether there were clipping planes
   bool from_inside = false;        ///< whether the steps were measured with the eye inside
   double past_planes = 0;          ///< samples up to so many steps behind one by which a ray leaves still count

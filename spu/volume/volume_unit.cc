@@ -513,6 +513,9 @@ void VolumeUnit::substitute(std::unique_ptr<Run>& closed) {
     compose_request(s);
     hide_behind_geometry(s);
   }
+  if (auto* const table = std::get_if<volume::TransferFunction>(&s.request.classification);
+      table != nullptr && s.volume.sample_rounding.rounds())
+    *table = with_rounded_samples(*table);
   s.volume.verification.begin(s.inputs, volume::footprint(s.request, s.request.region).pixels());
   const volume::FrameCounts counts =
       show(service, s, [&](const volume::ImageView& image) { verify(s, image); });

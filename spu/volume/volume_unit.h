@@ -20,6 +20,7 @@
 #include "spu/report/counters.h"
 #include "spu/volume/budget/budget.h"
 #include "spu/volume/classification/probe.h"
+#include "spu/volume/classification/sample_rounding.h"
 #include "spu/volume/context/context.h"
 #include "spu/volume/geometry/slices.h"
 #include "spu/volume/observation/run.h"
@@ -67,6 +68,7 @@ struct KnownVolume {
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t frames = 0;
   VerificationSchedule verification;
+  SampleRounding sample_rounding;
   SpeedGuard speed;
   volume::Matrix4 camera{};        ///< of the last image of its ray caster, from texture to clip coordinates
   std::uint64_t next_try = 0;      ///< the frame from which on it is tried again, after a lost comparison

@@ -58,6 +58,8 @@ class VerificationSchedule {
   void whole_was_right(bool anything_visible, double native_ms);
   void sentinels_took(int count, double ms);
   void lost();
+  /// The next image is compared whole, whatever was right before.
+  void ask_for_whole() { right_ = false; }
 
   bool gives_up() const {
     return lost_in_a_row_ >= max_lost_comparisons || lost_ever_ >= max_lost_comparisons_ever;

@@ -80,6 +80,7 @@ void VolumeUnit::judge(KnownVolume& known, const ImageDifference& difference, do
   note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
   const double asked_psnr = session_->options().verify_psnr;
   if (!difference.worst.within_bound() || difference.psnr() < asked_psnr) lose(known, difference);
+  if (difference.anything_visible) known.sample_rounding.won();
   known.verification.whole_was_right(difference.anything_visible, native_ms);
 }
 
@@ -95,6 +96,11 @@ void VolumeUnit::count_difference(KnownVolume& known, const ImageDifference& dif
 }
 
 void VolumeUnit::lose(KnownVolume& known, const ImageDifference& difference) {
+  if (known.sample_rounding.try_after_loss(known.texture)) {
+    known.next_try = session_->ledger().frames() + 1;
+    known.verification.ask_for_whole();
+    throw Refusal{sentence_of(difference) + "; tried again with samples rounded to 8 bits"};
+  }
   known.verification.lost();
   known.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);
   known.probed.reset();

@@ -39,8 +39,8 @@ DrawFrame drawn(std::shared_ptr<Scene> scene) {
 std::string random_fragment_shader(unsigned seed) {
   std::mt19937 chance(seed);
   const ShadingPlace place = casts_rays(seed)
-                                 ? ShadingPlace{.position = "here", .leave_out = "continue", .counter = "i"}
-                                 : ShadingPlace{.position = "at", .leave_out = "discard"};
+                                 ? ShadingPlace{.position = "here", .skip = "continue", .counter = "i"}
+                                 : ShadingPlace{.position = "at", .skip = "discard"};
   const RandomShading shading = random_shading(chance, dependence_of(seed), place);
   return casts_rays(seed) ? over_caster(shading.declarations, shading.body)
                           : slice_fragment_shader(shading.declarations, shading.body);

@@ -122,7 +122,7 @@ class Writer {
       case 0:
         return loop(depth);
       case 1:
-        return "if (" + condition(1) + ") " + place_.leave_out + ";\n";
+        return "if (" + condition(1) + ") " + place_.skip + ";\n";
       case 2:
         return "if (" + condition(2) + ") {\n" + block(depth - 1) + "} else {\n" + block(depth - 1) + "}\n";
       default:

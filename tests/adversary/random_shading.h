@@ -22,7 +22,7 @@ struct RandomShading {
 /// The names of what a body may read besides `value`, `colour` and its own uniforms.
 struct ShadingPlace {
   std::string position;      ///< a vec3, the sample's texture coordinate
-  std::string leave_out;     ///< the statement that leaves this sample out
+  std::string skip;          ///< the statement that leaves this sample out
   std::string counter = {};  ///< an int, which sample of the ray this is; empty for slices
 };
 

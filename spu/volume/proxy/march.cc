@@ -162,7 +162,7 @@ bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const 
   return !(largest_difference(flat, sloping) <= same_but_for_rounding);
 }
 
-/// Whether the colour changes by leaps at `value`: a slope there says nothing about lighting.
+/// Whether the colour jumps at `value`: a slope there says nothing about lighting.
 bool is_at_step(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
   const float rise = slight_rise * (measured.range[1] - measured.range[0]);
   const std::array around{std::max(value - rise, measured.range[0]), value,

@@ -99,7 +99,8 @@ void VolumeUnit::lose(KnownVolume& known, const ImageDifference& difference) {
   if (known.sample_rounding.try_after_loss(known.texture)) {
     known.next_try = session_->ledger().frames() + 1;
     known.verification.ask_for_whole();
-    throw Refusal{sentence_of(difference) + "; tried again with samples rounded to 8 bits"};
+    constexpr const char* next = "; tried again with samples rounded to 8 bits";
+    throw Refusal{sentence_of(difference) + next};
   }
   known.verification.lost();
   known.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);

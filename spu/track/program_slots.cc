@@ -84,7 +84,17 @@ void APIENTRY specialize_shader_arb(GLuint shader, const GLchar* entry, GLuint c
 
 void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
   here().below().ProgramBinary(program, format, binary, length);
-  programs().program_loaded(program);
+  if (binary != nullptr && length > 0)
+    programs().program_loaded(program, {static_cast<const std::byte*>(binary), std::size_t(length)});
+}
+
+void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length, GLenum* format, void* binary) {
+  constexpr GLsizei nothing_written = -1;
+  GLsizei written = nothing_written;
+  here().below().GetProgramBinary(program, space, &written, format, binary);
+  if (length != nullptr && written != nothing_written) *length = written;
+  if (binary != nullptr && written > 0)
+    programs().binary_taken(program, {static_cast<const std::byte*>(binary), std::size_t(written)});
 }
 
 void APIENTRY delete_object(GLhandleARB object) {
@@ -120,6 +130,7 @@ void fill_program_slots(DispatchTable& table) {
   table.SpecializeShader = specialize_shader;
   table.SpecializeShaderARB = specialize_shader_arb;
   table.ProgramBinary = program_binary;
+  table.GetProgramBinary = get_program_binary;
   table.DeleteObjectARB = delete_object;
   using Table = DispatchTable;
   using Sources = ProgramSources;

@@ -1,12 +1,14 @@
 #include "spu/track/program_sources.h"
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 #include <utility>
 
 namespace understudy::spu {
 namespace {
 
-void add_gl_server_command(ProgramRecord& record, GLenum type, const std::string* source) {
+void add_shader_source(ProgramRecord& record, GLenum type, const std::string* source) {
   const std::string text = source != nullptr ? *source : std::string();
   if (type == GL_VERTEX_SHADER) {
     record.vertex_shader = true;
@@ -18,6 +20,10 @@ void add_gl_server_command(ProgramRecord& record, GLenum type, const std::string
   } else {
     record.other_shader_stages = true;
   }
+}
+
+std::size_t hash_of(std::span<const std::byte> binary) {
+  return std::hash<std::string_view>()({reinterpret_cast<const char*>(binary.data()), binary.size()});
 }
 
 }  // namespace
@@ -91,7 +97,7 @@ void ProgramSources::program_linked(GLuint program) {
   record->link = ++links_;
   for (const GLuint shader : found->second.shaders) {
     const Shader& part = shaders_.at(shader);
-    add_gl_server_command(*record, part.type, part.compiled.get());
+    add_shader_source(*record, part.type, part.compiled.get());
   }
   found->second.linked = std::move(record);
 }
@@ -101,17 +107,29 @@ void ProgramSources::program_linked_from(GLuint program, GLenum type, const std:
   const std::scoped_lock lock(mutex_);
   auto record = std::make_shared<ProgramRecord>();
   record->link = ++links_;
-  add_gl_server_command(*record, type, &source);
+  add_shader_source(*record, type, &source);
   programs_[program] = {.shaders = {}, .linked = std::move(record)};
 }
 
-void ProgramSources::program_loaded(GLuint program) {
+void ProgramSources::program_loaded(GLuint program, std::span<const std::byte> binary) {
   const std::scoped_lock lock(mutex_);
   const auto found = programs_.find(program);
   if (found == programs_.end()) return;
-  auto record = std::make_shared<ProgramRecord>();
+  const auto taken = binaries_.find(hash_of(binary));
+  auto record = std::make_shared<ProgramRecord>(taken == binaries_.end() ? ProgramRecord{} : *taken->second);
   record->link = ++links_;
   found->second.linked = std::move(record);
+}
+
+void ProgramSources::binary_taken(GLuint program, std::span<const std::byte> binary) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = programs_.find(program);
+  if (found != programs_.end() && found->second.linked) binaries_[hash_of(binary)] = found->second.linked;
+}
+
+bool ProgramSources::knows_binary(std::span<const std::byte> binary) const {
+  const std::scoped_lock lock(mutex_);
+  return binaries_.contains(hash_of(binary));
 }
 
 void ProgramSources::program_deleted(GLuint program) {

@@ -2,10 +2,12 @@
 // no query gives them back, and asking at every link would show in the driver's calls.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,8 +43,12 @@ class ProgramSources {
   void program_linked(GLuint program);
   /// By glCreateShaderProgramv: created, attached, linked and detached in one call.
   void program_linked_from(GLuint program, GLenum type, const std::string& source);
-  /// By glProgramBinary: there are no sources.
-  void program_loaded(GLuint program);
+  /// By glProgramBinary: its sources are those of the program that `binary` was taken from, in this process.
+  void program_loaded(GLuint program, std::span<const std::byte> binary);
+  /// glGetProgramBinary gave `binary` of this program.
+  void binary_taken(GLuint program, std::span<const std::byte> binary);
+  /// Whether `binary` was taken from a program in this process.
+  bool knows_binary(std::span<const std::byte> binary) const;
   void program_deleted(GLuint program);
 
   /// As of the last link in our sight; null when there was none.
@@ -68,6 +74,7 @@ class ProgramSources {
   mutable std::mutex mutex_;
   std::map<GLuint, Shader> shaders_;
   std::map<GLuint, Program> programs_;
+  std::map<std::size_t, std::shared_ptr<const ProgramRecord>> binaries_;  ///< by the hash of their bytes
   std::uint64_t links_ = 0;
 };
 

@@ -15,6 +15,7 @@
 #include "spu/volume/merging/merging.h"
 #include "spu/volume/observation/conditional_render.h"
 #include "spu/volume/observation/draw_slots.h"
+#include "spu/volume/observation/program_binaries.h"
 #include "spu/volume/substitution.h"
 #include "spu/volume/upload/texel_transfer.h"
 #include "volume/footprint.h"
@@ -153,6 +154,7 @@ const GlContext& VolumeUnit::context() {
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::plain) {
     fill_conditional_render_slots(table);
+    fill_program_binary_slots(table);
     fill_stack_detection_slots(table);
   }
   if (phase == Phase::watching) fill_watching_slots(table);

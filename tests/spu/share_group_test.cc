@@ -211,9 +211,22 @@ TEST_F(Sources, OfBinariesAreNotKnown) {
   kept.shader_compiled(fragment);
   kept.program_linked(program);
   EXPECT_TRUE(kept.program(program)->fragment_source_known);
-  kept.program_loaded(program);
+  const std::array<std::byte, 3> binary{std::byte{7}, std::byte{1}, std::byte{9}};
+  kept.program_loaded(program, binary);
   EXPECT_FALSE(kept.program(program)->fragment_source_known);
   EXPECT_THAT(kept.program(program)->vertex_sources, ElementsAre());
+}
+
+TEST_F(Sources, OfBinariesThatThisProcessTookAreTheProgramsOwn) {
+  const std::array<std::byte, 3> binary{std::byte{7}, std::byte{1}, std::byte{9}};
+  kept.program_linked(program);
+  EXPECT_FALSE(kept.knows_binary(binary));
+  kept.binary_taken(program, binary);
+  EXPECT_TRUE(kept.knows_binary(binary));
+  kept.program_created(20);
+  kept.program_loaded(20, binary);
+  EXPECT_TRUE(kept.program(20)->fragment_source_known);
+  EXPECT_NE(kept.program(20)->link, kept.program(program)->link);
 }
 
 TEST_F(Sources, OfStagesBesideVertexAndFragmentAreOnlyNoted) {

@@ -1,0 +1,31 @@
+#include "spu/volume/observation/program_binaries.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/volume_unit.h"
+
+namespace understudy::spu {
+namespace {
+
+void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
+  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  const DispatchTable& next = unit.next();
+  if (binary == nullptr || length <= 0) return next.ProgramBinary(program, format, binary, length);
+  const std::span bytes(static_cast<const std::byte*>(binary), std::size_t(length));
+  if (unit.chain().group().programs().knows_binary(bytes))
+    return next.ProgramBinary(program, format, binary, length);
+  // The driver itself says no: to so many bytes that are no program.
+  const std::vector<std::byte> no_program(bytes.size());
+  next.ProgramBinary(program, format, no_program.data(), length);
+}
+
+}  // namespace
+
+void fill_program_binary_slots(DispatchTable& table) {
+  table.ProgramBinary = program_binary;
+}
+
+}  // namespace understudy::spu

@@ -22,10 +22,10 @@ struct KnownUniform {
 };
 
 /// GLSL 1.10 to 4.60 and ES 1.00 to 3.20; 1.10 where the text does not say. Several sources are several shader
-/// objects of one stage, linked together. `extensions` are the driver's, for texts that ask for them by #ifdef:
-/// without them such a text is refused. Only for what the driver has compiled: the front end is not meant for
-/// texts that are made to break it. Safe from any thread; the first call of a process initialises the front
-/// end, the first with a version its built-in functions. Throws nothing.
+/// objects of one stage, linked together. `extensions` are the driver's, for texts that ask for them by
+/// `#ifdef`: without them such a text is refused. Only for what the driver has compiled: the front end is not
+/// meant for texts that are made to break it. Safe from any thread; the first call of a process initialises the
+/// front end, the first with a version its built-in functions. Throws nothing.
 StageFinding analyse(Stage stage, std::span<const std::string> sources,
                      std::span<const KnownUniform> known = {},
                      const std::optional<std::span<const std::string>>& extensions = std::nullopt) noexcept;

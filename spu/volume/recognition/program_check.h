@@ -36,7 +36,7 @@ struct ProgramFindings {
 /// The findings of one link of a program. Each takes about as long as a few draws, and is kept.
 class ProgramText {
  public:
-  /// `extensions` are the driver's, which decide what #ifdef compiles. Null, with the reason in trouble(),
+  /// `extensions` are the driver's, which decide what `#ifdef` compiles. Null, with the reason in trouble(),
   /// where the text is not understood.
   const ProgramFindings* findings(std::span<const std::string> fragment_sources,
                                   std::span<const std::string> extensions, const SamplerRoles& roles,

@@ -17,6 +17,8 @@ MOST_WORDS_OF_README = 900
 MOST_WORDS_OF_ARCHITECTURE = 999
 MOST_WORDS_OF_SENTENCE = 40
 MOST_WORDS_OF_CELL = 40
+# Of osgvolume, cmake, GoogleTest and others.
+FOREIGN_OPTIONS = set("--cpu-tf --shader --preset --build --target --gtest".split())
 PAGES = [markdown.read(path) for path in markdown.documents()]
 
 # Names in backticks that look like paths of the project, but are made by a command or are the reader's own.
@@ -140,6 +142,18 @@ class Pages(unittest.TestCase):
         thrown = re.findall(r'Refusal\s*[{(][^;"]*"([^"]{12,})"', code)
         self.none([f"docs/troubleshooting.md: no row explains `{reason}`" for reason in thrown
                    if reason.strip() not in table.replace("`", "").replace("*", "")])
+
+    def test_options_exist(self):
+        sources = [ROOT / "run"] + [file for folder in ("apps", "spu", "tests") for file in (ROOT / folder).rglob("*")
+                                    if file.suffix in (".cc", ".h", ".py") and file.parent != Path(__file__).parent]
+        code = "".join(file.read_text(encoding="utf-8", errors="replace") for file in sources)
+        known = set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", code)) | FOREIGN_OPTIONS
+        found = []
+        for page in PAGES:
+            texts = re.findall(r"`[^`\n]*`", page.text) + [block.text for block in page.blocks if block.language in ("bash", "console")]
+            found += [f"{page.name}: no program has {option}" for text in texts
+                      for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", text) if option not in known]
+        self.none(found)
 
     def test_examples_are_used_and_parse(self):
         text = "".join(page.text for page in PAGES)

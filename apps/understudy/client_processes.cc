@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/socket.h"
-#include "compositor/service/socket_file.h"
+#include "compositor/transport/socket.h"
+#include "compositor/transport/socket_file.h"
 
 namespace understudy::launcher {
 namespace {

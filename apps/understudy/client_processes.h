@@ -10,7 +10,8 @@
 #include <string>
 
 #include "apps/understudy/signal_inbox.h"
-#include "compositor/service/file_descriptor.h"
+#include "compositor/service/limits.h"
+#include "compositor/transport/file_descriptor.h"
 
 namespace understudy::launcher {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 #include "spu/report/keys.h"
 
 namespace understudy::launcher {

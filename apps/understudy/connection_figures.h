@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "compositor/tcp/tcp_connection.h"
+#include "compositor/transport/tcp/tcp_connection.h"
 
 namespace understudy::launcher {
 

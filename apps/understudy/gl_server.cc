@@ -23,8 +23,8 @@
 #include "apps/understudy/frame_changes.h"
 #include "apps/understudy/offscreen_contexts.h"
 #include "apps/understudy/signal_inbox.h"
-#include "compositor/service/connection.h"
 #include "compositor/service/limits.h"
+#include "compositor/transport/connection.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/player/player.h"
@@ -100,7 +100,8 @@ class Performance {
   /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
   void run() {
     const spu::GlServerVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
-    connection_.send(MessageType::accepted, 0, spu::encode(versions), Clock::now() + limits::server_patience);
+    connection_.send(compositor::LauncherMessage::accepted, 0, spu::encode(versions),
+                     Clock::now() + limits::server_patience);
     for (;;) {
       std::optional<Message> message;
       try {
@@ -108,7 +109,7 @@ class Performance {
       } catch (const compositor::ConnectionLost&) {
         return;
       }
-      if (message->type != MessageType::calls) throw MalformedMessage("spoke out of turn");
+      if (message->type != spu::GlServerMessage::calls) throw MalformedMessage("spoke out of turn");
       play(spu::decode_calls(message->payload, chunks_));
     }
   }
@@ -146,10 +147,10 @@ class Performance {
     if (calls.head.reply == spu::ServerReply::answer) {
       const spu::CallAnswer nothing;
       const spu::CallAnswer answer = !played ? nothing : paints_ ? painted() : player_.call_answer();
-      reply(MessageType::answered, spu::encode(answer), {});
+      reply(spu::GlServerMessage::answered, spu::encode(answer), {});
     } else if (calls.head.reply == spu::ServerReply::image) {
       const spu::ImageChange change = shown_.value_or(spu::ImageChange{});
-      reply(MessageType::image, spu::encode_head(change), change.pixels);
+      reply(spu::GlServerMessage::image, spu::encode_head(change), change.pixels);
     }
   }
 
@@ -212,10 +213,11 @@ int perform(FileDescriptor socket, const std::string& address) {
   FileDescriptor same(::dup(socket.get()));
   try {
     // Nothing long is read from whoever has not said what it is.
-    Connection pending(std::move(socket), limits::max_hello_bytes);
+    Connection pending(std::move(socket), spu::gl_server_protocols, limits::max_hello_bytes);
     const Message hello = pending.receive(Clock::now() + limits::hello_patience);
-    if (hello.type != MessageType::hello_client) throw MalformedMessage("its first message is no hello");
-    Connection connection(std::move(same), limits::max_gl_server_message_bytes);
+    if (hello.type != compositor::LauncherMessage::hello_client)
+      throw MalformedMessage("its first message is no hello");
+    Connection connection(std::move(same), spu::gl_server_protocols, limits::max_gl_server_message_bytes);
     try {
       const bool paints = !hello.payload.empty();
       // The frames that a tile worker has a part in are counted by the GL server of the application.
@@ -228,7 +230,7 @@ int perform(FileDescriptor socket, const std::string& address) {
     } catch (const compositor::ConnectionLost&) {
       throw;
     } catch (const std::exception& error) {
-      connection.send(MessageType::refused, 0, compositor::encode_text(error.what()),
+      connection.send(compositor::LauncherMessage::refused, 0, compositor::encode_text(error.what()),
                       Connection::now_or_never());
       throw;
     }

@@ -13,9 +13,10 @@
 #include "apps/understudy/client_processes.h"
 #include "apps/understudy/environment.h"
 #include "apps/understudy/signal_inbox.h"
+#include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
-#include "compositor/tcp/listener.h"
-#include "compositor/tcp/render_relay.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/listener.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {
@@ -51,11 +52,13 @@ void tell_address(const std::filesystem::path& folder, const std::string& addres
 /// What the process of one client does. Returns its exit status.
 int carry(FileDescriptor socket, const ConnectionRequest& connection_request, const ListenerPlan& plan) {
   const bool to_server = connection_request.to == Destination::gl_server;
-  TcpConnection connection(std::move(socket),
+  const compositor::Protocols spoken = to_server ? compositor::Protocols(spu::gl_server_protocols)
+                                                 : compositor::Protocols(compositor::service_protocols);
+  TcpConnection connection(std::move(socket), spoken,
                            to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes);
   const std::filesystem::path& path = to_server ? plan.server : plan.nodes;
   try {
-    Connection here(compositor::connect_to(path.string(), Clock::now() + limits::hello_patience),
+    Connection here(compositor::connect_to(path.string(), Clock::now() + limits::hello_patience), spoken,
                     to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes);
     std::string why;
     if (to_server)
@@ -67,7 +70,7 @@ int carry(FileDescriptor socket, const ConnectionRequest& connection_request, co
   } catch (const std::exception& error) {
     const std::vector<std::byte> text = compositor::encode_text(error.what());
     const compositor::Bytes payload(text);
-    connection.send(compositor::MessageType::refused, 0, {&payload, 1});
+    connection.send(compositor::LauncherMessage::refused, 0, {&payload, 1});
     say(error.what());
   }
   return 1;

@@ -1,6 +1,6 @@
 // The listener of `understudy serve --listen`: a process that lets clients of other machines in, if they have
 // the secret, and gives each a process that carries its messages to the nodes or to the GL server here
-// (compositor/tcp).
+// (compositor/transport/tcp).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,7 +10,7 @@
 
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
-#include "compositor/tcp/address.h"
+#include "compositor/transport/tcp/address.h"
 
 namespace understudy::launcher {
 

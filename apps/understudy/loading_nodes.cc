@@ -10,7 +10,7 @@
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/node_options.h"
 #include "apps/understudy/own_node_group.h"
-#include "compositor/tcp/address.h"
+#include "compositor/transport/tcp/address.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {

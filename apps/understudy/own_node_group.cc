@@ -17,8 +17,8 @@
 #include "apps/understudy/node_group.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
-#include "compositor/service/file_descriptor.h"
-#include "compositor/service/socket.h"
+#include "compositor/transport/file_descriptor.h"
+#include "compositor/transport/socket.h"
 
 namespace understudy::launcher {
 namespace {

@@ -17,9 +17,11 @@
 #include "apps/understudy/environment.h"
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
+#include "compositor/exchange/settings.h"
+#include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
-#include "compositor/tcp/render_relay.h"
-#include "compositor/tcp/tcp_connection.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/tcp_connection.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {
@@ -68,9 +70,11 @@ class EndWhenAsked {
 int carry(FileDescriptor application, const ConnectionPlan& plan, const std::filesystem::path& figures) {
   const bool to_server = plan.connection_request.to == Destination::gl_server;
   const std::uint64_t most = to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes;
-  Connection here(std::move(application), most);
+  const compositor::Protocols spoken = to_server ? compositor::Protocols(spu::gl_server_protocols)
+                                                 : compositor::Protocols(compositor::service_protocols);
+  Connection here(std::move(application), spoken, most);
   try {
-    TcpConnection connection(linked(plan), to_server ? most : limits::max_image_message_bytes);
+    TcpConnection connection(linked(plan), spoken, to_server ? most : limits::max_image_message_bytes);
     const EndWhenAsked end_when_asked(here.fd(), connection.fd());
     std::string why;
     if (to_server)
@@ -82,7 +86,7 @@ int carry(FileDescriptor application, const ConnectionPlan& plan, const std::fil
     return why.empty() ? 0 : 1;
   } catch (const std::exception& error) {
     // The application says it where it says such things.
-    here.send(compositor::MessageType::refused, 0, compositor::encode_text(error.what()),
+    here.send(compositor::LauncherMessage::refused, 0, compositor::encode_text(error.what()),
               Connection::now_or_never());
   }
   return 1;

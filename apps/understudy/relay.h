@@ -1,6 +1,6 @@
 // Connections to nodes and GL servers on other machines: a process that listens at a Unix socket here, so that
 // viewers meet nodes or a GL server as they do on one machine, and carries what they say over TCP
-// (compositor/tcp).
+// (compositor/transport/tcp).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@
 
 #include "apps/understudy/child_process.h"
 #include "apps/understudy/installation.h"
-#include "compositor/tcp/handshake.h"
+#include "compositor/transport/tcp/handshake.h"
 
 namespace understudy::launcher {
 

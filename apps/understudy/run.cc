@@ -32,7 +32,7 @@
 #include "apps/understudy/signal_inbox.h"
 #include "apps/understudy/trace_option.h"
 #include "compositor/exchange/settings.h"
-#include "compositor/tcp/address.h"
+#include "compositor/transport/tcp/address.h"
 #include "spu/chain_text.h"
 #include "spu/former_names.h"
 #include "spu/options.h"

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "compositor/service/runtime_folder.h"
+#include "compositor/transport/runtime_folder.h"
 
 namespace understudy::launcher {
 namespace {

@@ -23,8 +23,8 @@
 #include "apps/understudy/run_folder.h"
 #include "apps/understudy/signal_inbox.h"
 #include "compositor/service/limits.h"
-#include "compositor/service/runtime_folder.h"
-#include "compositor/tcp/secret.h"
+#include "compositor/transport/runtime_folder.h"
+#include "compositor/transport/tcp/secret.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {

@@ -6,12 +6,9 @@
 #include <string_view>
 
 #include "compositor/exchange/schedule.h"
+#include "compositor/transport/pixel_width.h"
 
 namespace understudy::compositor {
-
-/// What a value is rounded to, each time it travels: rgba32f not at all; rgba16f to 2^-11 of itself, at most
-/// 65504; rgba8 to 1/510, in [0, 1].
-enum class Layout : std::uint8_t { rgba32f, rgba16f, rgba8 };
 
 /// How the parts of a composited image come to the application: each rank that reaches the application's
 /// memory writes its own there, or all send theirs to rank 0.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "compositor/exchange/communicator.h"
-#include "compositor/service/file_descriptor.h"
+#include "compositor/transport/file_descriptor.h"
 
 namespace understudy::compositor {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "compositor/service/file_descriptor.h"
+#include "compositor/transport/file_descriptor.h"
 
 namespace understudy::compositor {
 

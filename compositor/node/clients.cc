@@ -7,13 +7,27 @@
 #include <array>
 #include <vector>
 
+#include "compositor/service/service_protocols.h"
+
 namespace understudy::compositor {
 
+namespace {
+
+/// A message for the ranks.
+bool is_request(const MessageType& type) {
+  if (const auto message = type.as<NodeMessage>())
+    return *message >= NodeMessage::begin_volume && *message <= NodeMessage::integrals;
+  return type == LoadMessage::load_volume || type == LoadMessage::continue_load ||
+         type == LoadMessage::histogram;
+}
+
+}  // namespace
+
 Clients::Clients(const std::string& control_path, int ranks, std::chrono::milliseconds stall_patience)
-    : launcher_(connect_to(control_path, Clock::now() + limits::send_patience)),
+    : launcher_(connect_to(control_path, Clock::now() + limits::send_patience), service_protocols),
       ranks_(ranks),
       stall_patience_(stall_patience) {
-  launcher_.send(MessageType::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
+  launcher_.send(LauncherMessage::hello_nodes, 0, encode(Hello{ranks}), Clock::now() + limits::send_patience);
   heartbeat_.emplace(launcher_);
 }
 
@@ -54,8 +68,8 @@ Clients::Event Clients::next() {
           turn_began_ = Clock::now();
           // A step of a load takes what it takes.
           const auto* request = std::get_if<Request>(&*event);
-          if (request == nullptr || (request->message.type != MessageType::load_volume &&
-                                     request->message.type != MessageType::continue_load))
+          if (request == nullptr || (request->message.type != LoadMessage::load_volume &&
+                                     request->message.type != LoadMessage::continue_load))
             heartbeat_->begin(connection.fd());
           return std::move(*event);
         }
@@ -86,17 +100,18 @@ int Clients::wait_at_most(bool unfinished, Deadline now) const {
 bool Clients::hear_launcher() {
   try {
     while (std::optional<Message> message = launcher_.receive_some()) {
-      if (message->type != MessageType::client || !message->attached) continue;
+      if (message->type != LauncherMessage::client || !message->attached) continue;
       if (clients_.size() >= limits::max_clients) {
         const std::string reason = fmt::format("{} applications are served already", limits::max_clients);
-        Connection(std::move(message->attached))
-            .send(MessageType::refused, 0, encode_text(reason), Connection::now_or_never());
+        Connection(std::move(message->attached), service_protocols)
+            .send(LauncherMessage::refused, 0, encode_text(reason), Connection::now_or_never());
         continue;
       }
       const std::uint64_t number = ++last_number_;
-      Connection& connection = clients_.try_emplace(number, std::move(message->attached)).first->second;
+      Connection& connection =
+          clients_.try_emplace(number, std::move(message->attached), service_protocols).first->second;
       try {
-        connection.send(MessageType::accepted, 0, encode(Hello{ranks_}), Connection::now_or_never());
+        connection.send(LauncherMessage::accepted, 0, encode(Hello{ranks_}), Connection::now_or_never());
       } catch (const ConnectionLost&) {
         clients_.erase(number);  // gone while it waited
       }
@@ -114,24 +129,10 @@ std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& co
   try {
     std::optional<Message> message = connection.receive_some();
     if (!message) return std::nullopt;
-    switch (message->type) {
-      case MessageType::image_buffer:
-        return MemoryGiven{number, take_image_buffer(connection, std::move(*message))};
-      case MessageType::begin_volume:
-      case MessageType::begin_change:
-      case MessageType::add_texels:
-      case MessageType::end_volume:
-      case MessageType::forget_volume:
-      case MessageType::pre_integration_table:
-      case MessageType::render:
-      case MessageType::load_volume:
-      case MessageType::continue_load:
-      case MessageType::integrals:
-      case MessageType::histogram:
-        return Request{number, std::move(*message)};
-      default:
-        throw MalformedMessage("an application does not send this type of message");
-    }
+    if (message->type == NodeMessage::image_buffer)
+      return MemoryGiven{number, take_image_buffer(connection, std::move(*message))};
+    if (is_request(message->type)) return Request{number, std::move(*message)};
+    throw MalformedMessage("an application does not send this type of message");
   } catch (const ConnectionLost& lost) {
     // An application that ends between two messages has done nothing wrong.
     drop(number, connection.unfinished() ? lost.what() : "");
@@ -142,13 +143,13 @@ std::optional<Clients::Event> Clients::hear(std::uint64_t number, Connection& co
 }
 
 ImageBuffer Clients::take_image_buffer(Connection& connection, Message message) {
-  MessageType answer = MessageType::done;
+  MessageType answer = NodeMessage::done;
   std::vector<std::byte> payload;
   ImageBuffer memory;
   try {
     memory = ImageBuffer::map(std::move(message.attached), decode_size(message.payload));
   } catch (const std::runtime_error& error) {
-    answer = MessageType::refused;
+    answer = LauncherMessage::refused;
     payload = encode_text(error.what());
   }
   connection.send(answer, message.sequence, payload, Connection::now_or_never());

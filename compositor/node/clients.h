@@ -12,8 +12,8 @@
 
 #include "compositor/node/heartbeat.h"
 #include "compositor/node/turns.h"
-#include "compositor/service/connection.h"
 #include "compositor/service/image_buffer.h"
+#include "compositor/transport/connection.h"
 
 namespace understudy::compositor {
 

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/protocol.h"
+#include "compositor/service/service_protocols.h"
 
 namespace understudy::compositor {
 
@@ -29,7 +29,8 @@ bool has_gone(int application) {
 }  // namespace
 
 Heartbeat::Heartbeat(const Connection& launcher)
-    : launcher_(another(launcher.fd())), thread_([this](const std::stop_token& stop) { beat(stop); }) {}
+    : launcher_(another(launcher.fd()), service_protocols),
+      thread_([this](const std::stop_token& stop) { beat(stop); }) {}
 
 void Heartbeat::begin(int application) {
   const std::lock_guard lock(mutex_);
@@ -55,7 +56,7 @@ void Heartbeat::beat(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     const std::chrono::milliseconds unwanted = unwanted_for();
     try {
-      launcher_.send(MessageType::alive, 0,
+      launcher_.send(LauncherMessage::alive, 0,
                      encode(Alive{int(std::min<std::int64_t>(unwanted.count(), limits::max_unwanted_ms))}),
                      Connection::now_or_never());
     } catch (const ConnectionLost&) {

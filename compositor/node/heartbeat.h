@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "compositor/service/connection.h"
+#include "compositor/transport/connection.h"
 
 namespace understudy::compositor {
 

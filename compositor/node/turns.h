@@ -6,7 +6,7 @@
 #include <map>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/socket.h"
+#include "compositor/transport/socket.h"
 
 namespace understudy::compositor {
 

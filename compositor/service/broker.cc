@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "compositor/service/limits.h"
+#include "compositor/service/service_protocols.h"
 
 namespace understudy::compositor {
 
@@ -15,7 +15,7 @@ namespace {
 
 void send_away(Connection& client, const std::string& reason) {
   try {
-    client.send(MessageType::refused, 0, encode_text(reason), Connection::now_or_never());
+    client.send(LauncherMessage::refused, 0, encode_text(reason), Connection::now_or_never());
   } catch (const ConnectionLost&) {
     // It is leaving anyway.
   }
@@ -64,7 +64,7 @@ void Broker::accept_all() {
       accept_again_ = Clock::now() + std::chrono::seconds(1);
       return;
     }
-    Connection connection(std::move(peer), limits::max_hello_bytes);
+    Connection connection(std::move(peer), service_protocols, limits::max_hello_bytes);
     if (newcomers_.size() + waiting_.size() >= limits::max_clients) {
       send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
       continue;
@@ -95,7 +95,7 @@ void Broker::hear_newcomers() {
 }
 
 void Broker::accepted(Peer peer, const Message& hello) {
-  if (hello.type == MessageType::hello_nodes) {
+  if (hello.type == LauncherMessage::hello_nodes) {
     const int ranks = decode_hello(hello.payload).ranks;
     if (!nodes_.empty()) return say_(fmt::format("sent a second node group of {} ranks away", ranks));
     nodes_.push_back(std::move(peer.connection));
@@ -103,7 +103,7 @@ void Broker::accepted(Peer peer, const Message& hello) {
     ranks_ = ranks;
     lost_ = false;
     turned_away_.clear();
-  } else if (hello.type == MessageType::hello_client) {
+  } else if (hello.type == LauncherMessage::hello_client) {
     if (turned_away_.empty())
       waiting_.push_back(std::move(peer.connection));
     else
@@ -123,7 +123,7 @@ void Broker::hear_nodes() {
   try {
     // All that is there, first: this process may have been held up itself.
     while (const std::optional<Message> message = nodes_.front().receive_some()) {
-      if (message->type != MessageType::alive) return lose_nodes("rank 0 spoke out of turn");
+      if (message->type != LauncherMessage::alive) return lose_nodes("rank 0 spoke out of turn");
       nodes_heard_at_ = Clock::now();
       const std::chrono::milliseconds unwanted(decode_alive(message->payload).unwanted_ms);
       if (unwanted > patience_.unwanted)
@@ -143,7 +143,8 @@ void Broker::hear_nodes() {
 void Broker::hand_over() {
   while (!nodes_.empty() && !waiting_.empty()) {
     try {
-      nodes_.front().send(MessageType::client, 0, Bytes{}, Connection::now_or_never(), waiting_.front().fd());
+      nodes_.front().send(LauncherMessage::client, 0, Bytes{}, Connection::now_or_never(),
+                          waiting_.front().fd());
     } catch (const ConnectionLost&) {
       // Busy: the next step tries again, and finds out if it has gone.
       return;

@@ -13,8 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "compositor/service/connection.h"
-#include "compositor/service/socket_file.h"
+#include "compositor/service/limits.h"
+#include "compositor/transport/connection.h"
+#include "compositor/transport/socket_file.h"
 
 namespace understudy::compositor {
 

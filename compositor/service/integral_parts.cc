@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/protocol.h"
-#include "compositor/service/wire.h"
+#include "compositor/service/request_message.h"
+#include "compositor/transport/wire.h"
 
 namespace understudy::compositor {
 

@@ -1,14 +1,14 @@
 // Every bound of the render service: what a message may promise before it is believed, and how long anybody
-// waits.
+// waits. Those of connections, whatever they carry: compositor/transport/limits.h.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 
-namespace understudy::compositor::limits {
+#include "compositor/transport/limits.h"
 
-using std::chrono::milliseconds;
+namespace understudy::compositor::limits {
 
 // Volumes. The longest axis is volume::max_axis_texels, the most slice planes volume::max_planes.
 constexpr std::uint64_t max_slice_bytes = std::uint64_t(1) << 28;   ///< one z-slice: 8192 x 8192 x RGBA
@@ -29,46 +29,28 @@ constexpr std::size_t max_table_entries = std::size_t(1) << 20;
 constexpr int max_kept_pre_integration_tables = 4;  ///< of one application, on each node: 16 MiB each at most
 
 // Messages.
-constexpr std::uint64_t max_hello_bytes = 64;  ///< what the launcher accepts from a pending client
-constexpr std::uint64_t max_message_bytes = max_slice_bytes + (std::uint64_t(1) << 20);
-constexpr std::size_t max_text_bytes = 1024;  ///< of a refusal
+static_assert(max_message_bytes == max_slice_bytes + (std::uint64_t(1) << 20),
+              "a slice, and what is said of it");
 constexpr std::uint64_t max_gl_server_message_bytes = std::uint64_t(1)
                                                       << 32;  ///< one call of an application may bring a volume
 constexpr std::uint64_t max_image_message_bytes =
     20 * max_window_pixels + (std::uint64_t(1) << 20);  ///< over TCP, with its pixels
-constexpr std::size_t read_ahead = std::size_t(1)
-                                   << 20;  ///< memory given to a message before its bytes are here
 constexpr std::uint64_t max_slice_range_bytes =
     std::uint64_t(1) << 23;  ///< several slices or boxes travel together up to this size
 constexpr std::size_t max_boxes_per_message = 4096;  ///< of texels
 constexpr int max_ranks = 4096;
 constexpr std::size_t max_clients = 64;  ///< waiting at the launcher, and served by a node group
 
-// Connections over TCP (compositor/tcp).
-constexpr std::size_t min_secret_bytes = 16;
-constexpr std::size_t max_secret_bytes = 4096;
-constexpr std::size_t max_pending_clients = 256;  ///< that have not proved themselves; the oldest makes room
-constexpr std::size_t max_tcp_block_bytes = std::size_t(1) << 18;  ///< of a message, before it is compressed
-
-// Patience. A peer at a Unix socket that is silent between two messages may be so for ever (a viewer that
-// nobody turns); within a message, or when an answer is due, it may not. An end of a connection says that it is
-// there.
-constexpr milliseconds hello_patience{5'000};      ///< from accept to a complete hello
+// Patience.
 constexpr milliseconds alive_interval{1'000};      ///< between two words of rank 0 that it lives
 constexpr milliseconds silence_patience{10'000};   ///< without such a word: rank 0 is stopped, or its machine
 constexpr milliseconds unwanted_patience{10'000};  ///< at a request whose application has gone: the ranks hang
 constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of that at most
-constexpr milliseconds stall_patience{10'000};     ///< between two pieces of one message
-constexpr milliseconds send_patience{
-    30'000};  ///< until some more of a message has left, over a connection, too
-constexpr milliseconds reply_patience{30'000};   ///< an answer to anything but a request for an image
-constexpr milliseconds render_patience{20'000};  ///< an image
+constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for an image
+constexpr milliseconds render_patience{20'000};    ///< an image
 constexpr milliseconds image_time{4'000};     ///< of nodes that pending clients share: what one may take of it
 constexpr milliseconds short_request{20};     ///< after which a client need not rest
 constexpr milliseconds active_within{2'000};  ///< others whose requests are so recent have a share of the nodes
 constexpr milliseconds longest_rest{10'000};  ///< below render_patience
-constexpr milliseconds server_patience{
-    120'000};  ///< a call that a GL server makes, with all that went before it
-constexpr milliseconds connection_patience{20'000};  ///< with a connection over TCP whose other end is silent
 
 }  // namespace understudy::compositor::limits

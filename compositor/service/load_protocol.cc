@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/protocol.h"
-#include "compositor/service/wire.h"
+#include "compositor/service/node_protocol.h"
+#include "compositor/transport/wire.h"
 #include "volume/brick/cell_lattice.h"
 
 namespace understudy::compositor {

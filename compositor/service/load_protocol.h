@@ -1,14 +1,30 @@
-// The messages by which nodes are told to read a volume from a file, and what they answer. See protocol.h.
+// The messages by which nodes are told to read a volume from a file, and what they answer. Their place in a
+// connection: node_protocol.h.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "compositor/service/loading_service.h"
+#include "compositor/transport/message.h"
 #include "volume/brick/histogram.h"
 #include "volume/description.h"
 
 namespace understudy::compositor {
+
+enum class LoadMessage : std::uint16_t {
+  load_volume = 1,  ///< from an application to rank 0
+  continue_load,    ///< the same
+  loading,          ///< the reply to both
+  histogram,        ///< how often values occur: from an application to rank 0
+  counted,          ///< the reply
+  last = counted
+};
+
+constexpr Protocol protocol_of(LoadMessage) {
+  return {3, 12, std::uint16_t(LoadMessage::last)};
+}
 
 struct HistogramQuestion {
   volume::VolumeId volume = 0;

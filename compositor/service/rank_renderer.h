@@ -14,7 +14,7 @@
 
 #include "compositor/service/client_limits.h"
 #include "compositor/service/integral_parts.h"
-#include "compositor/service/socket.h"
+#include "compositor/transport/socket.h"
 #include "volume/brick/brick_store.h"
 #include "volume/brick/histogram.h"
 #include "volume/description.h"

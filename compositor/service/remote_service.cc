@@ -9,14 +9,15 @@
 #include <optional>
 #include <type_traits>
 
-#include "compositor/service/connection.h"
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loading_service.h"
-#include "compositor/service/peer.h"
-#include "compositor/service/protocol.h"
+#include "compositor/service/request_message.h"
 #include "compositor/service/sent_pre_integration_tables.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/connection.h"
+#include "compositor/transport/peer.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {
@@ -31,7 +32,7 @@ class RemoteRenderService : public LoadingService {
       : address_(std::move(address)), patience_(patience) {
     const Deadline deadline = Clock::now() + patience_.connect;
     try {
-      connection_.emplace(connect_to(address_, deadline));
+      connection_.emplace(connect_to(address_, deadline), service_protocols);
     } catch (const ForeignListener& error) {
       throw ServiceLost(error.what(), "another user listens where the render nodes should");
     } catch (const std::runtime_error& error) {
@@ -40,7 +41,7 @@ class RemoteRenderService : public LoadingService {
     }
     const Message accepted = conversation([&] {
       try {
-        connection_->send(MessageType::hello_client, ++sequence_, Bytes{}, deadline);
+        connection_->send(LauncherMessage::hello_client, ++sequence_, Bytes{}, deadline);
       } catch (const ConnectionLost&) {
         // Who turns applications away does not hear them out, and has said why.
       }
@@ -48,28 +49,28 @@ class RemoteRenderService : public LoadingService {
         throw ConnectionLost(fmt::format("was not there within {} ms", patience_.connect.count()));
       return connection_->receive(Clock::now() + patience_.reply);
     });
-    if (accepted.type == MessageType::refused)
+    if (accepted.type == LauncherMessage::refused)
       conversation([&] { throw ConnectionLost("cannot serve: " + decode_text(accepted.payload)); });
-    if (accepted.type != MessageType::accepted) lose("answered out of turn");
+    if (accepted.type != LauncherMessage::accepted) lose("answered out of turn");
     ranks_ = conversation([&] { return decode_hello(accepted.payload).ranks; });
   }
 
   void begin_volume(const volume::VolumeDescription& volume) override {
     give_up_posted();
-    post(MessageType::begin_volume, encode(volume));
+    post(NodeMessage::begin_volume, encode(volume));
   }
 
   std::vector<RankLoad> begin_load(const LoadRequest& wanted) override {
-    return load(MessageType::load_volume, encode(wanted));
+    return load(LoadMessage::load_volume, encode(wanted));
   }
   std::vector<RankLoad> continue_load(volume::VolumeId id) override {
-    return load(MessageType::continue_load, encode_id(id));
+    return load(LoadMessage::continue_load, encode_id(id));
   }
 
   std::vector<std::uint64_t> histogram(volume::VolumeId id, const volume::HistogramBins& bins) override {
     give_up_posted();
-    const Message reply = request(MessageType::histogram, encode(HistogramQuestion{id, bins}), patience_.reply,
-                                  MessageType::counted);
+    const Message reply = request(LoadMessage::histogram, encode(HistogramQuestion{id, bins}), patience_.reply,
+                                  LoadMessage::counted);
     auto counts = conversation([&] { return decode_histogram(reply.payload); });
     if (counts.size() != std::size_t(bins.count)) lose("counted by other bins than were asked for");
     return counts;
@@ -77,7 +78,7 @@ class RemoteRenderService : public LoadingService {
 
   void begin_change(volume::VolumeId id, std::uint64_t version) override {
     give_up_posted();
-    post(MessageType::begin_change, encode(Change{id, version}));
+    post(NodeMessage::begin_change, encode(Change{id, version}));
   }
 
   void add_texels(volume::VolumeId id, std::span<const volume::TexelBox> boxes,
@@ -94,7 +95,7 @@ class RemoteRenderService : public LoadingService {
       const auto head = encode_texels_head(message);
       const std::array<Bytes, 3> parts{head, message.texels,
                                        Bytes(padding).first((8 - message.texels.size() % 8) % 8)};
-      post(MessageType::add_texels, parts);
+      post(NodeMessage::add_texels, parts);
       texels = texels.subspan(message.texels.size());
       message = {id, {}, texels.first(0)};
     };
@@ -125,12 +126,12 @@ class RemoteRenderService : public LoadingService {
   }
 
   void end_volume(volume::VolumeId id) override {
-    request(MessageType::end_volume, encode_id(id), patience_.reply);
+    request(NodeMessage::end_volume, encode_id(id), patience_.reply);
   }
 
   void forget_volume(volume::VolumeId id) override {
     give_up_posted();
-    request(MessageType::forget_volume, encode_id(id), patience_.reply);
+    request(NodeMessage::forget_volume, encode_id(id), patience_.reply);
   }
 
   Rendered render(const volume::RenderRequest& wanted) override {
@@ -140,7 +141,7 @@ class RemoteRenderService : public LoadingService {
     if (const auto* pairs = std::get_if<volume::PreIntegrationTable>(&wanted.classification))
       table_at = place_of(*pairs);
     const Message reply =
-        request(MessageType::render, encode(wanted, table_at), patience_.render, MessageType::rendered);
+        request(NodeMessage::render, encode(wanted, table_at), patience_.render, NodeMessage::rendered);
     const RenderedReply rendered = conversation([&] { return decode_rendered(reply.payload); });
     const std::size_t floats = 4 * rendered.rect.pixels();
     // An empty image needs no place in the window.
@@ -153,8 +154,8 @@ class RemoteRenderService : public LoadingService {
   std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& wanted,
                                                std::span<const volume::Pixel> pixels, double most_ms) override {
     give_up_posted();
-    const Message reply = request(MessageType::integrals, encode(wanted, pixels, most_ms), patience_.render,
-                                  MessageType::integrated);
+    const Message reply = request(NodeMessage::integrals, encode(wanted, pixels, most_ms), patience_.render,
+                                  NodeMessage::integrated);
     auto integrals = conversation([&] { return decode_integrals(reply.payload); });
     if (integrals.size() > pixels.size()) lose("answered with more pixels than were asked for");
     return integrals;
@@ -165,7 +166,7 @@ class RemoteRenderService : public LoadingService {
  private:
   std::vector<RankLoad> load(MessageType type, const std::vector<std::byte>& payload) {
     give_up_posted();
-    const Message reply = request(type, payload, patience_.load, MessageType::loading);
+    const Message reply = request(type, payload, patience_.load, LoadMessage::loading);
     return conversation([&] { return decode_loads(reply.payload); });
   }
 
@@ -173,7 +174,7 @@ class RemoteRenderService : public LoadingService {
   int place_of(const volume::PreIntegrationTable& pairs) {
     if (const std::optional<int> place = pre_integration_tables_.find(pairs)) return *place;
     const int place = pre_integration_tables_.make_place();
-    request(MessageType::pre_integration_table, encode(KeptPreIntegrationTable{place, pairs}), patience_.reply);
+    request(NodeMessage::pre_integration_table, encode(KeptPreIntegrationTable{place, pairs}), patience_.reply);
     pre_integration_tables_.put(place, pairs);
     return place;
   }
@@ -194,20 +195,20 @@ class RemoteRenderService : public LoadingService {
     }
     const std::vector<std::byte> size = encode_size(bytes);
     const Bytes payload(size);
-    request(MessageType::image_buffer, {&payload, 1}, patience_.reply, MessageType::done, fresh.fd());
+    request(NodeMessage::image_buffer, {&payload, 1}, patience_.reply, NodeMessage::done, fresh.fd());
     fresh.close_descriptor();
     image_ = std::move(fresh);  // both sides have it
   }
 
   Message request(MessageType type, const std::vector<std::byte>& payload, milliseconds patience,
-                  MessageType expected = MessageType::done) {
+                  MessageType expected = NodeMessage::done) {
     const Bytes part(payload);
     return request(type, {&part, 1}, patience, expected);
   }
 
   // One request and its one reply.
   Message request(MessageType type, std::span<const Bytes> parts, milliseconds patience,
-                  MessageType expected = MessageType::done, int attach = -1) {
+                  MessageType expected = NodeMessage::done, int attach = -1) {
     send(type, parts, attach);
     return reply(patience, expected);
   }
@@ -238,7 +239,7 @@ class RemoteRenderService : public LoadingService {
     if (!posted_) return;
     require_connection();
     posted_ = false;
-    reply(patience_.reply, MessageType::done);
+    reply(patience_.reply, NodeMessage::done);
   }
 
   // A volume whose sending was broken off: that it was refused, too, concerns nobody any longer.
@@ -252,7 +253,7 @@ class RemoteRenderService : public LoadingService {
   Message reply(milliseconds patience, MessageType expected) {
     Message reply = conversation([&] { return connection_->receive(Clock::now() + patience); });
     if (reply.sequence != sequence_) lose("answered another request");
-    if (reply.type == MessageType::refused)
+    if (reply.type == LauncherMessage::refused)
       throw RequestRefused(conversation([&] { return decode_text(reply.payload); }));
     if (reply.type != expected) lose("answered out of turn");
     return reply;

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "compositor/service/socket.h"
+#include "compositor/transport/socket.h"
 
 namespace understudy::compositor {
 

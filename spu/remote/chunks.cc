@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "compositor/service/wire.h"
+#include "compositor/transport/wire.h"
 
 namespace understudy::spu {
 

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/wire.h"
+#include "compositor/transport/wire.h"
 
 namespace understudy::spu {
 

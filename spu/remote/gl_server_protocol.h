@@ -1,16 +1,33 @@
-// What an application and a GL server say to each other, in messages of compositor/service/protocol.h:
-// hello_client and acceptance, then calls, to which the GL server replies where it says so.
+// What an application and a GL server say to each other: hello_client and acceptance as at the launcher
+// (compositor/service/launcher_protocol.h), then calls, to which the GL server replies where it says so.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "compositor/service/launcher_protocol.h"
 #include "spu/remote/chunks.h"
 #include "spu/window_system/window_system.h"
 
 namespace understudy::spu {
+
+enum class GlServerMessage : std::uint16_t {
+  calls = 1,  ///< from the application
+  answered,   ///< a reply
+  image,      ///< the other
+  refined,    ///< pixels of an image that came before, as they are: the view rests
+  last = refined
+};
+
+constexpr compositor::Protocol protocol_of(GlServerMessage) {
+  return {4, 12, std::uint16_t(GlServerMessage::last)};
+}
+
+inline constexpr std::array gl_server_protocols{protocol_of(compositor::LauncherMessage{}),
+                                                protocol_of(GlServerMessage{})};
 
 /// The highest OpenGL versions that the GL server can make contexts of, as 100 * major + 10 * minor; 0: none.
 struct GlServerVersions {

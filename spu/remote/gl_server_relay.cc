@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "compositor/tcp/jpeg.h"
+#include "compositor/relay/jpeg.h"
 
 namespace understudy::spu {
 
@@ -13,7 +13,6 @@ using compositor::Clock;
 using compositor::Deadline;
 using compositor::MalformedMessage;
 using compositor::Message;
-using compositor::MessageType;
 
 namespace {
 
@@ -22,7 +21,7 @@ constexpr int least_jpeg_pixels = 4096;
 constexpr std::size_t pixel_bytes = 4;
 
 bool is_image(const Message& message) {
-  return message.type == MessageType::image || message.type == MessageType::refined;
+  return message.type == GlServerMessage::image || message.type == GlServerMessage::refined;
 }
 
 }  // namespace
@@ -107,7 +106,7 @@ Deadline GlServerRelay::rest_due() const {
 }
 
 void GlServerRelay::rest() {
-  const Message refined{MessageType::refined, 0, {}, {}};
+  const Message refined{GlServerMessage::refined, 0, {}, {}};
   for (auto& [drawable, shown] : shown_)
     if (!shown.lossy.empty()) send_refined(refined, drawable, shown);
 }

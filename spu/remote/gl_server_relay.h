@@ -1,6 +1,7 @@
-// Relays between viewers and GL servers (compositor/tcp/relay.h). What they add is JPEG: with a quality in the
-// client's request, images travel as JPEG while frames follow each other, and what was lost of them comes as
-// it is once the view rests: with a frame that changes nothing, or when there was none for rest_after.
+// Relays between viewers and GL servers (compositor/transport/tcp/relay.h). What they add is JPEG: with a
+// quality in the client's request, images travel as JPEG while frames follow each other, and what was lost of
+// them comes as it is once the view rests: with a frame that changes nothing, or when there was none for
+// rest_after.
 #pragma once
 
 #include <chrono>
@@ -8,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "compositor/tcp/relay.h"
+#include "compositor/transport/tcp/relay.h"
 #include "spu/remote/travelling_image.h"
 
 namespace understudy::spu {
@@ -32,6 +33,7 @@ class GlServerRelay : public compositor::Relay {
       : Relay(here, tcp), quality_(connection_request.jpeg_quality) {}
 
  protected:
+  bool needs_whole(const compositor::MessageType&) const override { return true; }
   void carry_out(compositor::Message message) override;
   compositor::Deadline rest_due() const override;
   void rest() override;

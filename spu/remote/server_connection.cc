@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/socket.h"
+#include "compositor/transport/socket.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
 
@@ -24,7 +24,6 @@ using compositor::ConnectionLost;
 using compositor::MalformedMessage;
 using compositor::Message;
 using compositor::MessageHeader;
-using compositor::MessageType;
 namespace limits = compositor::limits;
 
 namespace {
@@ -51,12 +50,14 @@ RemoteCounters& counters() {
 ServerConnection::ServerConnection(const std::string& address, FrontEnd& front) : front_(front) {
   try {
     connection_.emplace(compositor::connect_to(address, Clock::now() + limits::hello_patience),
-                        limits::max_gl_server_message_bytes);
-    connection_->send(MessageType::hello_client, 0, compositor::Bytes{}, Clock::now() + limits::hello_patience);
+                        gl_server_protocols, limits::max_gl_server_message_bytes);
+    connection_->send(compositor::LauncherMessage::hello_client, 0, compositor::Bytes{},
+                      Clock::now() + limits::hello_patience);
     Message accepted = connection_->receive(Clock::now() + limits::server_patience);
-    if (accepted.type == MessageType::refused)
+    if (accepted.type == compositor::LauncherMessage::refused)
       throw std::runtime_error(compositor::decode_text(accepted.payload));
-    if (accepted.type != MessageType::accepted) throw MalformedMessage("its first message is no acceptance");
+    if (accepted.type != compositor::LauncherMessage::accepted)
+      throw MalformedMessage("its first message is no acceptance");
     versions_ = decode_versions(accepted.payload);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format(
@@ -127,7 +128,7 @@ void ServerConnection::transmit(const Records& records, ServerReply reply, std::
       std::as_bytes(std::span(&head, 1)), std::as_bytes(std::span(&count, 1)), std::as_bytes(chunks_.heads()),
       std::as_bytes(chunks_.data())};
   try {
-    connection_->send(MessageType::calls, 0, parts, limits::server_patience);
+    connection_->send(GlServerMessage::calls, 0, parts, limits::server_patience);
   } catch (const std::runtime_error& error) {
     lose(error.what());
   }
@@ -163,12 +164,12 @@ void ServerConnection::receive_all() {
 
 void ServerConnection::take(Message message) {
   counters().bytes_down += sizeof(MessageHeader) + message.payload.size();
-  if (message.type == MessageType::refused)
+  if (message.type == compositor::LauncherMessage::refused)
     throw std::runtime_error("gives up: " + compositor::decode_text(message.payload));
-  if (message.type == MessageType::image) return take_image(message);
-  if (message.type == MessageType::refined) return refine_image(message);
+  if (message.type == GlServerMessage::image) return take_image(message);
+  if (message.type == GlServerMessage::refined) return refine_image(message);
   auto answer = decode_answer(message.payload);
-  if (message.type != MessageType::answered || !answer) throw MalformedMessage("spoke out of turn");
+  if (message.type != GlServerMessage::answered || !answer) throw MalformedMessage("spoke out of turn");
   {
     const std::scoped_lock lock(replies_);
     if (answers_.size() == awaited_) throw MalformedMessage("answered what nobody asked");

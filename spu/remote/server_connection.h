@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/service/connection.h"
+#include "compositor/transport/connection.h"
 #include "spu/remote/front_end.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/stream/call_answer.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "compositor/service/wire.h"
-#include "compositor/tcp/jpeg.h"
+#include "compositor/relay/jpeg.h"
+#include "compositor/transport/wire.h"
 
 namespace understudy::spu {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "compositor/service/limits.h"
-#include "compositor/service/socket.h"
+#include "compositor/transport/socket.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/report/counters.h"
 
@@ -19,7 +19,6 @@ namespace {
 using compositor::Clock;
 using compositor::MalformedMessage;
 using compositor::Message;
-using compositor::MessageType;
 namespace limits = compositor::limits;
 
 /// TileWorkers are to be at work while the application still calls.
@@ -47,18 +46,21 @@ void TileWorkers::gather(int parts) {
   try {
     for (int part = 1; part < parts; ++part) {
       const auto until = Clock::now() + limits::hello_patience;
-      auto worker = std::make_unique<TileWorker>(TileWorker{
-          compositor::Connection(compositor::connect_to(socket_, until), limits::max_gl_server_message_bytes),
-          {}});
-      worker->connection.send(MessageType::hello_client, 0, encode(TilePlace{part, parts}), until);
+      auto worker = std::make_unique<TileWorker>(
+          TileWorker{compositor::Connection(compositor::connect_to(socket_, until), gl_server_protocols,
+                                            limits::max_gl_server_message_bytes),
+                     {}});
+      worker->connection.send(compositor::LauncherMessage::hello_client, 0, encode(TilePlace{part, parts}),
+                              until);
       workers_.push_back(std::move(worker));
     }
     // They start at the same time.
     for (const auto& worker : workers_) {
       const Message accepted = worker->connection.receive(Clock::now() + limits::server_patience);
-      if (accepted.type == MessageType::refused)
+      if (accepted.type == compositor::LauncherMessage::refused)
         throw std::runtime_error(compositor::decode_text(accepted.payload));
-      if (accepted.type != MessageType::accepted) throw MalformedMessage("its first message is no acceptance");
+      if (accepted.type != compositor::LauncherMessage::accepted)
+        throw MalformedMessage("its first message is no acceptance");
     }
     process_counters().tiles.count = std::uint32_t(parts);
   } catch (const std::exception& error) {
@@ -78,7 +80,7 @@ void TileWorkers::send(TileWorker& worker, const Records& records, bool wants_an
   const std::array<compositor::Bytes, 4> parts = {
       std::as_bytes(std::span(&head, 1)), std::as_bytes(std::span(&count, 1)),
       std::as_bytes(worker.chunks.heads()), std::as_bytes(worker.chunks.data())};
-  worker.connection.send(MessageType::calls, 0, parts, limits::server_patience);
+  worker.connection.send(GlServerMessage::calls, 0, parts, limits::server_patience);
 }
 
 void TileWorkers::lose(const char* what) {
@@ -114,7 +116,7 @@ CallAnswer TileWorkers::answer(int index) {
     const Message message =
         workers_[std::size_t(index)]->connection.receive(Clock::now() + limits::server_patience);
     auto answer = decode_answer(message.payload);
-    if (message.type != MessageType::answered || !answer) throw MalformedMessage("spoke out of turn");
+    if (message.type != GlServerMessage::answered || !answer) throw MalformedMessage("spoke out of turn");
     return std::move(*answer);
   } catch (const std::exception& error) {
     lose(error.what());

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "compositor/service/connection.h"
+#include "compositor/transport/connection.h"
 #include "spu/remote/chunks.h"
 #include "spu/stream/call_answer.h"
 #include "spu/stream/record.h"

@@ -104,6 +104,16 @@ TEST(Architecture, VolumeAndCompositorKnowNoOpenGlStream) {
               IsEmpty());
 }
 
+TEST(Architecture, TransportKnowsNothingOfWhatItCarries) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return file.path.starts_with("compositor/transport/") &&
+                       !header.starts_with("compositor/transport/") &&
+                       (height_of(module_of(header)) < modules.size() || header.starts_with("GL/") ||
+                        header.starts_with("EGL/") || header == "mpi.h");
+              }),
+              IsEmpty());
+}
+
 // Under a program with more rights than its user, the user's environment is not to be believed.
 TEST(Architecture, WhatLivesInAViewerReadsItsEnvironmentSecurely) {
   const std::regex insecure(

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <optional>
 
-#include "compositor/service/file_descriptor.h"
 #include "compositor/service/loading_service.h"
+#include "compositor/transport/file_descriptor.h"
 #include "tests/attacks/server.h"
 #include "tests/clients/command_test.h"
 #include "volume/file/file_error.h"

@@ -1,4 +1,4 @@
-"""The client's end of a TCP link: handshake and messages (compositor/tcp/handshake.h, tcp_message_reader.h; 127.0.0.1 only)."""
+"""The client's end of a TCP link: handshake and messages (compositor/transport/tcp/handshake.h, tcp_message_reader.h; 127.0.0.1 only)."""
 
 import hashlib
 import hmac
@@ -9,11 +9,11 @@ import struct
 HELLO = b"UNDERLNK"
 LINK_VERSION = 2
 MESSAGE_MAGIC = 0x59445355
-MESSAGE_VERSION = 11
-MESSAGE_HEAD = struct.Struct("<IHHQQ")
+MESSAGE_HEAD = struct.Struct("<IBBHQQ")
 BLOCK_BYTES = 1 << 18
-TYPES = {"hello_client": 1, "hello_nodes": 2, "accepted": 12, "refused": 15, "calls": 24, "answered": 25, "image": 26,
-         "line_alive": 28}
+# Protocol, version, number: compositor/service/launcher_protocol.h, spu/remote/gl_server_protocol.h, line_protocol.h.
+TYPES = {"hello_client": (1, 12, 1), "hello_nodes": (1, 12, 2), "accepted": (1, 12, 4), "refused": (1, 12, 5),
+         "calls": (4, 12, 1), "answered": (4, 12, 2), "image": (4, 12, 3), "line_alive": (5, 1, 1)}
 NAMES = {number: name for name, number in TYPES.items()}
 
 
@@ -44,7 +44,7 @@ class LinkClient:
         return got
 
     def send(self, name, payload=b""):
-        message = MESSAGE_HEAD.pack(MESSAGE_MAGIC, MESSAGE_VERSION, TYPES[name], len(payload), 0)
+        message = MESSAGE_HEAD.pack(MESSAGE_MAGIC, *TYPES[name], len(payload), 0)
         for at in range(0, len(payload), BLOCK_BYTES):
             block = payload[at : at + BLOCK_BYTES]
             message += struct.pack("<II", len(block), len(block)) + block
@@ -53,7 +53,8 @@ class LinkClient:
     def receive(self):
         """(name, payload); compressed blocks, which no answer here has, as zeros."""
         while True:
-            _, _, number, size, _ = MESSAGE_HEAD.unpack(self.receive_bytes(MESSAGE_HEAD.size))
+            _, *number, size, _ = MESSAGE_HEAD.unpack(self.receive_bytes(MESSAGE_HEAD.size))
+            number = tuple(number)
             payload = b""
             while len(payload) < size:
                 plain, travelling = struct.unpack("<II", self.receive_bytes(8))

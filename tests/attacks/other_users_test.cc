@@ -15,9 +15,10 @@
 #include <fstream>
 
 #include "compositor/service/broker.h"
-#include "compositor/service/peer.h"
-#include "compositor/service/runtime_folder.h"
-#include "compositor/tcp/secret.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/peer.h"
+#include "compositor/transport/runtime_folder.h"
+#include "compositor/transport/tcp/secret.h"
 #include "tests/attacks/other_user.h"
 #include "tests/attacks/small_viewer.h"
 #include "tests/clients/command_test.h"
@@ -99,8 +100,8 @@ TEST_F(OtherUsers, WhoConnectsIsNotServed) {
     return ::recv(connection.get(), &byte, 1, 0) <= 0 ? 0 : 1;
   });
   const auto served = connect_to(socket(), soon());
-  Connection own(FileDescriptor(::dup(served.get())));
-  own.send(MessageType::hello_client, 1, Bytes{}, soon());
+  Connection own(FileDescriptor(::dup(served.get())), service_protocols);
+  own.send(LauncherMessage::hello_client, 1, Bytes{}, soon());
   ASSERT_TRUE(clients::comes_true([&] {
     broker.step(std::chrono::milliseconds(5));
     return broker.clients_waiting() == 1;

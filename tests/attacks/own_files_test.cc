@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "apps/understudy/run_folder.h"
-#include "compositor/service/socket.h"
-#include "compositor/service/socket_file.h"
+#include "compositor/transport/socket.h"
+#include "compositor/transport/socket_file.h"
 #include "tests/clients/command_test.h"
 
 namespace attacks {

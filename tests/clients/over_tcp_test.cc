@@ -13,8 +13,8 @@
 #include <optional>
 #include <regex>
 
-#include "compositor/tcp/tcp_connection.h"
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/transport/tcp/tcp_connection.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 #include "tests/apps/viewer/virtual_display.h"
 #include "tests/clients/command_test.h"
 #include "tests/compositor/tcp/line.h"

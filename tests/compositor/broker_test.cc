@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "compositor/service/service_protocols.h"
 #include "tests/compositor/scratch_folder.h"
 
 namespace understudy::compositor {
@@ -26,15 +27,17 @@ Deadline soon() {
 // A broker whose steps the test takes itself, and peers in the same thread.
 class BrokerTest : public ::testing::Test {
  protected:
-  std::unique_ptr<Connection> connect() { return std::make_unique<Connection>(connect_to(path_, soon())); }
+  std::unique_ptr<Connection> connect() {
+    return std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
+  }
   std::unique_ptr<Connection> client() {
     auto result = connect();
-    result->send(MessageType::hello_client, 1, Bytes{}, soon());
+    result->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
     return result;
   }
   std::unique_ptr<Connection> nodes(int ranks = 4) {
     auto result = connect();
-    result->send(MessageType::hello_nodes, 1, encode(Hello{ranks}), soon());
+    result->send(LauncherMessage::hello_nodes, 1, encode(Hello{ranks}), soon());
     return result;
   }
   void step() {
@@ -43,7 +46,7 @@ class BrokerTest : public ::testing::Test {
   // What the launcher sends to a node group: the descriptor of an application.
   static FileDescriptor handed_over(Connection& nodes) {
     Message message = nodes.receive(soon());
-    EXPECT_EQ(message.type, MessageType::client);
+    EXPECT_EQ(message.type, LauncherMessage::client);
     EXPECT_TRUE(message.attached);
     return std::move(message.attached);
   }
@@ -113,8 +116,8 @@ TEST_F(BrokerTest, HoldsApplicationsUntilANodeGroupIsThereAndHandsThemOver) {
   EXPECT_EQ(broker_->clients_waiting(), 0U);
   EXPECT_EQ(broker_->clients_handed_over(), 2U);
   // From now on the two talk directly, without the broker's help.
-  Connection served(handed_over(*group));
-  served.send(MessageType::accepted, 1, encode(Hello{7}), soon());
+  Connection served(handed_over(*group), service_protocols);
+  served.send(LauncherMessage::accepted, 1, encode(Hello{7}), soon());
   EXPECT_EQ(decode_hello(first->receive(soon()).payload).ranks, 7);
 }
 
@@ -175,7 +178,7 @@ TEST_F(BrokerTest, GarbageIsDroppedWithOneLineAndDisturbsNobody) {
 
 TEST_F(BrokerTest, AHelloThatPromisesAHugePayloadIsDropped) {
   const auto rude = connect();
-  MessageHeader header{.type = MessageType::hello_client};
+  MessageHeader header{.type = LauncherMessage::hello_client};
   header.payload_bytes = std::uint64_t(1) << 60;
   ASSERT_GT(::send(rude->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   step();
@@ -185,7 +188,7 @@ TEST_F(BrokerTest, AHelloThatPromisesAHugePayloadIsDropped) {
 
 TEST_F(BrokerTest, ARequestInsteadOfAHelloIsDropped) {
   const auto rude = connect();
-  rude->send(MessageType::end_volume, 1, encode_id(1), soon());
+  rude->send(NodeMessage::end_volume, 1, encode_id(1), soon());
   step();
   EXPECT_THROW(rude->receive(soon()), ConnectionLost);
 }
@@ -208,7 +211,7 @@ TEST_F(BrokerTest, APendingClientWhoLeavesInTheMidstOfAWordIsSpokenOf) {
 
 TEST_F(BrokerTest, APendingClientWhoSaysNothingIsDroppedInTheEndAndHoldsUpNobody) {
   const auto silent = connect();
-  MessageHeader header{.type = MessageType::hello_client};
+  MessageHeader header{.type = LauncherMessage::hello_client};
   const auto half = connect();
   ASSERT_GT(::send(half->fd(), &header, sizeof header / 2, MSG_NOSIGNAL), 0);
   const auto polite = client();
@@ -238,7 +241,7 @@ TEST_F(BrokerTest, TurnsApplicationsAwayWithTheReasonUntilAGroupComes) {
   step();
   for (const auto& each : {before.get(), after.get()}) {
     const Message message = each->receive(soon());
-    EXPECT_EQ(message.type, MessageType::refused);
+    EXPECT_EQ(message.type, LauncherMessage::refused);
     EXPECT_EQ(decode_text(message.payload), "MPI is not installed");
   }
   const auto group = nodes();
@@ -254,7 +257,7 @@ TEST_F(BrokerTest, WaitingApplicationsAreBounded) {
     step();
   }
   EXPECT_EQ(broker_->clients_waiting(), limits::max_clients);
-  EXPECT_EQ(crowd.back()->receive(soon()).type, MessageType::refused);
+  EXPECT_EQ(crowd.back()->receive(soon()).type, LauncherMessage::refused);
 }
 
 TEST(Broker, LeavesNoDescriptorBehind) {
@@ -263,12 +266,12 @@ TEST(Broker, LeavesNoDescriptorBehind) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     Broker broker(path, [](const std::string&) {});
-    Connection nodes(connect_to(path, soon()));
-    nodes.send(MessageType::hello_nodes, 1, encode(Hello{1}), soon());
+    Connection nodes(connect_to(path, soon()), service_protocols);
+    nodes.send(LauncherMessage::hello_nodes, 1, encode(Hello{1}), soon());
     std::vector<Connection> clients;
     for (int i = 0; i < 5; ++i) {
-      clients.emplace_back(connect_to(path, soon()));
-      clients.back().send(MessageType::hello_client, 1, Bytes{}, soon());
+      clients.emplace_back(connect_to(path, soon()), service_protocols);
+      clients.back().send(LauncherMessage::hello_client, 1, Bytes{}, soon());
       broker.step(std::chrono::milliseconds(0));
     }
     broker.step(std::chrono::milliseconds(0));

@@ -16,6 +16,8 @@
 
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/remote_service.h"
+#include "compositor/service/request_message.h"
+#include "compositor/service/service_protocols.h"
 #include "tests/compositor/group_resources.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"
@@ -55,9 +57,9 @@ class Faults : public ::testing::Test {
   }
   // An application without manners, which rank 0 has taken in.
   std::unique_ptr<Connection> raw_client() {
-    auto result = std::make_unique<Connection>(connect_to(path_, soon()));
-    result->send(MessageType::hello_client, 1, Bytes{}, soon());
-    EXPECT_EQ(result->receive(soon()).type, MessageType::accepted);
+    auto result = std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
+    result->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
+    EXPECT_EQ(result->receive(soon()).type, LauncherMessage::accepted);
     return result;
   }
   // By the place in the order of their start, which is that of ranks.
@@ -141,17 +143,17 @@ TEST_F(Faults, ApplicationsThatLeaveInTheMidstOfAnImageDisturbNobody) {
     const auto client = raw_client();
     const auto ask = [&](MessageType type, const std::vector<std::byte>& payload, int attach = -1) {
       client->send(type, 2, payload, soon(), attach);
-      EXPECT_EQ(client->receive(soon()).type, MessageType::done);
+      EXPECT_EQ(client->receive(soon()).type, NodeMessage::done);
     };
-    ask(MessageType::begin_volume, encode(texture_.description));
+    ask(NodeMessage::begin_volume, encode(texture_.description));
     std::vector<std::byte> texels = encode_texels_head(all);
     texels.insert(texels.end(), all.texels.begin(), all.texels.end());
     texels.resize((texels.size() + 7) / 8 * 8);
-    ask(MessageType::add_texels, texels);
-    ask(MessageType::end_volume, encode_id(all.volume));
+    ask(NodeMessage::add_texels, texels);
+    ask(NodeMessage::end_volume, encode_id(all.volume));
     const ImageBuffer memory = ImageBuffer::create(160 * 120 * 16);
-    ask(MessageType::image_buffer, encode_size(160 * 120 * 16), memory.fd());
-    client->send(MessageType::render, 3, encode(request_), soon());
+    ask(NodeMessage::image_buffer, encode_size(160 * 120 * 16), memory.fd());
+    client->send(NodeMessage::render, 3, encode(request_), soon());
     // And goes, without the image.
   }
   expect_right_image(*linked);
@@ -165,7 +167,7 @@ TEST_F(Faults, MessagesThatEndTooEarlyDisturbNobody) {
   upload(*linked, texture_);
   const std::ptrdiff_t descriptors = descriptors_of_rank_0();
   const std::vector<std::byte> request = encode(request_);
-  MessageHeader header{.type = MessageType::render};
+  MessageHeader header{.type = NodeMessage::render};
   header.payload_bytes = request.size();
   std::vector<std::byte> message(sizeof header);
   std::memcpy(message.data(), &header, sizeof header);
@@ -176,23 +178,24 @@ TEST_F(Faults, MessagesThatEndTooEarlyDisturbNobody) {
   }
   // A whole message whose content ends too early is answered.
   const auto senseless = raw_client();
-  senseless->send(MessageType::render, 2, Bytes(request).first(request.size() / 2 / 8 * 8), soon());
-  EXPECT_EQ(senseless->receive(soon()).type, MessageType::refused);
+  senseless->send(NodeMessage::render, 2, Bytes(request).first(request.size() / 2 / 8 * 8), soon());
+  EXPECT_EQ(senseless->receive(soon()).type, LauncherMessage::refused);
   expect_right_image(*linked);
   EXPECT_TRUE(eventually([&] { return descriptors_of_rank_0() == descriptors + 1; }));
 }
 
 TEST_F(Faults, AnotherVersionOfTheProtocolIsTurnedAway) {
   start(2);
-  MessageHeader header{.type = MessageType::hello_client};
-  ++header.version;
+  MessageHeader header{.type = LauncherMessage::hello_client};
+  ++header.type.version;
   // By the launcher, in one line, and by rank 0.
-  const Connection pending(connect_to(path_, soon()));
+  const Connection pending(connect_to(path_, soon()), service_protocols);
   ASSERT_GT(::send(pending.fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   EXPECT_TRUE(eventually([&] { return launcher_->said().size() == 1; }));
   EXPECT_THAT(launcher_->said(), Contains(HasSubstr("version")));
   const auto client = raw_client();
-  header.type = MessageType::end_volume;
+  header.type = NodeMessage::end_volume;
+  ++header.type.version;
   ASSERT_GT(::send(client->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   EXPECT_THROW(client->receive(soon()), ConnectionLost);
   const auto linked = connect();
@@ -216,9 +219,9 @@ TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsImages) {
   {
     std::vector<std::unique_ptr<Connection>> crowd;
     for (int i = 0; i < 1000; ++i) {
-      crowd.push_back(std::make_unique<Connection>(connect_to(path_, soon())));
+      crowd.push_back(std::make_unique<Connection>(connect_to(path_, soon()), service_protocols));
       try {
-        crowd.back()->send(MessageType::hello_client, 1, Bytes{}, soon());
+        crowd.back()->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
       } catch (const ConnectionLost&) {
         // It was refused before it had said what it is; the reason is there to be read.
       }
@@ -226,8 +229,8 @@ TEST_F(Faults, AThousandConnectionsAtOnceLeaveTheFirstApplicationItsImages) {
     expect_right_image(*linked);
     for (const auto& one : crowd) {
       const MessageType answer = one->receive(soon()).type;
-      accepted += answer == MessageType::accepted;
-      refused += answer == MessageType::refused;
+      accepted += answer == LauncherMessage::accepted;
+      refused += answer == LauncherMessage::refused;
     }
   }
   std::printf("of 1000, %d were taken in, %d refused\n", accepted, refused);
@@ -249,9 +252,9 @@ TEST_F(Faults, ImagesThatAreTooLargeOrEmptyAreRefusedOrEmpty) {
   EXPECT_THROW(linked->render(request), RequestRefused);
   // Rank 0 does not rely on that.
   const auto client = raw_client();
-  client->send(MessageType::render, 2, encode(request), soon());
+  client->send(NodeMessage::render, 2, encode(request), soon());
   const Message answer = client->receive(soon());
-  EXPECT_EQ(answer.type, MessageType::refused);
+  EXPECT_EQ(answer.type, LauncherMessage::refused);
   std::printf("16384 x 16384: %s\n", decode_text(answer.payload).c_str());
   for (const volume::Rect& nothing : {volume::Rect{0, 0, 0, 0}, volume::Rect{20, 20, 0, 10}}) {
     request = request_;

@@ -14,8 +14,9 @@
 
 #include "compositor/exchange/thread_communicator.h"
 #include "compositor/node/node.h"
-#include "compositor/service/connection.h"
 #include "compositor/service/remote_service.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/connection.h"
 #include "tests/compositor/group_scene.h"
 
 namespace understudy::compositor::testing {
@@ -71,9 +72,9 @@ class NodeGroupTest : public ::testing::Test {
   std::unique_ptr<RenderService> connect() { return remote_render_service(path_, 20'000); }
   // An application that knows the protocol but has no manners.
   std::unique_ptr<Connection> raw_client() {
-    auto result = std::make_unique<Connection>(connect_to(path_, soon()));
-    result->send(MessageType::hello_client, 1, Bytes{}, soon());
-    EXPECT_EQ(result->receive(soon()).type, MessageType::accepted);
+    auto result = std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
+    result->send(LauncherMessage::hello_client, 1, Bytes{}, soon());
+    EXPECT_EQ(result->receive(soon()).type, LauncherMessage::accepted);
     return result;
   }
 

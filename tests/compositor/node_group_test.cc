@@ -19,6 +19,8 @@
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/rank_renderer.h"
 #include "compositor/service/remote_service.h"
+#include "compositor/service/request_message.h"
+#include "compositor/service/service_protocols.h"
 #include "tests/compositor/forwarding_communicator.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/brick_store.h"
@@ -377,9 +379,9 @@ TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
 TEST_F(NodeGroupTest, APreIntegrationTableThatIsNotThereIsARefusal) {
   start(2);
   const auto senseless = raw_client();
-  senseless->send(MessageType::render, 2, encode(some_slice_segments(some_texture(), 0), 0), soon());
+  senseless->send(NodeMessage::render, 2, encode(some_slice_segments(some_texture(), 0), 0), soon());
   const Message reply = senseless->receive(soon());
-  EXPECT_EQ(reply.type, MessageType::refused);
+  EXPECT_EQ(reply.type, LauncherMessage::refused);
   EXPECT_THAT(decode_text(reply.payload), HasSubstr("holds no pre-integration table"));
 }
 
@@ -535,7 +537,7 @@ TEST_F(NodeGroupTest, AnErrorOnOneRankIsARefusalByAll) {
 TEST_F(NodeGroupTest, AStuckApplicationHoldsUpNobodyAndIsDroppedInTheEnd) {
   start(2, milliseconds(200));
   const auto stuck = raw_client();
-  MessageHeader header{.type = MessageType::render};
+  MessageHeader header{.type = NodeMessage::render};
   header.payload_bytes = 1000;
   ASSERT_GT(::send(stuck->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   const auto linked = connect();
@@ -553,17 +555,17 @@ TEST_F(NodeGroupTest, GarbageIsDroppedAndDisturbsNobody) {
   const auto garbage = raw_client(), wrong_type = raw_client(), huge = raw_client();
   const std::string text(1000, 'x');
   ASSERT_GT(::send(garbage->fd(), text.data(), text.size(), MSG_NOSIGNAL), 0);
-  wrong_type->send(MessageType::hello_nodes, 2, encode(Hello{3}), soon());
-  MessageHeader header{.type = MessageType::render};
+  wrong_type->send(LauncherMessage::hello_nodes, 2, encode(Hello{3}), soon());
+  MessageHeader header{.type = NodeMessage::render};
   header.payload_bytes = std::uint64_t(1) << 62;
   ASSERT_GT(::send(huge->fd(), &header, sizeof header, MSG_NOSIGNAL), 0);
   for (const auto& each : {garbage.get(), wrong_type.get(), huge.get()})
     EXPECT_THROW(each->receive(soon()), ConnectionLost);
   // A message that only its content betrays is answered.
   const auto senseless = raw_client();
-  senseless->send(MessageType::render, 2, encode_text("no request"), soon());
+  senseless->send(NodeMessage::render, 2, encode_text("no request"), soon());
   const Message answer = senseless->receive(soon());
-  EXPECT_EQ(answer.type, MessageType::refused);
+  EXPECT_EQ(answer.type, LauncherMessage::refused);
   EXPECT_THAT(decode_text(answer.payload), HasSubstr("render request: field"));
   EXPECT_GT(linked->render(some_request(texture)).counts.samples_taken, 0U);
 }
@@ -573,12 +575,12 @@ TEST_F(NodeGroupTest, ImageBufferThatCouldVanishIsNotUsed) {
   const auto client = raw_client();
   const FileDescriptor unsealed(::memfd_create("unsealed", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   ASSERT_EQ(::ftruncate(unsealed.get(), 4096), 0);
-  client->send(MessageType::image_buffer, 2, encode_size(4096), soon(), unsealed.get());
+  client->send(NodeMessage::image_buffer, 2, encode_size(4096), soon(), unsealed.get());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("sealed"));
   const ImageBuffer small = ImageBuffer::create(4096);
-  client->send(MessageType::image_buffer, 3, encode_size(8192), soon(), small.fd());
+  client->send(NodeMessage::image_buffer, 3, encode_size(8192), soon(), small.fd());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("smaller"));
-  client->send(MessageType::image_buffer, 4, encode_size(4096), soon());
+  client->send(NodeMessage::image_buffer, 4, encode_size(4096), soon());
   EXPECT_THAT(decode_text(client->receive(soon()).payload), HasSubstr("no descriptor"));
 }
 
@@ -645,13 +647,14 @@ TEST_F(NodeGroupTest, WithoutAGroupPatienceEndsInServiceLost) {
 // A node group that takes applications in and then misbehaves.
 class BadGroup {
  public:
-  BadGroup(const std::string& path, Launcher& launcher) : control_(connect_to(path, soon())) {
-    control_.send(MessageType::hello_nodes, 1, encode(Hello{1}), soon());
+  BadGroup(const std::string& path, Launcher& launcher)
+      : control_(connect_to(path, soon()), service_protocols) {
+    control_.send(LauncherMessage::hello_nodes, 1, encode(Hello{1}), soon());
     EXPECT_TRUE(launcher.wait_for_group());
   }
   Connection take_in() {
-    Connection client(control_.receive(soon()).attached);
-    client.send(MessageType::accepted, 1, encode(Hello{1}), soon());
+    Connection client(control_.receive(soon()).attached, service_protocols);
+    client.send(LauncherMessage::accepted, 1, encode(Hello{1}), soon());
     return client;
   }
 
@@ -690,23 +693,23 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
   const std::vector<std::function<void(Connection&, const Message&)>> lies{
       // An image outside the window.
       [](Connection& c, const Message& m) {
-        c.send(MessageType::rendered, m.sequence, encode(RenderedReply{{0, 0, 100, 100}, {}}), soon());
+        c.send(NodeMessage::rendered, m.sequence, encode(RenderedReply{{0, 0, 100, 100}, {}}), soon());
       },
       // More pixels than there is memory for.
       [](Connection& c, const Message& m) {
-        c.send(MessageType::rendered, m.sequence, encode(RenderedReply{{0, 0, 8000, 8000}, {}}), soon());
+        c.send(NodeMessage::rendered, m.sequence, encode(RenderedReply{{0, 0, 8000, 8000}, {}}), soon());
       },
       // The answer to another request, the wrong kind of answer, an empty answer, no message at all.
       [](Connection& c, const Message& m) {
-        c.send(MessageType::rendered, m.sequence + 1, encode(RenderedReply{}), soon());
+        c.send(NodeMessage::rendered, m.sequence + 1, encode(RenderedReply{}), soon());
       },
-      [](Connection& c, const Message& m) { c.send(MessageType::done, m.sequence, Bytes{}, soon()); },
-      [](Connection& c, const Message& m) { c.send(MessageType::rendered, m.sequence, Bytes{}, soon()); },
+      [](Connection& c, const Message& m) { c.send(NodeMessage::done, m.sequence, Bytes{}, soon()); },
+      [](Connection& c, const Message& m) { c.send(NodeMessage::rendered, m.sequence, Bytes{}, soon()); },
       [](Connection& c, const Message&) { ::send(c.fd(), "x marks the spot, not a header", 30, MSG_NOSIGNAL); },
       // Nothing more, in the midst of an image; half an answer, and nothing more.
       [](Connection& c, const Message&) { ::shutdown(c.fd(), SHUT_RDWR); },
       [](Connection& c, const Message& m) {
-        MessageHeader header{.type = MessageType::rendered};
+        MessageHeader header{.type = NodeMessage::rendered};
         header.sequence = m.sequence;
         header.payload_bytes = 100;
         ::send(c.fd(), &header, sizeof header, MSG_NOSIGNAL);
@@ -718,7 +721,7 @@ TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
       Connection client = group.take_in();
       const Message memory = client.receive(soon());
       EXPECT_TRUE(memory.attached);
-      client.send(MessageType::done, memory.sequence, Bytes{}, soon());
+      client.send(NodeMessage::done, memory.sequence, Bytes{}, soon());
       lie(client, client.receive(soon()));
     });
     const auto linked = connect();

@@ -1,5 +1,3 @@
-#include "compositor/service/protocol.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,6 +9,10 @@
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/load_protocol.h"
+#include "compositor/service/node_protocol.h"
+#include "compositor/service/request_message.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/line_protocol.h"
 #include "volume/frame_counts.h"
 #include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
@@ -394,20 +396,24 @@ TEST(Protocol, APeersTextCannotSteerATerminal) {
 
 TEST(Protocol, HeadersOfOthersAreRefused) {
   MessageHeader header;
-  header.type = MessageType::render;
-  EXPECT_NO_THROW(check(header, 100));
+  header.type = NodeMessage::render;
+  EXPECT_NO_THROW(check(header, service_protocols, 100));
   header.payload_bytes = 101;
-  EXPECT_THROW(check(header, 100), MalformedMessage);
-  header = {.type = MessageType::render};
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {.type = NodeMessage::render};
   header.magic = 0x20544547;  // "GET "
-  EXPECT_THROW(check(header, 100), MalformedMessage);
-  header = {.type = MessageType::render};
-  ++header.version;
-  EXPECT_THROW(check(header, 100), MalformedMessage);
-  header = {.type = MessageType(0)};
-  EXPECT_THROW(check(header, 100), MalformedMessage);
-  header = {.type = MessageType(int(MessageType::last) + 1)};
-  EXPECT_THROW(check(header, 100), MalformedMessage);
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {.type = NodeMessage::render};
+  ++header.type.version;
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {};
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {.type = NodeMessage(0)};
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {.type = NodeMessage(int(NodeMessage::last) + 1)};
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage);
+  header = {.type = LineMessage::alive};
+  EXPECT_THROW(check(header, service_protocols, 100), MalformedMessage) << "a protocol of other connections";
 }
 
 }  // namespace

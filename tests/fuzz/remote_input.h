@@ -3,15 +3,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <span>
 #include <stdexcept>
 #include <vector>
 
-#include "compositor/tcp/handshake.h"
-#include "compositor/tcp/render_relay.h"
-#include "compositor/tcp/tcp_message_reader.h"
+#include "compositor/relay/render_relay.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/handshake.h"
+#include "compositor/transport/tcp/tcp_message_reader.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/remote/travelling_image.h"
 #include "spu/stream/call_answer.h"
@@ -51,32 +53,26 @@ inline void shake_hands(std::span<const std::byte> input) {
 
 /// Whether it was believed.
 inline bool take_message(const compositor::Message& message, ChunkReceiver& chunks) {
-  using compositor::MessageType;
   return may_refuse([&] {
-    switch (message.type) {
-      case MessageType::rendered: {
-        std::vector<float> memory(std::size_t(4) * 256 * 256);
-        compositor::take_image(message.payload, memory);
-        break;
-      }
-      case MessageType::calls:
-        decode_calls(message.payload, chunks);
-        break;
-      case MessageType::answered:
-        decode_answer(message.payload);
-        break;
-      case MessageType::image:
-      case MessageType::refined:
-        decode_image(decode_travelling_image(message.payload));
-        break;
-      case MessageType::accepted:
-        decode_versions(message.payload);
-        break;
-      default:
-        break;
+    if (message.type == compositor::NodeMessage::rendered) {
+      std::vector<float> memory(std::size_t(4) * 256 * 256);
+      compositor::take_image(message.payload, memory);
+    } else if (message.type == GlServerMessage::calls) {
+      decode_calls(message.payload, chunks);
+    } else if (message.type == GlServerMessage::answered) {
+      decode_answer(message.payload);
+    } else if (message.type == GlServerMessage::image || message.type == GlServerMessage::refined) {
+      decode_image(decode_travelling_image(message.payload));
+    } else if (message.type == compositor::LauncherMessage::accepted) {
+      decode_versions(message.payload);
     }
   });
 }
+
+/// All that may come over TCP, from nodes or from a GL server.
+inline constexpr std::array all_protocols{
+    compositor::protocol_of(compositor::LauncherMessage{}), compositor::protocol_of(compositor::NodeMessage{}),
+    compositor::protocol_of(compositor::LoadMessage{}), protocol_of(GlServerMessage{})};
 
 /// Bytes as they come out of the socket, in pieces of any size. How many messages were believed.
 inline int play_remote_input(std::span<const std::byte> input) {
@@ -84,7 +80,7 @@ inline int play_remote_input(std::span<const std::byte> input) {
   int believed = 0;
   ChunkReceiver chunks;
   may_refuse([&] {
-    compositor::TcpMessageReader reader(std::size_t(1) << 22);
+    compositor::TcpMessageReader reader(all_protocols, std::size_t(1) << 22);
     const std::size_t most = input.empty() ? 1 : 1 + std::to_integer<std::size_t>(input.front());
     while (!input.empty()) {
       const std::span<std::byte> room = reader.room();
@@ -97,7 +93,8 @@ inline int play_remote_input(std::span<const std::byte> input) {
   return believed;
 }
 
-/// Messages of an application and of a GL server, one after the other: type and length as 32-bit words, then
+/// Messages of an application and of a GL server, one after the other: type (0: it is accepted)
+/// and length as 32-bit words, then
 /// the payload. How many messages were believed.
 inline int play_gl_server_input(std::span<const std::byte> input) {
   int believed = 0;
@@ -108,12 +105,10 @@ inline int play_gl_server_input(std::span<const std::byte> input) {
     input = input.subspan(sizeof head);
     const auto payload = input.first(std::min<std::size_t>(head[1], input.size()));
     input = input.subspan(payload.size());
-    believed +=
-        take_message({compositor::MessageType(head[0] % (std::uint32_t(compositor::MessageType::last) + 1)),
-                      0,
-                      {payload.begin(), payload.end()},
-                      {}},
-                     chunks);
+    compositor::Message message{.payload = {payload.begin(), payload.end()}};
+    message.type = head[0] == 0 ? compositor::MessageType(compositor::LauncherMessage::accepted)
+                                : GlServerMessage(head[0] % (std::uint32_t(GlServerMessage::last) + 1));
+    believed += take_message(message, chunks);
   }
   return believed;
 }

@@ -3,8 +3,8 @@
 #include <array>
 #include <string>
 
-#include "compositor/tcp/block_codec.h"
-#include "compositor/tcp/jpeg.h"
+#include "compositor/relay/jpeg.h"
+#include "compositor/transport/tcp/block_codec.h"
 #include "tests/fuzz/remote_input.h"
 
 namespace understudy::spu::testing {
@@ -39,7 +39,9 @@ Buffer travelling(MessageType type, const Buffer& payload, compositor::Codec cod
 }
 
 Buffer between_application_and_gl_server(MessageType type, const Buffer& payload) {
-  const std::array<std::uint32_t, 2> head = {std::uint32_t(type), std::uint32_t(payload.size())};
+  const auto message = type.as<GlServerMessage>();
+  const std::array<std::uint32_t, 2> head = {message ? std::uint32_t(*message) : 0,
+                                             std::uint32_t(payload.size())};
   Buffer bytes;
   append(bytes, std::span<const std::uint32_t>(head));
   append(bytes, std::span<const std::byte>(payload));
@@ -109,26 +111,26 @@ Seeds remote_seeds() {
     const std::string name = std::to_string(int(codec));
     for (const ImageCoding coding : {ImageCoding::floats, ImageCoding::packed, ImageCoding::jpeg})
       seeds["rendered_" + std::to_string(int(coding)) + "_" + name] =
-          travelling(MessageType::rendered, some_rendered(coding), codec);
-    seeds["calls_" + name] = travelling(MessageType::calls, some_calls(), codec);
-    seeds["image_" + name] = travelling(MessageType::image, some_image(PixelCoding::jpeg), codec);
+          travelling(compositor::NodeMessage::rendered, some_rendered(coding), codec);
+    seeds["calls_" + name] = travelling(GlServerMessage::calls, some_calls(), codec);
+    seeds["image_" + name] = travelling(GlServerMessage::image, some_image(PixelCoding::jpeg), codec);
   }
   return seeds;
 }
 
 Seeds gl_server_seeds() {
-  Buffer both = between_application_and_gl_server(MessageType::calls, some_calls());
+  Buffer both = between_application_and_gl_server(GlServerMessage::calls, some_calls());
   const Buffer again = both;
   append(both, std::span<const std::byte>(again));
   CallAnswer answer{.result = 42};
   answer.outputs.push_back({1, std::nullopt, Buffer(5, std::byte(7))});
   return {
       {"calls", both},
-      {"plain", between_application_and_gl_server(MessageType::image, some_image(PixelCoding::plain))},
-      {"jpeg", between_application_and_gl_server(MessageType::refined, some_image(PixelCoding::jpeg))},
-      {"accepted",
-       between_application_and_gl_server(MessageType::accepted, encode(GlServerVersions{450, 310}))},
-      {"answered", between_application_and_gl_server(MessageType::answered, encode(answer))},
+      {"plain", between_application_and_gl_server(GlServerMessage::image, some_image(PixelCoding::plain))},
+      {"jpeg", between_application_and_gl_server(GlServerMessage::refined, some_image(PixelCoding::jpeg))},
+      {"accepted", between_application_and_gl_server(compositor::LauncherMessage::accepted,
+                                                     encode(GlServerVersions{450, 310}))},
+      {"answered", between_application_and_gl_server(GlServerMessage::answered, encode(answer))},
   };
 }
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "apps/understudy/image.h"
-#include "compositor/tcp/jpeg.h"
+#include "compositor/relay/jpeg.h"
 
 namespace understudy::launcher {
 

@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/service/runtime_folder.h"
+#include "compositor/transport/runtime_folder.h"
 
 namespace understudy::spu {
 namespace {

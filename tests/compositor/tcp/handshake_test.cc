@@ -1,5 +1,5 @@
 // Who is let in, and what everybody else is told: nothing is believed that has not been proved.
-#include "compositor/tcp/handshake.h"
+#include "compositor/transport/tcp/handshake.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <functional>
 #include <random>
 
-#include "compositor/tcp/address.h"
-#include "compositor/tcp/secret.h"
+#include "compositor/transport/tcp/address.h"
+#include "compositor/transport/tcp/secret.h"
 #include "tests/compositor/scratch_folder.h"
 
 namespace understudy::compositor {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 
 namespace understudy::compositor::testing {
 

@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/service/file_descriptor.h"
-#include "compositor/tcp/address.h"
+#include "compositor/transport/file_descriptor.h"
+#include "compositor/transport/tcp/address.h"
 
 namespace understudy::compositor::testing {
 

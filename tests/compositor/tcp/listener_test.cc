@@ -1,6 +1,6 @@
 // The listener under people who do not belong there: none of them disturbs those who do, and nothing of them
 // stays.
-#include "compositor/tcp/listener.h"
+#include "compositor/transport/tcp/listener.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,9 @@
 #include <mutex>
 #include <thread>
 
-#include "compositor/tcp/tcp_connection.h"
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/tcp_connection.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 #include "tests/compositor/scratch_folder.h"
 
 namespace understudy::compositor {
@@ -93,11 +94,11 @@ TEST_F(ListenerTest, AClientWithTheSecretIsLetInWithItsWishes) {
   EXPECT_EQ(last_wishes_.to, Destination::gl_server);
   EXPECT_EQ(last_wishes_.pixels, Layout::rgba16f);
   // Both ends are a connection now.
-  TcpConnection here(FileDescriptor(::dup(socket.get())), 1 << 20);
-  TcpConnection there(FileDescriptor(::dup(accepted_.front().get())), 1 << 20);
+  TcpConnection here(FileDescriptor(::dup(socket.get())), service_protocols, 1 << 20);
+  TcpConnection there(FileDescriptor(::dup(accepted_.front().get())), service_protocols, 1 << 20);
   const std::vector<std::byte> words(300'000, std::byte(7));
   const Bytes payload(words);
-  std::jthread sender([&] { here.send(MessageType::calls, 9, {&payload, 1}); });
+  std::jthread sender([&] { here.send(NodeMessage::add_texels, 9, {&payload, 1}); });
   const Message message = there.receive();
   EXPECT_EQ(message.sequence, 9U);
   EXPECT_EQ(message.payload, words);

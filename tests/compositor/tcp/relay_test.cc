@@ -1,6 +1,6 @@
 // Applications and nodes that meet over TCP: images are those of a Unix socket, a line that is cut for a
 // while goes on where it was, and one that is gone ends both sides.
-#include "compositor/tcp/relay.h"
+#include "compositor/transport/tcp/relay.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -13,9 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/tcp/listener.h"
-#include "compositor/tcp/render_relay.h"
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/relay/render_relay.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/listener.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 #include "tests/compositor/node_group.h"
 #include "tests/compositor/tcp/line.h"
 #include "volume/blending_operator.h"
@@ -52,8 +53,9 @@ class RelayTest : public NodeGroupTest {
       const FileDescriptor listening(fd);
       if (!wait_until_ready(listening.get(), POLLIN, soon())) return;
       Connection here(
-          FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)));
-      TcpConnection tcp(connect_tcp(address, secret_, connection_request, soon()),
+          FileDescriptor(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)),
+          service_protocols);
+      TcpConnection tcp(connect_tcp(address, secret_, connection_request, soon()), service_protocols,
                         limits::max_image_message_bytes, connection_patience_);
       why_ = ApplicationRelay(here, tcp).run();
     });
@@ -63,6 +65,8 @@ class RelayTest : public NodeGroupTest {
   }
 
   milliseconds connection_patience_ = limits::connection_patience;
+  /// Of the far end, if it is another.
+  std::optional<milliseconds> far_patience_;
   const Secret secret_ = Secret(std::as_bytes(std::span("sixteen bytes or more")));
   std::vector<std::jthread> carriers_;
   Listener listener_ = Listener(
@@ -70,8 +74,9 @@ class RelayTest : public NodeGroupTest {
       [this](FileDescriptor socket, const ConnectionRequest& connection_request) {
         carriers_.emplace_back(
             [this, fd = std::make_shared<FileDescriptor>(std::move(socket)), connection_request] {
-              TcpConnection tcp(std::move(*fd), limits::max_message_bytes, connection_patience_);
-              Connection here(connect_to(path_, soon()));
+              TcpConnection tcp(std::move(*fd), service_protocols, limits::max_message_bytes,
+                                far_patience_.value_or(connection_patience_));
+              Connection here(connect_to(path_, soon()), service_protocols);
               NodesRelay(here, tcp, connection_request).run();
             });
       },
@@ -175,6 +180,7 @@ TEST_F(RelayTest, WhoRestsForLongerThanALineMayBeSilentIsStillThere) {
 TEST_F(RelayTest, ALineThatIsSilentIsGivenUpAndSaidSo) {
   start(1);
   connection_patience_ = milliseconds(2000);
+  far_patience_ = milliseconds(20000);  // so that it is not the far end that gives up first
   Line line(listener_.address());
   const Texture texture = some_texture();
   RenderService& there = connect_over(line.address());
@@ -202,10 +208,11 @@ TEST_F(RelayTest, ALineThatIsGoneIsALostService) {
 
 TEST_F(RelayTest, AClientThatWouldBeTheNodesIsSentAway) {
   // Before there are any.
-  TcpConnection tcp(connect_tcp(listener_.address(), secret_, {}, soon()), limits::max_message_bytes);
+  TcpConnection tcp(connect_tcp(listener_.address(), secret_, {}, soon()), service_protocols,
+                    limits::max_message_bytes);
   const std::vector<std::byte> hello = encode(Hello{});
   const Bytes payload(hello);
-  tcp.send(MessageType::hello_nodes, 0, {&payload, 1});
+  tcp.send(LauncherMessage::hello_nodes, 0, {&payload, 1});
   EXPECT_THROW(for (;;) tcp.receive(), ConnectionLost);
   start(1);
   const Texture texture = some_texture();
@@ -236,15 +243,16 @@ class LongMessageTest : public ::testing::Test {
                   [random = std::mt19937(1)]() mutable { return std::byte(random()); });
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()), 0);
-    application_.emplace(FileDescriptor(ends[0]));
+    application_.emplace(FileDescriptor(ends[0]), service_protocols);
     near_ = std::jthread([this, fd = ends[1]] {
-      Connection here{FileDescriptor(fd)};
-      TcpConnection tcp(connect_to(line_.address(), soon()), limits::max_message_bytes, patience_);
+      Connection here(FileDescriptor(fd), service_protocols);
+      TcpConnection tcp(connect_to(line_.address(), soon()), service_protocols, limits::max_message_bytes,
+                        patience_);
       Relay(here, tcp).run();
     });
     EXPECT_TRUE(wait_until_ready(listening_.get(), POLLIN, soon()));
     far_.emplace(FileDescriptor(::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)),
-                 limits::max_message_bytes, patience_);
+                 service_protocols, limits::max_message_bytes, patience_);
     receiver_ = std::jthread([this] {
       try {
         message_ = far_->receive();
@@ -266,7 +274,7 @@ class LongMessageTest : public ::testing::Test {
 
   void expect_all() {
     receiver_.join();
-    EXPECT_EQ(message_.type, MessageType::calls);
+    EXPECT_EQ(message_.type, NodeMessage::add_texels);
     EXPECT_EQ(message_.payload, texels_);
   }
 
@@ -287,14 +295,14 @@ class LongMessageTest : public ::testing::Test {
 TEST_F(LongMessageTest, LeavesAnApplicationAsALineTakesIt) {
   line_.set_bytes_per_second(24e6);
   const Bytes payload(texels_);
-  application_->send(MessageType::calls, 7, {&payload, 1}, patience_);
+  application_->send(NodeMessage::add_texels, 7, {&payload, 1}, patience_);
   EXPECT_GT(line_.bytes_up(), texels_.size() / 2);
   expect_all();
 }
 
 TEST_F(LongMessageTest, GoesOnWhereAnApplicationWasStopped) {
   MessageHeader header;
-  header.type = MessageType::calls;
+  header.type = NodeMessage::add_texels;
   header.payload_bytes = texels_.size();
   const auto send = [&](Bytes bytes) {
     while (!bytes.empty()) {

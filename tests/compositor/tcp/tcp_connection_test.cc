@@ -1,5 +1,5 @@
 // Links whose other end is busy, and such whose other end is gone.
-#include "compositor/tcp/tcp_connection.h"
+#include "compositor/transport/tcp/tcp_connection.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -11,7 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "compositor/tcp/tcp_socket.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/tcp_socket.h"
 
 namespace understudy::compositor::testing {
 namespace {
@@ -39,8 +40,8 @@ class TcpConnectionTest : public ::testing::Test {
     EXPECT_TRUE(wait_until_ready(listening.get(), POLLIN, deadline));
     FileDescriptor far(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     set_connection_options(far.get());
-    near_.emplace(std::move(near), 2 * much, patience);
-    far_.emplace(std::move(far), 2 * much, patience);
+    near_.emplace(std::move(near), service_protocols, 2 * much, patience);
+    far_.emplace(std::move(far), service_protocols, 2 * much, patience);
   }
 
   /// Until its thread is asked to stop.
@@ -66,7 +67,7 @@ TEST_F(TcpConnectionTest, APeerThatIsBusyForLongIsWaitedFor) {
     message = far_->receive();
   });
   const Bytes payload(payload_);
-  near_->send(MessageType::calls, 3, {&payload, 1});
+  near_->send(NodeMessage::add_texels, 3, {&payload, 1});
   busy.join();
   ASSERT_TRUE(message.has_value());
   EXPECT_EQ(message->sequence, 3U);
@@ -75,7 +76,7 @@ TEST_F(TcpConnectionTest, APeerThatIsBusyForLongIsWaitedFor) {
 
 TEST_F(TcpConnectionTest, APeerThatTakesNothingAndSaysNothingIsGone) {
   const Bytes payload(payload_);
-  EXPECT_THROW(near_->send(MessageType::calls, 0, {&payload, 1}), ConnectionAbandoned);
+  EXPECT_THROW(near_->send(NodeMessage::add_texels, 0, {&payload, 1}), ConnectionAbandoned);
 }
 
 TEST_F(TcpConnectionTest, WhoWaitsForASilentPeerIsTold) {
@@ -88,7 +89,7 @@ TEST_F(TcpConnectionTest, WhoOnlySaysThatHeIsThereSendsNoMessage) {
     std::this_thread::sleep_for(4 * patience);
     there.reset();
     const Bytes nothing;
-    far_->send(MessageType::done, 5, {&nothing, 1});
+    far_->send(NodeMessage::done, 5, {&nothing, 1});
   });
   EXPECT_EQ(near_->receive().sequence, 5U);
   EXPECT_EQ(near_->received().messages, 1U);

@@ -1,5 +1,5 @@
 // What travels over TCP comes out as it went in, whatever pieces it arrives in, and what cannot be is refused.
-#include "compositor/tcp/tcp_message_reader.h"
+#include "compositor/transport/tcp/tcp_message_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,11 @@
 #include <cstring>
 #include <random>
 
+#include "compositor/relay/jpeg.h"
+#include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
-#include "compositor/tcp/block_codec.h"
-#include "compositor/tcp/jpeg.h"
-#include "compositor/tcp/render_relay.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/block_codec.h"
 
 namespace understudy::compositor {
 namespace {
@@ -60,7 +61,7 @@ Buffer travelling(MessageType type, std::span<const std::byte> payload, Codec co
 
 /// In pieces of at most `most` bytes.
 std::vector<Message> read(std::span<const std::byte> bytes, std::size_t most, std::uint64_t max_payload) {
-  TcpMessageReader reader(max_payload);
+  TcpMessageReader reader(service_protocols, max_payload);
   std::vector<Message> messages;
   while (!bytes.empty()) {
     const std::span<std::byte> room = reader.room();
@@ -78,23 +79,23 @@ TEST(TcpMessageReader, MessagesArriveWholeWhateverPiecesTheyComeIn) {
     for (const std::size_t size : {0, 1, 7, 513, 99'999}) {
       const Buffer first = smooth(size);
       const Buffer second = noise(size / 2, unsigned(size));
-      Buffer bytes = travelling(MessageType::add_texels, first, codec, 4096);
-      append(bytes, travelling(MessageType::calls, second, codec, 777));
+      Buffer bytes = travelling(NodeMessage::add_texels, first, codec, 4096);
+      append(bytes, travelling(NodeMessage::add_texels, second, codec, 777));
       for (const std::size_t most : {1, 13, 100'000}) {
         const auto messages = read(bytes, most, 1 << 20);
         ASSERT_EQ(messages.size(), 2U) << int(codec) << " " << size << " " << most;
         EXPECT_EQ(messages[0].payload, first);
         EXPECT_EQ(messages[0].sequence, 12U);
         EXPECT_EQ(messages[1].payload, second);
-        EXPECT_EQ(messages[1].type, MessageType::calls);
+        EXPECT_EQ(messages[1].type, NodeMessage::add_texels);
       }
     }
-  EXPECT_LT(travelling(MessageType::calls, smooth(99'999), Codec::lz4, 4096).size(), 10'000U);
+  EXPECT_LT(travelling(NodeMessage::add_texels, smooth(99'999), Codec::lz4, 4096).size(), 10'000U);
 }
 
 TEST(TcpMessageReader, BlocksOfNothingAreNoPartOfAMessage) {
   const Buffer payload = noise(5000, 3);
-  Buffer bytes = travelling(MessageType::calls, payload, Codec::none, 5000);
+  Buffer bytes = travelling(NodeMessage::add_texels, payload, Codec::none, 5000);
   const std::array<std::byte, sizeof(BlockHead)> nothing{};
   for (int i = 0; i < 3; ++i)
     bytes.insert(bytes.begin() + sizeof(MessageHeader), nothing.begin(), nothing.end());
@@ -107,7 +108,7 @@ TEST(TcpMessageReader, BlocksOfNothingAreNoPartOfAMessage) {
 
 TEST(TcpMessageReader, NothingIsBelievedThatCannotBe) {
   const Buffer payload = smooth(3000);
-  const Buffer good = travelling(MessageType::calls, payload, Codec::lz4, 1000);
+  const Buffer good = travelling(NodeMessage::add_texels, payload, Codec::lz4, 1000);
   EXPECT_THROW(read(good, 64, 2999), MalformedMessage) << "longer than the limit";
   const auto with_head = [&](BlockHead head) {
     Buffer bytes = good;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/understudy/frame_changes.h"
-#include "compositor/service/wire.h"
+#include "compositor/transport/wire.h"
 #include "spu/stream/call_answer.h"
 
 namespace understudy::spu {

@@ -1,0 +1,145 @@
+// How a rank draws its part of an image, and how the parts become one.
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "compositor/crop.h"
+#include "compositor/node/rank_loop.h"
+#include "compositor/service/request_message.h"
+#include "volume/occlusion.h"
+
+namespace understudy::compositor {
+
+void RankLoop::begin_request(const Order& order, Bytes payload) {
+  ++images_;
+  opaque_tiles_.reset();
+  const auto decode = [&] { return decode_request(payload, pre_integration_tables_[order.client]); };
+  request_ = rebalancer_ ? rebalancer_->before_image(order.client, decode) : decode();
+  begin_image(order.client);
+}
+
+// What all ranks know of the image before they draw it.
+void RankLoop::begin_image(std::uint64_t client) {
+  renderer_.begin_image();
+  rendered_ = {client, request_.volume};
+  task_ = {client,
+           request_.op,
+           intersection(request_.window, request_.viewport),
+           compositing_.layout(request_.may_travel_as_halves),
+           request_.optimizations.footprints,
+           renderer_.visibility_order(client, request_)};
+  footprints_ = renderer_.footprints(client, request_);
+  whole_ = task_.window;
+  if (!task_.only_footprints) return;
+  whole_ = {};
+  for (const volume::Rect& footprint : footprints_) whole_ = bounding(whole_, footprint);
+}
+
+void RankLoop::draw(OwnOutcome& mine) {
+  if (communicator_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
+    opaque_tiles_.emplace(communicator_, images_, request_, task_.order, footprints_);
+  image_ = renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
+  mine.footprint = image_.rect;
+  if (!opaque_tiles_) return;
+  mine.control_messages = opaque_tiles_->tell_rest();
+  mine.control_message_count = opaque_tiles_->messages();
+  mine.control_bytes = opaque_tiles_->bytes();
+}
+
+// Whatever becomes of this rank's part, the others wait for its word on every band until all have given up.
+void RankLoop::draw_in_bands(OwnOutcome& mine) {
+  const ImageBuffers::Memory& memory = memories_.of(task_.client);
+  if (!mine.refused && 4 * whole_.pixels() > memory.floats)
+    mine.refuse("there is no image buffer for this image");
+  if (mine.refused) return refuse_to_draw(communicator_);
+  travelled_ = {};
+  const auto draw_band = [&](const volume::Rect& band) -> std::optional<volume::Image> {
+    if (mine.refused) return std::nullopt;
+    try {
+      volume::FrameCounts counts;
+      volume::Image image = renderer_.render(task_.client, request_, counts, nullptr, band);
+      mine.footprint = bounding(mine.footprint, image.rect);
+      // The blocks are those of the whole image each time.
+      counts.blocks -= mine.counts.blocks;
+      counts.blocks_empty -= mine.counts.blocks_empty;
+      mine.counts += counts;
+      return image;
+    } catch (const std::exception& error) {
+      mine.refuse(error.what());
+      return std::nullopt;
+    }
+  };
+  draw_and_composite(communicator_, compositing_, task_, memory, whole_, draw_band, travelled_);
+}
+
+// What this rank has drawn behind opaque tiles of others, before it heard of them, must not change footprints:
+// the image would depend on when control messages came.
+void RankLoop::clear_hidden(std::vector<Outcome>& outcomes) {
+  if (std::ranges::all_of(outcomes, [](const Outcome& outcome) { return outcome.control_messages == 0; }))
+    return;
+  std::vector<std::uint32_t> control_messages;
+  control_messages.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) control_messages.push_back(outcome.control_messages);
+  opaque_tiles_->clear_hidden(image_, control_messages);
+  crop_to_content(image_, task_.op);
+  std::vector<volume::Rect> footprints(outcomes.size());
+  communicator_.gather_to_all(bytes_of(image_.rect), std::as_writable_bytes(std::span(footprints)));
+  for (std::size_t rank = 0; rank < outcomes.size(); ++rank) outcomes[rank].footprint = footprints[rank];
+}
+
+// All ranks have drawn: what they tell each other of it before it is composited.
+void RankLoop::after_image(const OwnOutcome& mine, std::vector<Outcome>& outcomes) {
+  clear_hidden(outcomes);
+  loads_.drew(rendered_, mine.counts);
+  if (!rebalancer_) return;
+  std::vector<RankWork> work;
+  work.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes)
+    work.push_back({outcome.counts.render_ms, outcome.counts.samples_taken});
+  rebalancer_->after_image(rendered_, work);
+}
+
+// The image goes to the application's memory; returns where its pixels lie in the window, or nothing, on all
+// ranks, when there is no room for them. Adds to the counts, on rank 0, what travelled.
+std::optional<volume::Rect> RankLoop::composite(const std::vector<Outcome>& outcomes,
+                                                volume::FrameCounts& counts) {
+  std::vector<volume::Rect> footprints;
+  footprints.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) footprints.push_back(outcome.footprint);
+  if (communicator_.rank() == 0) {
+    for (const Outcome& outcome : outcomes) {
+      counts.bytes_exchanged += outcome.control_bytes;
+      counts.messages += outcome.control_message_count;
+    }
+  }
+  return compositing_.composite(task_, std::move(image_), footprints, memories_.of(task_.client), counts);
+}
+
+// The whole integrals, from the parts of all ranks.
+std::vector<volume::PixelIntegral> RankLoop::compose_integrals() {
+  const auto ranks = std::size_t(communicator_.size());
+  std::vector<std::uint64_t> known(ranks);
+  std::uint64_t mine = integrated_;
+  communicator_.gather_to_all(bytes_of(mine), std::as_writable_bytes(std::span(known)));
+  const std::size_t pixels = std::ranges::min(known);
+  if (pixels == 0) return {};
+  std::vector<IntegralPart> all(ranks * pixels);
+  communicator_.gather_to_all(std::as_bytes(std::span(integrals_).first(pixels)),
+                              std::as_writable_bytes(std::span(all)));
+  std::vector<std::vector<IntegralPart>> parts;
+  for (auto part = all.begin(); part != all.end(); part += std::ptrdiff_t(pixels))
+    parts.emplace_back(part, part + std::ptrdiff_t(pixels));
+  return composed_integrals(parts, integral_order_);
+}
+
+// Of the whole volume, from the parts of all ranks.
+std::vector<std::uint64_t> RankLoop::sum_histograms() {
+  const std::size_t bins = histogram_.size();
+  std::vector<std::uint64_t> all(std::size_t(communicator_.size()) * bins);
+  communicator_.gather_to_all(std::as_bytes(std::span(histogram_)), std::as_writable_bytes(std::span(all)));
+  std::vector<std::uint64_t> sums(bins);
+  for (std::size_t i = 0; i < all.size(); ++i) sums[i % bins] += all[i];
+  return sums;
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,112 @@
+// One rank of a node group: rank 0 hears applications (clients.h) and orders, the others follow; all perform
+// the same requests, in the same order. Which file to read: rank_loop.cc orders and replies, rank_volumes.cc
+// takes in texels, rank_images.cc draws and composites.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compositor/exchange/communicator.h"
+#include "compositor/node/clients.h"
+#include "compositor/node/compositing.h"
+#include "compositor/node/image_buffer.h"
+#include "compositor/node/opaque_tiles.h"
+#include "compositor/node/outcome.h"
+#include "compositor/node/overlap.h"
+#include "compositor/node/rebalancer.h"
+#include "compositor/service/integral_parts.h"
+#include "compositor/service/loads.h"
+#include "compositor/service/rank_renderer.h"
+#include "compositor/service/service_protocols.h"
+#include "volume/image.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+class RankLoop {
+ public:
+  RankLoop(Communicator& communicator, const ExchangeSettings& exchange,
+           const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
+           const volume::ReadableFiles& files, const ClientLimits& limits)
+      : communicator_(communicator),
+        renderer_(communicator.rank(), communicator.size(), make_renderer, limits),
+        loads_(renderer_, communicator.rank(), files),
+        memories_(communicator, exchange.gather),
+        compositing_(communicator, exchange),
+        overlap_(exchange.overlap) {
+    if (balance.balance != Balance::off && communicator.size() > 1)
+      rebalancer_.emplace(communicator, renderer_, balance);
+  }
+
+  bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
+  void follow();
+
+ private:
+  void forget_client(std::uint64_t client);
+  void request(Clients& clients, Clients::Request request);
+  std::vector<Outcome> texels(const Order& order, std::span<volume::TexelBox> boxes, Bytes here);
+  bool make_room(std::uint64_t bytes);
+  bool receive_payload(const Order& order, std::span<std::byte> here);
+  void receive_shares(VolumeKey key, std::span<const volume::TexelBox> boxes);
+  void send_shares(VolumeKey key, std::span<const volume::TexelBox> boxes, Bytes texels);
+  std::vector<Outcome> perform(const Order& order, Bytes payload);
+  void perform_own_part(const Order& order, Bytes payload, OwnOutcome& mine);
+  void take_volume(NodeMessage message, const Order& order, Bytes payload, OwnOutcome& mine);
+  void load(LoadMessage message, const Order& order, Bytes payload, OwnOutcome& mine);
+  void integrate(const Order& order, Bytes payload);
+  void begin_request(const Order& order, Bytes payload);
+  void reply_to_load(Clients& clients, const Clients::Request& request, const std::vector<Outcome>& outcomes);
+  void reply_with_image(Clients& clients, const Clients::Request& request, const Order& order,
+                        const std::vector<Outcome>& outcomes, std::chrono::steady_clock::time_point start);
+  void after_image(const OwnOutcome& mine, std::vector<Outcome>& outcomes);
+  void begin_image(std::uint64_t client);
+  void draw(OwnOutcome& mine);
+  void draw_in_bands(OwnOutcome& mine);
+  void clear_hidden(std::vector<Outcome>& outcomes);
+  std::vector<Outcome> agree(const OwnOutcome& mine);
+  std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
+  std::vector<volume::PixelIntegral> compose_integrals();
+  std::vector<std::uint64_t> sum_histograms();
+
+  Communicator& communicator_;
+  RankRenderer renderer_;
+  Loads loads_;
+  std::optional<Rebalancer> rebalancer_;  // where there is something to balance
+  ImageBuffers memories_;
+  Compositing compositing_;
+  OverlapChoice overlap_;  // rank 0's word counts
+  /// By application, and there by place.
+  std::map<std::uint64_t, std::array<volume::PreIntegrationTable, limits::max_kept_pre_integration_tables>>
+      pre_integration_tables_;
+  std::vector<std::byte> payload_space_;  // the same size on all ranks but 0
+  std::size_t room_ = 0;                  // that size, known to rank 0 too
+  Reason reason_{};                       // of the last refusal
+  std::vector<volume::TexelBox> shares_;  // of the texels in hand, this rank's
+  // Of the render request in hand.
+  VolumeKey rendered_;
+  volume::RenderRequest request_;
+  ImageTask task_;
+  std::vector<volume::Rect> footprints_;  // by rank: what it could show at most
+  volume::Rect whole_;                    // what all of them could
+  volume::FrameCounts travelled_;         // while the image was drawn
+  volume::Image image_;
+  std::uint32_t images_ = 0;  // that were asked for, this one too
+  std::optional<OpaqueTiles> opaque_tiles_;
+  // Of the integrals in hand, this rank's parts; as many elements as pixels were asked for.
+  std::vector<IntegralPart> integrals_;
+  std::vector<Rank> integral_order_;
+  std::size_t integrated_ = 0;            // the first of them are known
+  std::vector<std::uint64_t> histogram_;  // in hand, of this rank's cells
+};
+
+inline bool is_load(const MessageType& type) {
+  return type == LoadMessage::load_volume || type == LoadMessage::continue_load;
+}
+
+}  // namespace understudy::compositor

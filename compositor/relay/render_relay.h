@@ -1,0 +1,72 @@
+// Relays between applications and node groups. The memory in which an image is left has one half at each end:
+// the application's own, and one that the server's relay makes for the nodes. An image travels as numbers
+// (packed as between nodes where that is faster, or narrower: ConnectionRequest::pixels), or as a JPEG image
+// while requests differ.
+//
+// Behind the payload of a `rendered` message stand how its image is written (ImageCoding) and its bytes.
+#pragma once
+
+#include <memory>
+
+#include "compositor/service/image_buffer.h"
+#include "compositor/transport/tcp/relay.h"
+
+namespace understudy::compositor {
+
+enum class ImageCoding : std::uint8_t {
+  floats,  ///< as they are
+  packed,  ///< exchange/pixel_numbers.h
+  jpeg,    ///< relay/jpeg.h: colours, and alpha as another image
+  last = jpeg
+};
+
+/// Beside the application.
+class ApplicationRelay : public Relay {
+ public:
+  using Relay::Relay;
+
+ protected:
+  bool needs_whole(const MessageType& type) const override;
+  void carry_out(Message message) override;
+  void carry_back(Message message) override;
+
+ private:
+  /// An image's memory, which the one direction learns of and the other writes to.
+  std::atomic<std::shared_ptr<ImageBuffer>> memory_;
+};
+
+/// Beside the nodes.
+class NodesRelay : public Relay {
+ public:
+  NodesRelay(Connection& here, TcpConnection& tcp, const ConnectionRequest& connection_request)
+      : Relay(here, tcp), connection_request_(connection_request) {}
+
+ protected:
+  bool needs_whole(const MessageType& type) const override;
+  void carry_out(Message message) override;
+  void carry_back(Message message) override;
+
+ private:
+  ImageCoding coding_of(std::size_t pixels) const;
+
+  ConnectionRequest connection_request_;
+  std::atomic<std::shared_ptr<ImageBuffer>> memory_;
+  std::vector<std::byte> last_request_;
+  std::atomic<bool> repeats_ = false;  ///< the last request is the one before: its image is sent without loss
+  std::vector<std::byte> coded_;
+  double packed_seconds_per_byte_ = 0.5e-9;
+  double packed_ratio_ = 0.5;
+};
+
+/// A `rendered` message as it travels: leaves its image at the beginning of `memory`, and returns the part of
+/// `payload` that the nodes wrote. Throws MalformedMessage.
+Bytes take_image(Bytes payload, std::span<float> memory);
+
+/// Writes `pixels`, RGBA and premultiplied, in the layout.
+void encode_image(std::span<const float> pixels, int width, ImageCoding coding, Layout layout, int jpeg_quality,
+                  std::vector<std::byte>& to);
+/// The other way. Throws MalformedMessage where `from` holds another number of pixels.
+void decode_image(std::span<const std::byte> from, ImageCoding coding, Layout layout, int width,
+                  std::span<float> to);
+
+}  // namespace understudy::compositor

@@ -1,0 +1,177 @@
+#include "compositor/transport/tcp/handshake.h"
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+#include <cstring>
+#include <string_view>
+
+namespace understudy::compositor {
+
+namespace {
+
+using Buffer = std::vector<std::byte>;
+using Nonce = std::array<std::uint8_t, 32>;
+using Mac = std::array<unsigned char, crypto_auth_BYTES>;
+static_assert(sizeof(Mac) == proof_bytes);
+
+constexpr std::array<char, 8> magic = {'U', 'N', 'D', 'E', 'R', 'L', 'N', 'K'};
+
+struct Hello {
+  std::array<char, 8> magic_number = magic;
+  std::uint32_t version = tcp_protocol_version;
+  std::uint8_t to = 0;
+  std::uint8_t pixels = 0;
+  std::uint8_t jpeg_quality = 0;
+  std::uint8_t only_asks = 0;
+  Nonce nonce{};
+};
+static_assert(sizeof(Hello) == hello_bytes);
+
+struct Challenge {
+  std::array<char, 8> magic_number = magic;
+  std::uint32_t version = tcp_protocol_version;
+  std::uint32_t unused = 0;
+  Nonce nonce{};
+};
+static_assert(sizeof(Challenge) == challenge_bytes);
+
+struct VerdictWords {
+  std::uint32_t verdict = 0;
+  std::uint32_t unused = 0;
+  Mac proof{};
+};
+static_assert(sizeof(VerdictWords) == verdict_bytes);
+
+template <class Words>
+Buffer buffer_of(const Words& words) {
+  const auto bytes = std::as_bytes(std::span(&words, 1));
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class Words>
+Words words_of(std::span<const std::byte> bytes) {
+  Words words;
+  if (bytes.size() != sizeof words) throw HandshakeFailed("it said less than it should");
+  std::memcpy(&words, bytes.data(), sizeof words);
+  return words;
+}
+
+Nonce fresh_nonce() {
+  Nonce nonce;
+  ::randombytes_buf(nonce.data(), nonce.size());
+  return nonce;
+}
+
+/// `verdict` is part of the server's proof, so that nobody can turn one into another.
+Mac proof(const Secret& secret, std::string_view label, std::span<const std::byte> said,
+          std::uint32_t verdict = 0) {
+  Buffer text(label.size() + said.size() + sizeof verdict);
+  std::memcpy(text.data(), label.data(), label.size());
+  std::memcpy(text.data() + label.size(), said.data(), said.size());
+  std::memcpy(text.data() + label.size() + said.size(), &verdict, sizeof verdict);
+  Mac mac;
+  ::crypto_auth(mac.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+                secret.key().data());
+  return mac;
+}
+
+bool same(const Mac& a, const Mac& b) {
+  return ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+constexpr std::string_view from_client = "understudy link: client";
+constexpr std::string_view from_server = "understudy link: server";
+
+}  // namespace
+
+ServerHandshake::ServerHandshake(const Secret& secret) : secret_(&secret) {}
+
+std::size_t ServerHandshake::wants() const {
+  return step_ == Step::hello ? hello_bytes : step_ == Step::proof ? proof_bytes : 0;
+}
+
+std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> message) {
+  if (step_ == Step::hello) {
+    const auto hello = words_of<Hello>(message);
+    if (hello.magic_number != magic) throw HandshakeFailed("it is no program of Understudy");
+    Challenge challenge;
+    challenge.nonce = fresh_nonce();
+    if (hello.version != tcp_protocol_version) {
+      last_words_ = buffer_of(challenge);
+      throw HandshakeFailed(
+          fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
+                      "Understudy on both machines",
+                      hello.version, tcp_protocol_version));
+    }
+    if (hello.to > std::uint8_t(Destination::last) || hello.pixels > std::uint8_t(Layout::rgba8) ||
+        hello.jpeg_quality > 100)
+      throw HandshakeFailed("it wants what there is not");
+    connection_request_ = {Destination(hello.to), Layout(hello.pixels), hello.jpeg_quality,
+                           hello.only_asks != 0};
+    said_.assign(message.begin(), message.end());
+    Buffer words = buffer_of(challenge);
+    said_.insert(said_.end(), words.begin(), words.end());
+    step_ = Step::proof;
+    return words;
+  }
+  Mac theirs;
+  if (step_ != Step::proof || message.size() != sizeof theirs) throw HandshakeFailed("it spoke out of turn");
+  std::memcpy(theirs.data(), message.data(), sizeof theirs);
+  if (!same(theirs, proof(*secret_, from_client, said_))) {
+    // Without a proof: it shows nothing of the secret to whoever has not got it.
+    last_words_ = buffer_of(VerdictWords{std::uint32_t(AdmissionVerdict::wrong_secret)});
+    throw HandshakeFailed("its secret is not the one of --secret-file here: give both machines the same file");
+  }
+  step_ = Step::proved;
+  return {};
+}
+
+std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const {
+  VerdictWords words{std::uint32_t(verdict)};
+  words.proof = proof(*secret_, from_server, said_, words.verdict);
+  return buffer_of(words);
+}
+
+ClientHandshake::ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
+                                 std::uint32_t version)
+    : secret_(&secret), version_(version) {
+  Hello hello;
+  hello.version = version;
+  hello.to = std::uint8_t(connection_request.to);
+  hello.pixels = std::uint8_t(connection_request.pixels);
+  hello.jpeg_quality = std::uint8_t(connection_request.jpeg_quality);
+  hello.only_asks = std::uint8_t(connection_request.only_asks);
+  hello.nonce = fresh_nonce();
+  hello_ = buffer_of(hello);
+}
+
+std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challenge) {
+  const auto words = words_of<Challenge>(challenge);
+  if (words.magic_number != magic)
+    throw HandshakeFailed("it is no understudy serve --listen: look at host and port");
+  if (words.version != version_)
+    throw HandshakeFailed(
+        fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
+                    "Understudy on both machines",
+                    words.version, version_));
+  said_ = hello_;
+  said_.insert(said_.end(), challenge.begin(), challenge.end());
+  return buffer_of(proof(*secret_, from_client, said_));
+}
+
+void ClientHandshake::finish(std::span<const std::byte> verdict) const {
+  const auto words = words_of<VerdictWords>(verdict);
+  if (words.verdict == std::uint32_t(AdmissionVerdict::wrong_secret))
+    throw HandshakeFailed("its secret is another one: copy its --secret-file to this machine");
+  if (words.verdict > std::uint32_t(AdmissionVerdict::last) ||
+      !same(words.proof, proof(*secret_, from_server, said_, words.verdict)))
+    throw HandshakeFailed(
+        "it has not the secret of --secret-file itself: do not trust it, look at host and port");
+  if (words.verdict == std::uint32_t(AdmissionVerdict::too_many))
+    throw HandshakeFailed("as many clients as it takes are there already: try again later");
+  if (words.verdict == std::uint32_t(AdmissionVerdict::not_offered))
+    throw HandshakeFailed("it has no GL server: start it with understudy serve --gl-server --listen …");
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,93 @@
+// Messages over a TCP connection whose two ends have proved themselves (handshake.h). One thread may send while
+// another receives.
+//
+// A peer may be busy for long and take nothing (a GL server at a call, a node at a volume), and looks like a
+// line that is cut. So each end says that it is there when it says nothing else, and who is silent is gone.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "compositor/transport/connection.h"
+#include "compositor/transport/tcp/address.h"
+#include "compositor/transport/tcp/block_codec.h"
+#include "compositor/transport/tcp/handshake.h"
+#include "compositor/transport/tcp/tcp_message_reader.h"
+
+namespace understudy::compositor {
+
+/// What a connection has done in one direction.
+struct TcpTraffic {
+  std::atomic<std::uint64_t> messages = 0;
+  std::atomic<std::uint64_t> payload_bytes = 0;  ///< of messages, as those who speak here see them
+  std::atomic<std::uint64_t> bytes = 0;          ///< that travelled, heads among them
+  std::array<std::atomic<std::uint64_t>, codec_count> blocks{};  ///< by how they were compressed
+};
+
+/// The line is cut, or who is at its other end stands still.
+class ConnectionAbandoned : public ConnectionLost {
+ public:
+  using ConnectionLost::ConnectionLost;
+};
+
+class TcpConnection {
+ public:
+  /// Accepts messages of the protocols `spoken`, which must outlive it. A peer that is silent for `patience` is
+  /// gone.
+  TcpConnection(FileDescriptor socket, Protocols spoken, std::uint64_t max_payload,
+                std::chrono::milliseconds patience = limits::connection_patience)
+      : socket_(std::move(socket)), patience_(patience), reader_(spoken, max_payload) {}
+
+  int fd() const { return socket_.get(); }
+  double bytes_per_second() const;
+
+  /// Sends the payload made of `parts`. Throws ConnectionLost: the peer is gone; ConnectionAbandoned: it is
+  /// silent, or has taken nothing for limits::server_patience.
+  void send(MessageType type, std::uint64_t sequence, std::span<const Bytes> parts);
+  /// The same for a message whose payload follows by send_payload() as it comes. Nothing else may be sent until
+  /// it is there.
+  void begin(MessageType type, std::uint64_t sequence, std::uint64_t payload_bytes);
+  void send_payload(Bytes some);
+  /// Says that this end is there, in the midst of a message that was begun, too. Due at alive_due() when
+  /// nothing else is sent until then.
+  void send_alive();
+  Deadline alive_due() const { return sent_at_ + patience_ / 4; }
+  /// Waits for a message as long as the peer says that it is there. Throws ConnectionAbandoned, ConnectionLost
+  /// and MalformedMessage.
+  Message receive();
+
+  const TcpTraffic& sent() const { return sent_; }
+  const TcpTraffic& received() const { return received_; }
+
+ private:
+  void send_block(MessageType type, Bytes block, bool last);
+  void write(std::span<const Bytes> pieces, bool more);
+  void wait_for_room();
+  bool peer_is_silent() const;
+  [[noreturn]] void give_up_silent_line() const;
+
+  FileDescriptor socket_;
+  std::chrono::milliseconds patience_;
+  TcpMessageReader reader_;
+  MessageType begun_{};
+  std::uint64_t begun_left_ = 0;  ///< bytes of it that are still to be sent
+  Deadline sent_at_ = Clock::now();
+  std::atomic<Deadline> heard_at_ = Clock::now();
+  TcpTraffic sent_;
+  TcpTraffic received_;
+  std::map<std::pair<std::uint8_t, std::uint16_t>, CodecChoice> choices_;  ///< by what is sent
+  BlockCompressor compressor_;
+  std::vector<std::byte> compressed_;
+};
+
+/// Connects, and has both sides prove themselves. Throws std::runtime_error: what is wrong at `address`, and
+/// what to do there.
+FileDescriptor connect_tcp(const TcpAddress& address, const Secret& secret,
+                           const ConnectionRequest& connection_request, Deadline deadline);
+
+}  // namespace understudy::compositor

@@ -12,8 +12,8 @@
 #include "spu/tiles/tile.h"
 #include "spu/tiles/tiles.h"
 #include "spu/track/share_group.h"
+#include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/session/render_session.h"
-#include "spu/volume/volume_unit.h"
 #include "spu/window_system/shown_image.h"
 
 namespace understudy::spu {
@@ -161,7 +161,7 @@ std::string Player::introduce(const Record& record) {
   if (Tiles* tiles = made->chain.find<Tiles>()) tiles->introduce(words.first(event::context_words));
   if (group->number == 0) group->number = context.number;
   made->played = {context.number, group->number, {}};
-  made->counts_frames = made->chain.find<VolumeUnit>() == nullptr;
+  made->counts_frames = made->chain.find<DrawObserver>() == nullptr;
   contexts_[context.number] = std::move(made);
   return {};
 }

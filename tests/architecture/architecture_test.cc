@@ -24,6 +24,24 @@ using ::testing::IsEmpty;
 constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "spu",
                                                   "interceptor", "apps",       "tests"};
 
+/// Folders of spu/, lowest first: a folder may include itself and those before it, so that there are no cycles.
+constexpr auto spu_folders = std::to_array<std::string_view>({
+
+    "spu/report", "spu", "spu/stream", "spu/window_system",
+    // units
+    "spu/driver", "spu/null", "spu/pass", "spu/perf", "spu/print", "spu/track", "spu/pack", "spu/unpack",
+    "spu/trace", "spu/remote", "spu/tiles",
+    // the volume unit: what all its stages know
+    "spu/volume/program", "spu/volume/refusal", "spu/volume/context", "spu/volume/pipeline",
+    "spu/volume/timing", "spu/volume/session", "spu/volume/texture", "spu/volume/budget",
+    // its stages
+    "spu/volume/observation", "spu/volume/depth", "spu/volume/geometry", "spu/volume/verification",
+    "spu/volume/program_check", "spu/volume/classification", "spu/volume/upload", "spu/volume/request",
+    "spu/volume/slices", "spu/volume/proxy", "spu/volume/recognition", "spu/volume/known_volumes",
+    "spu/volume/presentation", "spu/volume/merging", "spu/volume",
+    // what knows all units
+    "spu/registry", "spu/player", "spu/trim", "spu/dispatch"});
+
 constexpr std::uintmax_t max_source_bytes = 40'000;
 
 bool is_code(const SourceFile& file) {
@@ -76,6 +94,34 @@ TEST(Architecture, NoModuleIncludesAModuleAboveIt) {
                        height_of(target) > height_of(module_of(file.path));
               }),
               IsEmpty());
+}
+
+std::size_t height_in_spu(std::string_view path) {
+  const std::string_view folder = path.substr(0, path.rfind('/'));
+  return std::size_t(std::find(spu_folders.begin(), spu_folders.end(), folder) - spu_folders.begin());
+}
+
+TEST(Architecture, EveryFolderOfSpuHasItsPlace) {
+  for (const SourceFile& file : project_files()) {
+    if (!is_code(file) || module_of(file.path) != "spu") continue;
+    EXPECT_LT(height_in_spu(file.path), spu_folders.size()) << file.path << ": put its folder into the table";
+  }
+}
+
+TEST(Architecture, NoFolderOfSpuIncludesAFolderAboveIt) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return module_of(file.path) == "spu" && module_of(header) == "spu" &&
+                       height_in_spu(header) > height_in_spu(file.path);
+              }),
+              IsEmpty());
+}
+
+TEST(Architecture, EveryFolderOfTheVolumeUnitSaysWhatItIs) {
+  const fs::path root = fs::path(UNDERSTUDY_SOURCE_DIR) / "spu/volume";
+  EXPECT_TRUE(fs::exists(root / "README.md"));
+  for (const auto& entry : fs::directory_iterator(root)) {
+    EXPECT_TRUE(!entry.is_directory() || fs::exists(entry.path() / "README.md")) << entry.path();
+  }
 }
 
 TEST(Architecture, TheBundledViewerIncludesNothingOfUnderstudy) {

@@ -10,6 +10,7 @@
 
 #include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
+#include "spu/track/share_group.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.

@@ -9,7 +9,7 @@
 #include "spu/chain.h"
 #include "spu/options.h"
 #include "spu/report/counters.h"
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/session/render_session.h"
 
 namespace understudy::spu::testing {
 

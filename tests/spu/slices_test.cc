@@ -38,8 +38,8 @@ Drawing full_slices(int count) {
 }
 
 std::string reason(const SliceFinding& finding) {
-  const auto* text = std::get_if<std::string>(&finding);
-  return text != nullptr ? *text : "slices";
+  const auto* refusal = std::get_if<Refusal>(&finding);
+  return refusal != nullptr ? refusal->reason : "slices";
 }
 
 TEST(Slices, GiveThePlanesFrontFirst) {

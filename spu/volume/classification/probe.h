@@ -12,31 +12,16 @@
 
 #include "spu/volume/classification/fog.h"
 #include "spu/volume/context/context.h"
-#include "spu/volume/geometry/capture.h"
+#include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/pipeline/pipeline.h"
+#include "spu/volume/refusal/refusal.h"
 #include "spu/volume/texture/texels.h"
 #include "volume/classification.h"
 
 namespace understudy::spu {
 
-/// What the fragment stage gets besides the sample.
-struct FragmentInputs {
-  std::shared_ptr<const ProgramRecord> record;  ///< null: fixed-function fragments
-  GLuint application = 0;                       ///< the application's program, for its uniforms
-  std::vector<StageInput> inputs;
-  std::string coordinate;
-  InputValues first;  ///< values of all inputs at one vertex, in the order of `inputs`
-  InputValues last;   ///< and at another: a colour that differs between them depends on more than the sample
-  InputRange range;   ///< of all inputs over the run
-  std::vector<std::size_t> segment_ends;  ///< inputs that may address the volume a second time
-};
-
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
 constexpr int probed_entries = 16 * 255 + 1;
-
-/// Of a float texture that reads like one of base format `base`: internal format, and format of its texels.
-GLenum probe_format(BaseFormat base);
-GLenum upload_format(BaseFormat base);
 
 /// What was found, for all runs whose inputs keep within a range.
 struct Probed {
@@ -47,7 +32,7 @@ struct Probed {
       segment_end{};  ///< the input that addresses the second samples of a pre-integration table
 };
 
-using ProbeFinding = std::variant<Probed, std::string>;
+using ProbeFinding = std::variant<Probed, Refusal>;
 
 /// `range` is the interval of texel values that the table covers. Uses the current context's fragment state
 /// (texture environment, alpha test, uniforms) and leaves it untouched.

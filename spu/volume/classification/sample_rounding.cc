@@ -35,6 +35,11 @@ volume::TransferFunction with_rounded_samples(const volume::TransferFunction& ta
   return rounded;
 }
 
+void round_samples(volume::Classification& colours) {
+  if (auto* const table = std::get_if<volume::TransferFunction>(&colours))
+    *table = with_rounded_samples(*table);
+}
+
 bool SampleRounding::try_after_loss(const TextureDescription& texture) {
   if (state_ == State::tried) state_ = State::refuted;
   if (state_ != State::exact) return false;

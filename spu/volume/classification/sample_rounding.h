@@ -15,6 +15,9 @@ namespace understudy::spu {
 /// The transfer function that gives every sample the colour that `table` has for the nearest multiple of 1/255.
 volume::TransferFunction with_rounded_samples(const volume::TransferFunction& table);
 
+/// The same of a table of colours; others stay as they are.
+void round_samples(volume::Classification& colours);
+
 /// Whether a volume's samples are taken exactly or rounded: exactly, until a comparison with the viewer's own
 /// image is lost; then rounded, if that comparison is won.
 class SampleRounding {

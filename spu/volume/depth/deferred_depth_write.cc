@@ -5,52 +5,52 @@
 
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
+#include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/draw_slots.h"
-#include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
 namespace {
 
-VolumeUnit& here() {
-  return *Chain::current()->find<VolumeUnit>();
+DrawObserver& here() {
+  return *Chain::current()->find<DrawObserver>();
 }
 
 /// A draw with a depth test, or a read: the answer would depend on the deferred depth.
 struct NoteDepthUse {
   static const DispatchTable& before(CallId call) {
-    VolumeUnit& unit = here();
+    DrawObserver& observer = here();
     // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
-    if (unit.inside_begin) return unit.chain().face(unit, Phase::watching);
+    if (observer.inside_begin) return observer.chain().face(observer, Phase::watching);
     const bool draw = kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists;
-    if (!draw || unit.context().gl->IsEnabled(GL_DEPTH_TEST)) unit.depth_looked_at();
-    return unit.chain().face(unit, Phase::watching);
+    if (!draw || observer.context().gl->IsEnabled(GL_DEPTH_TEST)) observer.depth_looked_at();
+    return observer.chain().face(observer, Phase::watching);
   }
 };
 
 void APIENTRY clear(GLbitfield mask) {
-  VolumeUnit& unit = here();
-  if ((mask & GL_DEPTH_BUFFER_BIT) != 0) unit.depth_cleared();
-  unit.next().Clear(mask);
+  DrawObserver& observer = here();
+  if ((mask & GL_DEPTH_BUFFER_BIT) != 0) observer.depth_cleared();
+  observer.next().Clear(mask);
 }
 
 void use_depth(bool used) {
-  VolumeUnit& unit = here();
-  if (used && !unit.inside_begin) unit.depth_looked_at();
+  DrawObserver& observer = here();
+  if (used && !observer.inside_begin) observer.depth_looked_at();
 }
 
 void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
                           void* pixels) {
   use_depth(format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL);
-  VolumeUnit& unit = here();
-  unit.chain().face(unit, Phase::watching).ReadPixels(x, y, width, height, format, type, pixels);
+  DrawObserver& observer = here();
+  observer.chain().face(observer, Phase::watching).ReadPixels(x, y, width, height, format, type, pixels);
 }
 
 void APIENTRY blit_framebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to_x0, GLint to_y0, GLint to_x1,
                                GLint to_y1, GLbitfield mask, GLenum filter) {
   use_depth((mask & GL_DEPTH_BUFFER_BIT) != 0);
-  VolumeUnit& unit = here();
-  unit.chain()
-      .face(unit, Phase::watching)
+  DrawObserver& observer = here();
+  observer.chain()
+      .face(observer, Phase::watching)
       .BlitFramebuffer(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);
 }
 

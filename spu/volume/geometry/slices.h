@@ -7,6 +7,7 @@
 
 #include "spu/volume/geometry/fit.h"
 #include "spu/volume/geometry/polygon.h"
+#include "spu/volume/refusal/refusal.h"
 #include "volume/sampling.h"
 
 namespace understudy::spu {
@@ -20,7 +21,7 @@ struct SliceSet {
 enum class SliceOrder { back_to_front, front_to_back, any };
 
 /// Either the slices, or why they are none, in words that end in the report ("slices are not equally spaced").
-using SliceFinding = std::variant<SliceSet, std::string>;
+using SliceFinding = std::variant<SliceSet, Refusal>;
 
 /// `clip_planes` are the application's own, in texture space. The polygons must be exactly what the planes cut
 /// out of the region and the clip planes (and of the view volume, where `polygons.clipped`): their area is the

@@ -1,20 +1,20 @@
 #include "spu/volume/observation/array_calls.h"
 
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
 namespace {
 
 /// The table below, with the run closed where it still needs the arrays as they are.
 const DispatchTable& before_change() {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  if (unit.run_open() && (unit.run().reads_arrays || unit.run().inside_begin)) unit.close_run();
-  return unit.next();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  if (observer.run_open() && (observer.run().reads_arrays || observer.run().inside_begin)) observer.close_run();
+  return observer.next();
 }
 
 /// The table below, with the run closed unless the answer is about arrays: nothing in a run changes those.
 const DispatchTable& before_question(GLenum name) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
   bool about_arrays = false;
   switch (name) {
     case GL_ARRAY_BUFFER_BINDING:
@@ -43,8 +43,8 @@ const DispatchTable& before_question(GLenum name) {
                      (name >= GL_SECONDARY_COLOR_ARRAY_SIZE && name <= GL_SECONDARY_COLOR_ARRAY) ||
                      (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
   }
-  if (unit.run_open() && (!about_arrays || unit.run().inside_begin)) unit.close_run();
-  return unit.next();
+  if (observer.run_open() && (!about_arrays || observer.run().inside_begin)) observer.close_run();
+  return observer.next();
 }
 
 void APIENTRY get_integer(GLenum name, GLint* value) {
@@ -73,12 +73,12 @@ void APIENTRY get_buffer_64(GLenum target, GLenum name, GLint64* value) {
 }
 
 void APIENTRY bind_buffer(GLenum target, GLuint buffer) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
   if (target == GL_ARRAY_BUFFER || target == GL_ELEMENT_ARRAY_BUFFER) {
     before_change().BindBuffer(target, buffer);
   } else {
-    unit.close_run();
-    unit.next().BindBuffer(target, buffer);
+    observer.close_run();
+    observer.next().BindBuffer(target, buffer);
   }
 }
 void APIENTRY client_active_texture(GLenum texture) {

@@ -1,22 +1,22 @@
 #include "spu/volume/observation/conditional_render.h"
 
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
 namespace {
 
 template <auto Slot>
 void APIENTRY begin(GLuint query, GLenum mode) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  unit.conditional_render = true;
-  (unit.next().*Slot)(query, mode);
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  observer.conditional_render = true;
+  (observer.next().*Slot)(query, mode);
 }
 
 template <auto Slot>
 void APIENTRY end() {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  unit.conditional_render = false;
-  (unit.next().*Slot)();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  observer.conditional_render = false;
+  (observer.next().*Slot)();
 }
 
 }  // namespace

@@ -13,9 +13,9 @@
 #include "spu/volume/observation/array_calls.h"
 #include "spu/volume/observation/client_arrays.h"
 #include "spu/volume/observation/conditional_render.h"
+#include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/passing_calls.h"
 #include "spu/volume/observation/texture_changes.h"
-#include "spu/volume/volume_unit.h"
 
 namespace understudy::spu {
 namespace {
@@ -23,83 +23,83 @@ namespace {
 /// More elements in one draw than this are no slices.
 constexpr GLsizei most_elements = 1 << 22;
 
-VolumeUnit& here() {
-  return *Chain::current()->find<VolumeUnit>();
+DrawObserver& here() {
+  return *Chain::current()->find<DrawObserver>();
 }
 
 struct CloseRun {
   static const DispatchTable& before(CallId call) {
-    VolumeUnit& unit = here();
-    unit.close_run();
-    if (!passes_held_runs(call)) unit.settle_held();
+    DrawObserver& observer = here();
+    observer.close_run();
+    if (!passes_held_runs(call)) observer.settle_held();
     // The call may be one that is looked at in the phase that is entered now.
-    const Phase phase = unit.chain().phase();
-    return phase == Phase::deferring ? unit.next() : unit.chain().face(unit, phase);
+    const Phase phase = observer.chain().phase();
+    return phase == Phase::deferring ? observer.next() : observer.chain().face(observer, phase);
   }
 };
 
 template <auto Slot>
 void APIENTRY switch_capability(GLenum capability) {
-  VolumeUnit& unit = here();
-  unit.close_run();
-  if (!passes_held_runs(capability)) unit.settle_held();
-  (unit.next().*Slot)(capability);
+  DrawObserver& observer = here();
+  observer.close_run();
+  if (!passes_held_runs(capability)) observer.settle_held();
+  (observer.next().*Slot)(capability);
 }
 
 struct IntoRun {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
-    VolumeUnit& unit = here();
-    if (unit.run_open()) {
-      append_plain_call(unit.run().calls(), call, words);
+    DrawObserver& observer = here();
+    if (observer.run_open()) {
+      append_plain_call(observer.run().calls(), call, words);
     } else {
       Records one;
       append_plain_call(one, call, words);
-      make_plain_calls(one.words(), unit.next());
+      make_plain_calls(one.words(), observer.next());
     }
     return 0;
   }
 };
 
 /// Keeps the draw in the open run, or opens one; false: the application's draw is to be made now.
-bool joins_run(VolumeUnit& unit) {
-  return unit.run_open() || unit.opens_run();
+bool joins_run(DrawObserver& observer) {
+  return observer.run_open() || observer.opens_run();
 }
 
 void APIENTRY begin(GLenum mode) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit)) {
-    unit.inside_begin = true;
-    return unit.next().Begin(mode);
+  DrawObserver& observer = here();
+  if (!joins_run(observer)) {
+    observer.inside_begin = true;
+    return observer.next().Begin(mode);
   }
-  append_call(unit.run().calls(), &DispatchTable::Begin, mode);
-  unit.run().inside_begin = true;
-  ++unit.run().draws;
+  append_call(observer.run().calls(), &DispatchTable::Begin, mode);
+  observer.run().inside_begin = true;
+  ++observer.run().draws;
 }
 
 void APIENTRY end_in_run() {
-  VolumeUnit& unit = here();
-  if (!unit.run_open()) return unit.next().End();
-  Run& run = unit.run();
+  DrawObserver& observer = here();
+  if (!observer.run_open()) return observer.next().End();
+  Run& run = observer.run();
   append_call(run.calls(), &DispatchTable::End);
   run.inside_begin = false;
 }
 
 void APIENTRY end_while_watching() {
-  VolumeUnit& unit = here();
-  unit.inside_begin = false;
-  unit.next().End();
+  DrawObserver& observer = here();
+  observer.inside_begin = false;
+  observer.next().End();
 }
 
 void APIENTRY call_list(GLuint list) {
-  VolumeUnit& unit = here();
-  const auto record = unit.chain().group().list(list);
+  DrawObserver& observer = here();
+  const auto record = observer.chain().group().list(list);
   const bool slices = record && record->draws && record->only_geometry;
-  if (!slices || !joins_run(unit)) {
-    unit.settle();
-    return unit.next().CallList(list);
+  if (!slices || !joins_run(observer)) {
+    observer.settle();
+    return observer.next().CallList(list);
   }
-  append_call(unit.run().calls(), &DispatchTable::CallList, list);
-  ++unit.run().draws;
+  append_call(observer.run().calls(), &DispatchTable::CallList, list);
+  ++observer.run().draws;
 }
 
 /// Whether a count is that of slices: whatever is in error, or enormous, the application draws itself.
@@ -109,12 +109,13 @@ bool all_wait(std::span<const GLsizei> counts) {
 }
 
 /// Adds one draw of vertices `first[i]`... to the run; false when its arrays are not of a kind that can wait.
-bool defer_arrays(VolumeUnit& unit, GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count) {
+bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> first,
+                  std::span<const GLsizei> count) {
   ArraySources sources;
   if (!all_wait(count) || std::any_of(first.begin(), first.end(), [](GLint f) { return f < 0; }) ||
-      read_array_sources(unit.context(), sources))
+      read_array_sources(observer.context(), sources))
     return false;
-  Run& run = unit.run();
+  Run& run = observer.run();
   if (sources.client_memory) {
     for (std::size_t i = 0; i < count.size(); ++i) {
       std::vector<std::uint32_t> indices(static_cast<std::size_t>(count[i]));
@@ -133,18 +134,18 @@ bool defer_arrays(VolumeUnit& unit, GLenum mode, std::span<const GLint> first, s
 }
 
 void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
-  VolumeUnit& unit = here();
-  if (joins_run(unit) && defer_arrays(unit, mode, {&first, 1}, {&count, 1})) return;
-  unit.settle();
-  unit.next().DrawArrays(mode, first, count);
+  DrawObserver& observer = here();
+  if (joins_run(observer) && defer_arrays(observer, mode, {&first, 1}, {&count, 1})) return;
+  observer.settle();
+  observer.next().DrawArrays(mode, first, count);
 }
 
 void APIENTRY multi_draw_arrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
-  VolumeUnit& unit = here();
+  DrawObserver& observer = here();
   const auto n = std::size_t(std::max(draws, 0));
-  if (n > 0 && joins_run(unit) && defer_arrays(unit, mode, {first, n}, {count, n})) return;
-  unit.settle();
-  unit.next().MultiDrawArrays(mode, first, count, draws);
+  if (n > 0 && joins_run(observer) && defer_arrays(observer, mode, {first, n}, {count, n})) return;
+  observer.settle();
+  observer.next().MultiDrawArrays(mode, first, count, draws);
 }
 
 std::size_t index_size(GLenum type) {
@@ -164,17 +165,17 @@ std::vector<std::uint32_t> elements_in_memory(const ElementPart& range, std::siz
   return elements;
 }
 
-bool defer_elements(VolumeUnit& unit, GLenum mode, std::span<const ElementPart> ranges, GLenum type) {
-  const DispatchTable& gl = unit.next();
+bool defer_elements(DrawObserver& observer, GLenum mode, std::span<const ElementPart> ranges, GLenum type) {
+  const DispatchTable& gl = observer.next();
   ArraySources sources;
   const std::size_t size = index_size(type);
   const bool can_wait = std::all_of(ranges.begin(), ranges.end(), [](const ElementPart& range) {
     return range.count >= 0 && range.count <= most_elements;
   });
-  if (!can_wait || size == 0 || read_array_sources(unit.context(), sources)) return false;
+  if (!can_wait || size == 0 || read_array_sources(observer.context(), sources)) return false;
   GLint element_buffer = 0;
   gl.GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
-  Run& run = unit.run();
+  Run& run = observer.run();
   const bool somewhere = std::all_of(ranges.begin(), ranges.end(),
                                      [](const ElementPart& range) { return range.offset != nullptr; });
   if (element_buffer != 0 && !sources.client_memory) {
@@ -191,63 +192,64 @@ bool defer_elements(VolumeUnit& unit, GLenum mode, std::span<const ElementPart> 
 }
 
 /// One range of elements: the run takes it, or the application draws.
-bool joins_run(VolumeUnit& unit, GLenum mode, const ElementPart& range, GLenum type) {
-  if (joins_run(unit) && defer_elements(unit, mode, {&range, 1}, type)) return true;
-  unit.settle();
+bool joins_run(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type) {
+  if (joins_run(observer) && defer_elements(observer, mode, {&range, 1}, type)) return true;
+  observer.settle();
   return false;
 }
 
 void APIENTRY draw_elements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, {count, indices}, type)) unit.next().DrawElements(mode, count, type, indices);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, {count, indices}, type))
+    observer.next().DrawElements(mode, count, type, indices);
 }
 
 void APIENTRY draw_range_elements(GLenum mode, GLuint start, GLuint stop, GLsizei count, GLenum type,
                                   const void* indices) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, {count, indices}, type))
-    unit.next().DrawRangeElements(mode, start, stop, count, type, indices);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, {count, indices}, type))
+    observer.next().DrawRangeElements(mode, start, stop, count, type, indices);
 }
 
 void APIENTRY draw_elements_base_vertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
                                         GLint base_vertex) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, {count, indices, base_vertex}, type))
-    unit.next().DrawElementsBaseVertex(mode, count, type, indices, base_vertex);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, {count, indices, base_vertex}, type))
+    observer.next().DrawElementsBaseVertex(mode, count, type, indices, base_vertex);
 }
 
 void APIENTRY draw_range_elements_base_vertex(GLenum mode, GLuint start, GLuint stop, GLsizei count,
                                               GLenum type, const void* indices, GLint base_vertex) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, {count, indices, base_vertex}, type))
-    unit.next().DrawRangeElementsBaseVertex(mode, start, stop, count, type, indices, base_vertex);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, {count, indices, base_vertex}, type))
+    observer.next().DrawRangeElementsBaseVertex(mode, start, stop, count, type, indices, base_vertex);
 }
 
 /// Several ranges by one call, without base vertices where `base_vertices` is null.
-bool joins_run(VolumeUnit& unit, GLenum mode, GLsizei draws, const GLsizei* count, const void* const* indices,
-               const GLint* base_vertices, GLenum type) {
+bool joins_run(DrawObserver& observer, GLenum mode, GLsizei draws, const GLsizei* count,
+               const void* const* indices, const GLint* base_vertices, GLenum type) {
   std::vector<ElementPart> ranges;
   ranges.reserve(std::size_t(std::max(draws, 0)));
   for (GLsizei i = 0; i < draws; ++i)
     ranges.push_back({count[i], indices[i], base_vertices != nullptr ? base_vertices[i] : 0});
-  if (!ranges.empty() && joins_run(unit) && defer_elements(unit, mode, ranges, type)) return true;
-  unit.settle();
+  if (!ranges.empty() && joins_run(observer) && defer_elements(observer, mode, ranges, type)) return true;
+  observer.settle();
   return false;
 }
 
 void APIENTRY multi_draw_elements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
                                   GLsizei draws) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, draws, count, indices, nullptr, type))
-    unit.next().MultiDrawElements(mode, count, type, indices, draws);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, draws, count, indices, nullptr, type))
+    observer.next().MultiDrawElements(mode, count, type, indices, draws);
 }
 
 void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count, GLenum type,
                                               const void* const* indices, GLsizei draws,
                                               const GLint* base_vertices) {
-  VolumeUnit& unit = here();
-  if (!joins_run(unit, mode, draws, count, indices, base_vertices, type))
-    unit.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
+  DrawObserver& observer = here();
+  if (!joins_run(observer, mode, draws, count, indices, base_vertices, type))
+    observer.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
 
 /// As OpenGL lays draws out in a buffer.
@@ -262,9 +264,10 @@ struct ElementsCommand {
 
 /// The draws that `indirect` points at; none where they cannot be read, are in error, or have instances.
 template <class Command>
-std::vector<Command> indirect_commands(VolumeUnit& unit, const void* indirect, GLsizei draws, GLsizei stride) {
+std::vector<Command> indirect_commands(DrawObserver& observer, const void* indirect, GLsizei draws,
+                                       GLsizei stride) {
   constexpr GLsizei most_draws = 1 << 16;
-  const DispatchTable& gl = unit.next();
+  const DispatchTable& gl = observer.next();
   const std::size_t step = stride != 0 ? std::size_t(stride) : sizeof(Command);
   if (draws <= 0 || draws > most_draws || stride < 0 || step % 4 != 0) return {};
   const std::size_t bytes = step * std::size_t(draws - 1) + sizeof(Command);
@@ -280,7 +283,7 @@ std::vector<Command> indirect_commands(VolumeUnit& unit, const void* indirect, G
     if (mapped != 0 || offset % 4 != 0 || offset > std::size_t(size) || bytes > std::size_t(size) - offset)
       return {};
     gl.GetBufferSubData(GL_DRAW_INDIRECT_BUFFER, GLintptr(offset), GLsizeiptr(bytes), memory.data());
-  } else if (!unit.context().core && indirect != nullptr) {
+  } else if (!observer.context().core && indirect != nullptr) {
     std::memcpy(memory.data(), indirect, bytes);
   } else {
     return {};
@@ -294,81 +297,82 @@ std::vector<Command> indirect_commands(VolumeUnit& unit, const void* indirect, G
   return plain ? commands : std::vector<Command>{};
 }
 
-bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
-  if (joins_run(unit)) {
+bool joins_run_indirectly(DrawObserver& observer, GLenum mode, const void* indirect, GLsizei draws,
+                          GLsizei stride) {
+  if (joins_run(observer)) {
     std::vector<GLint> first;
     std::vector<GLsizei> count;
-    for (const auto& command : indirect_commands<ArraysCommand>(unit, indirect, draws, stride)) {
+    for (const auto& command : indirect_commands<ArraysCommand>(observer, indirect, draws, stride)) {
       first.push_back(GLint(command.first));
       count.push_back(GLsizei(command.count));
     }
-    if (!count.empty() && defer_arrays(unit, mode, first, count)) return true;
+    if (!count.empty() && defer_arrays(observer, mode, first, count)) return true;
   }
-  unit.settle();
+  observer.settle();
   return false;
 }
 
-bool joins_run_indirectly(VolumeUnit& unit, GLenum mode, GLenum type, const void* indirect, GLsizei draws,
+bool joins_run_indirectly(DrawObserver& observer, GLenum mode, GLenum type, const void* indirect, GLsizei draws,
                           GLsizei stride) {
-  if (joins_run(unit)) {
+  if (joins_run(observer)) {
     std::vector<ElementPart> parts;
-    for (const auto& command : indirect_commands<ElementsCommand>(unit, indirect, draws, stride)) {
+    for (const auto& command : indirect_commands<ElementsCommand>(observer, indirect, draws, stride)) {
       const std::uintptr_t offset = std::uintptr_t(command.first_index) * index_size(type);
       parts.push_back({GLsizei(command.count), reinterpret_cast<const void*>(offset), command.base_vertex});
     }
     GLint element_buffer = 0;
-    unit.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
-    if (element_buffer != 0 && !parts.empty() && defer_elements(unit, mode, parts, type)) return true;
+    observer.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+    if (element_buffer != 0 && !parts.empty() && defer_elements(observer, mode, parts, type)) return true;
   }
-  unit.settle();
+  observer.settle();
   return false;
 }
 
 void APIENTRY draw_arrays_indirect(GLenum mode, const void* indirect) {
-  VolumeUnit& unit = here();
-  if (!joins_run_indirectly(unit, mode, indirect, 1, 0)) unit.next().DrawArraysIndirect(mode, indirect);
+  DrawObserver& observer = here();
+  if (!joins_run_indirectly(observer, mode, indirect, 1, 0)) observer.next().DrawArraysIndirect(mode, indirect);
 }
 
 void APIENTRY draw_elements_indirect(GLenum mode, GLenum type, const void* indirect) {
-  VolumeUnit& unit = here();
-  if (!joins_run_indirectly(unit, mode, type, indirect, 1, 0))
-    unit.next().DrawElementsIndirect(mode, type, indirect);
+  DrawObserver& observer = here();
+  if (!joins_run_indirectly(observer, mode, type, indirect, 1, 0))
+    observer.next().DrawElementsIndirect(mode, type, indirect);
 }
 
 void APIENTRY multi_draw_arrays_indirect(GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
-  VolumeUnit& unit = here();
-  if (!joins_run_indirectly(unit, mode, indirect, draws, stride))
-    unit.next().MultiDrawArraysIndirect(mode, indirect, draws, stride);
+  DrawObserver& observer = here();
+  if (!joins_run_indirectly(observer, mode, indirect, draws, stride))
+    observer.next().MultiDrawArraysIndirect(mode, indirect, draws, stride);
 }
 
 void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void* indirect, GLsizei draws,
                                            GLsizei stride) {
-  VolumeUnit& unit = here();
-  if (!joins_run_indirectly(unit, mode, type, indirect, draws, stride))
-    unit.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
+  DrawObserver& observer = here();
+  if (!joins_run_indirectly(observer, mode, type, indirect, draws, stride))
+    observer.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
 }
 
 /// More textures in a row than this are no stack.
 constexpr std::size_t most_slices = 4096;
 
 void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
-  VolumeUnit& unit = here();
-  const bool slice = unit.run_open() && unit.run().pipeline().stack && target == GL_TEXTURE_2D &&
-                     texture != 0 && !unit.run().inside_begin && unit.run().draws < most_slices;
-  if (slice) return unit.run().bind_slice(texture);
-  unit.close_run();
-  unit.next().BindTexture(target, texture);
+  DrawObserver& observer = here();
+  const bool slice = observer.run_open() && observer.run().pipeline().stack && target == GL_TEXTURE_2D &&
+                     texture != 0 && !observer.run().inside_begin && observer.run().draws < most_slices;
+  if (slice) return observer.run().bind_slice(texture);
+  observer.close_run();
+  observer.next().BindTexture(target, texture);
 }
 
 /// Who names the unit again before every slice changes nothing.
 void APIENTRY active_texture_in_run(GLenum texture) {
-  VolumeUnit& unit = here();
-  const Pipeline* const pipeline = unit.run_open() ? &unit.run().pipeline() : nullptr;
+  DrawObserver& observer = here();
+  const Pipeline* const pipeline = observer.run_open() ? &observer.run().pipeline() : nullptr;
   if (pipeline != nullptr && pipeline->stack && texture == GLenum(GL_TEXTURE0 + pipeline->volume.unit) &&
-      !unit.run().inside_begin)
+      !observer.run().inside_begin)
     return;
-  unit.close_run();
-  unit.next().ActiveTexture(texture);
+  observer.close_run();
+  observer.next().ActiveTexture(texture);
 }
 
 void fill_draws(DispatchTable& table) {

@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "spu/track/share_group.h"
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
 namespace {
 
 void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  const DispatchTable& next = unit.next();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  const DispatchTable& next = observer.next();
   if (binary == nullptr || length <= 0) return next.ProgramBinary(program, format, binary, length);
   const std::span bytes(static_cast<const std::byte*>(binary), std::size_t(length));
-  if (unit.chain().group().programs().knows_binary(bytes))
+  if (observer.chain().group().programs().knows_binary(bytes))
     return next.ProgramBinary(program, format, binary, length);
   // The driver itself says no: to so many bytes that are no program.
   const std::vector<std::byte> no_program(bytes.size());

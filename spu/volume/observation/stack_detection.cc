@@ -1,6 +1,6 @@
 #include "spu/volume/observation/stack_detection.h"
 
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
 namespace {
@@ -9,26 +9,26 @@ namespace {
 constexpr int suspicious_length = 16;
 constexpr GLsizei smallest_edge = 16;
 
-void defined(VolumeUnit& unit, GLenum target, GLint level, GLsizei width, GLsizei height) {
-  if (target != GL_TEXTURE_2D || level != 0 || !unit.stack_detection.continues(width, height)) return;
+void defined(DrawObserver& observer, GLenum target, GLint level, GLsizei width, GLsizei height) {
+  if (target != GL_TEXTURE_2D || level != 0 || !observer.stacks.detection.continues(width, height)) return;
   GLint texture = 0;
-  unit.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
-  if (unit.stack_detection.add(GLuint(texture))) unit.stack_defined();
+  observer.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
+  if (observer.stacks.detection.add(GLuint(texture))) observer.stack_defined();
 }
 
 void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,
                            GLint border, GLenum format, GLenum type, const void* pixels) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  const DispatchTable& next = unit.next();
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  const DispatchTable& next = observer.next();
   next.TexImage2D(target, level, internal_format, width, height, border, format, type, pixels);
-  defined(unit, target, level, width, height);
+  defined(observer, target, level, width, height);
 }
 
 void APIENTRY tex_storage_2d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
                              GLsizei height) {
-  VolumeUnit& unit = *Chain::current()->find<VolumeUnit>();
-  unit.next().TexStorage2D(target, levels, internal_format, width, height);
-  defined(unit, target, 0, width, height);
+  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  observer.next().TexStorage2D(target, levels, internal_format, width, height);
+  defined(observer, target, 0, width, height);
 }
 }  // namespace
 

@@ -8,38 +8,38 @@
 #include "dispatch/pass_through.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
-#include "spu/volume/volume_unit.h"
+#include "spu/volume/observation/draw_observer.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {
 namespace {
 
-VolumeUnit& here() {
-  return *Chain::current()->find<VolumeUnit>();
+DrawObserver& here() {
+  return *Chain::current()->find<DrawObserver>();
 }
 
 /// The textures of `dimensions` dimensions bound to the active unit are about to change.
-void bound_textures_change(VolumeUnit& unit, int dimensions) {
+void bound_textures_change(DrawObserver& observer, int dimensions) {
   constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
       {{GL_TEXTURE_BINDING_1D, 0},
        {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_RECTANGLE},
        {GL_TEXTURE_BINDING_3D, 0}}};
   for (const GLenum binding : bindings[std::size_t(dimensions - 1)]) {
     GLint texture = 0;
-    if (binding != 0) unit.context().gl->GetIntegerv(binding, &texture);
-    if (texture != 0) unit.chain().group().texture_changed(GLuint(texture));
+    if (binding != 0) observer.context().gl->GetIntegerv(binding, &texture);
+    if (texture != 0) observer.chain().group().texture_changed(GLuint(texture));
   }
 }
 
 struct NoteTextureChange {
   static const DispatchTable& before(CallId call) {
-    VolumeUnit& unit = here();
-    if (kind_of(call) == CallKind::bound_texture && !unit.inside_begin) {
-      bound_textures_change(unit, texture_dimensions(call));
+    DrawObserver& observer = here();
+    if (kind_of(call) == CallKind::bound_texture && !observer.inside_begin) {
+      bound_textures_change(observer, texture_dimensions(call));
     } else {
-      unit.chain().group().some_texture_changed();
+      observer.chain().group().some_texture_changed();
     }
-    return unit.next();
+    return observer.next();
   }
 };
 
@@ -49,9 +49,9 @@ struct ChangesNamedTexture;
 template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
 struct ChangesNamedTexture<Slot> {
   static void APIENTRY call(GLuint texture, A... arguments) {
-    VolumeUnit& unit = here();
-    unit.chain().group().texture_changed(texture);
-    (unit.next().*Slot)(texture, arguments...);
+    DrawObserver& observer = here();
+    observer.chain().group().texture_changed(texture);
+    (observer.next().*Slot)(texture, arguments...);
   }
 };
 
@@ -65,12 +65,12 @@ volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height
 
 /// A box of one level of the texture bound to `target` is about to change.
 void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) {
-  VolumeUnit& unit = here();
+  DrawObserver& observer = here();
   GLint texture = 0;
-  if (target == GL_TEXTURE_3D && level == 0 && !unit.inside_begin)
-    unit.context().gl->GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
+  if (target == GL_TEXTURE_3D && level == 0 && !observer.inside_begin)
+    observer.context().gl->GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
   if (texture != 0) {
-    unit.chain().group().texture_changed(GLuint(texture), box);
+    observer.chain().group().texture_changed(GLuint(texture), box);
   } else {
     NoteTextureChange::before(CallId::TexSubImage3D);
   }

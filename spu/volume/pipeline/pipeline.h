@@ -12,6 +12,7 @@
 #include "spu/volume/pipeline/blending.h"
 #include "spu/volume/pipeline/program_samplers.h"
 #include "spu/volume/pipeline/target.h"
+#include "spu/volume/refusal/refusal.h"
 
 namespace understudy::spu {
 
@@ -45,7 +46,7 @@ struct NotAVolume {};
 /// The draw samples a volume, but in a way that is not taken over; the reason goes to the report.
 struct LeftAlone {
   GLuint texture = 0;
-  std::string reason;
+  Refusal refusal;
 };
 
 using PipelineFinding = std::variant<NotAVolume, LeftAlone, Pipeline>;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spu/volume/classification/probe.h"
-
 namespace understudy::spu {
 namespace {
 

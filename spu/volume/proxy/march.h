@@ -7,16 +7,12 @@
 
 #include <limits>
 #include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 
-#include "spu/track/share_group.h"
-#include "spu/volume/geometry/capture.h"
-#include "spu/volume/pipeline/program_stages.h"
-#include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/coordinate_space.h"
 #include "spu/volume/proxy/jitter.h"
-#include "spu/volume/texture/texels.h"
+#include "spu/volume/refusal/refusal.h"
 #include "volume/blending_operator.h"
 #include "volume/classification.h"
 #include "volume/image.h"
@@ -27,20 +23,6 @@ struct RenderRequest;
 }
 
 namespace understudy::spu {
-
-/// Texture coordinate = scale * input + offset, axis by axis.
-struct CoordinateSpace {
-  std::string input;
-  volume::Vec3 scale{1, 1, 1};
-  volume::Vec3 offset{};
-};
-
-/// The box of one draw, in texture space.
-struct ProxyBox {
-  volume::Box region;
-  CameraFit camera;
-  std::vector<volume::HalfSpace> cuts;  ///< where the application has cut it off before the near plane
-};
 
 /// Samples that are added up, where opacity says no more than that there are any.
 struct PlainSum {
@@ -64,41 +46,8 @@ struct March {
   double past_planes = 0;          ///< samples up to so many steps behind one by which a ray leaves still count
 };
 
-/// What a march was measured under. While `fixed` stays, and a look at a few rays says so, it holds: the camera
-/// is among the inputs that vary.
-struct MarchInputs {
-  std::vector<float> fixed;
-  std::vector<float> varying;
-  bool operator==(const MarchInputs&) const = default;
-};
-
-/// Everything that `run` is measured on.
-struct MarchContext {
-  const GlContext& context;
-  const Run& run;
-  const ProgramStages& stages;
-  const TextureDescription& texture;
-  std::array<float, 2> range;     ///< of the texels' values
-  bool clipped = false;           ///< rays begin or end at clipping planes
-  const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
-};
-
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);
-
-/// Whether the draw covers a whole box in some input of the fragment stage; `seen` is one that was captured
-/// already.
-bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen);
-
-/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole box
-/// that fits the texture's.
-std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
-
-/// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has
-/// cut it).
-std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space);
-
 /// Either marches that may be the application's, or why there are none, in words that end in the report.
-using MarchFinding = std::variant<std::vector<March>, std::string>;
+using MarchFinding = std::variant<std::vector<March>, Refusal>;
 MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
                            const ProxyBox& box);
 
@@ -106,8 +55,8 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
 /// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
-std::variant<March, std::string> with_new_steps(const MarchContext& measured, const March& march,
-                                                const ProxyBox& box);
+std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
+                                            const ProxyBox& box);
 
 /// Whether a few rays still are as `march` says.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);

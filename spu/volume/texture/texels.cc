@@ -311,4 +311,32 @@ std::array<float, 2> value_range(const TextureDescription& description, std::arr
   return range;
 }
 
+GLenum probe_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE32F_ARB;
+    case BaseFormat::intensity:
+      return GL_INTENSITY32F_ARB;
+    case BaseFormat::alpha:
+      return GL_ALPHA32F_ARB;
+    case BaseFormat::rgba:
+      return GL_RGBA32F;
+    default:
+      return GL_R32F;
+  }
+}
+
+GLenum upload_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE;
+    case BaseFormat::alpha:
+      return GL_ALPHA;
+    case BaseFormat::rgba:
+      return GL_RGBA;
+    default:
+      return GL_RED;
+  }
+}
+
 }  // namespace understudy::spu

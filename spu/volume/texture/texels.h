@@ -39,6 +39,10 @@ struct TextureDescription {
 std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
                                             TextureDescription& description);
 
+/// Of a float texture that reads like one of base format `base`: internal format, and format of its texels.
+GLenum probe_format(BaseFormat base);
+GLenum upload_format(BaseFormat base);
+
 /// Where texels are read from, any box of them. Expects tight pixel packing (SavedState).
 class TexelSource {
  public:

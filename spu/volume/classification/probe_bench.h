@@ -1,0 +1,92 @@
+// Where the application's fragment pipeline is shown texels that are known: a float framebuffer of its own, a
+// texture in the place of the volume, and a program whose inputs are given.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spu/volume/classification/colour_difference.h"
+#include "spu/volume/classification/probe.h"
+#include "spu/volume/context/saved_state.h"
+#include "volume/rgba.h"
+
+namespace understudy::spu {
+
+/// Both the probe's image and its texture are squares of this edge: one texel a pixel.
+constexpr int probe_edge = 64;
+constexpr int probe_pixels = probe_edge * probe_edge;
+static_assert(probed_entries <= probe_pixels);
+/// Two probes of one sample agree to this; interpolation of our own inputs is exact, so only rounding remains.
+constexpr float same_colour = 2e-4F;
+/// Fog is interpolated between values of its number.
+constexpr float same_fogged_colour = 4e-3F;
+
+/// Row by row, one fragment a pixel.
+using ProbedImage = std::vector<volume::Rgba>;
+
+/// The framebuffer, textures and vertex array of one probing; all gone afterwards.
+class ProbeBench {
+ public:
+  ProbeBench(const GlContext& context, const Pipeline& pipeline);
+  ~ProbeBench();
+  ProbeBench(const ProbeBench&) = delete;
+  ProbeBench& operator=(const ProbeBench&) = delete;
+
+  bool complete() const { return gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }
+  void own(GLuint program) { program_ = program; }
+  GLuint program() const { return program_; }
+
+  /// Texels of the probe volume: width x height x 1, `components` floats each.
+  void show(GLenum internal_format, GLenum format, int width, int height, const std::vector<float>& texels,
+            const std::array<GLint, 4>& swizzle, bool with_swizzle) {
+    show(internal_format, format, {width, height, 1}, texels, GL_NEAREST, swizzle, with_swizzle);
+  }
+  void show(GLenum internal_format, GLenum format, const std::array<int, 3>& size,
+            const std::vector<float>& texels, GLenum filter, const std::array<GLint, 4>& swizzle,
+            bool with_swizzle);
+
+  /// One fragment a pixel; a pixel whose fragment was discarded keeps `background`. `across` and `up`: by how
+  /// much inputs grow over the image's edges; empty where they are constant.
+  ProbedImage draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
+                   const InputValues& across = {}, const InputValues& up = {});
+
+  bool alpha_test_enabled() const { return alpha_test_; }
+
+ private:
+  void give(const char* name, const InputValues& values);
+
+  const DispatchTable& gl_;
+  GLenum target_;
+  bool alpha_test_;  ///< asked before SavedState switches it off
+  SavedState saved_;
+  GLuint texture_ = 0;
+  GLuint colour_ = 0;
+  GLuint framebuffer_ = 0;
+  GLuint vertex_array_ = 0;
+  GLuint program_ = 0;
+};
+
+/// The values of all inputs but the coordinate, in the order in which the probe program numbers them.
+InputValues without_coordinate(const FragmentInputs& fragment, const InputValues& values);
+
+/// One component of one input.
+struct InputNumber {
+  std::size_t input = 0;  ///< in the order of FragmentInputs::inputs
+  std::size_t component = 0;
+};
+
+/// The numbers that vary over the run, the coordinate left out.
+std::vector<InputNumber> varying_numbers(const FragmentInputs& fragment);
+
+/// The range, and as much again on both sides where it is one: a view that turns does not ask for another
+/// probe.
+InputRange widened(InputRange range, const std::vector<InputNumber>& numbers);
+
+/// Not a number where one of the colours is none.
+float largest_difference(const ProbedImage& a, const ProbedImage& b);
+
+/// As the application's framebuffer stores fragments before it blends them: clamped, unless it is `floating`.
+/// False where a float framebuffer would hold what cannot be composed.
+bool clamp_as_stored(volume::Rgba& colour, bool floating);
+
+}  // namespace understudy::spu

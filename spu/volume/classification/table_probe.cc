@@ -1,0 +1,238 @@
+#include "spu/volume/classification/table_probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "volume/blending_operator.h"
+
+namespace understudy::spu {
+namespace {
+
+constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
+
+/// Whether colours change where the field has a slope: the application looks at more than one place, which flat
+/// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
+/// for about its value.
+bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
+                     const std::array<float, 2>& range, const InputValues& inputs, const ProbedImage& table,
+                     bool stack) {
+  constexpr int weight_error = 32;  // entries: hardware may weight texels by 8 bits
+  const std::array<double, 3> slope{1.0 / 6, 2.0 / 6, stack ? 0 : 3.0 / 6};
+  const double extent = double(range[1]) - range[0];
+  std::vector<float> texels;
+  for (int i = 0; i < 8; ++i) {
+    const double place = (i & 1) * slope[0] + (i >> 1 & 1) * slope[1] + (i >> 2) * slope[2];
+    texels.push_back(float(range[0] + place * extent));
+  }
+  bench.show(probe_format(texture.base), upload_format(texture.base), {2, 2, 2}, texels, GL_LINEAR,
+             texture.swizzle, context.version >= 330);
+  const ProbedImage image = bench.draw(inputs, true);
+  // Between the texels' centres, and away from them: the slope has a bend there.
+  for (int y = probe_edge / 4 + 2; y < 3 * probe_edge / 4 - 2; ++y) {
+    for (int x = probe_edge / 4 + 2; x < 3 * probe_edge / 4 - 2; ++x) {
+      const double place = slope[0] * ((x + 0.5) / probe_edge * 2 - 0.5) +
+                           slope[1] * ((y + 0.5) / probe_edge * 2 - 0.5) + slope[2] * 0.5;
+      const int entry = int(std::lround(place * (probed_entries - 1)));
+      const volume::Rgba& colour = image[std::size_t(y) * probe_edge + std::size_t(x)];
+      for (std::size_t c = 0; c < 4; ++c) {
+        float low = std::numeric_limits<float>::max();
+        float high = std::numeric_limits<float>::lowest();
+        for (int i = std::max(entry - weight_error, 0); i <= std::min(entry + weight_error, probed_entries - 1);
+             ++i) {
+          low = std::min(low, table[std::size_t(i)][c]);
+          high = std::max(high, table[std::size_t(i)][c]);
+        }
+        if (!(colour[c] >= low - same_colour && colour[c] <= high + same_colour)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Shows the probe program a table's samples under other inputs than the run's first vertex has.
+class TableProbe {
+ public:
+  TableProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
+             const FragmentInputs& fragment, const std::array<float, 2>& range)
+      : bench_(bench), context_(context), texture_(texture), fragment_(fragment), ramp_(probe_pixels) {
+    for (int i = 0; i < probe_pixels; ++i) {
+      const double place = double(std::min(i, probed_entries - 1)) / (probed_entries - 1);
+      ramp_[std::size_t(i)] = float(range[0] + place * (double(range[1]) - range[0]));
+    }
+  }
+
+  /// All entries of the table, with the inputs given.
+  ProbedImage table(const InputValues& inputs) {
+    show(probe_edge, ramp_);
+    return bench_.draw(without_coordinate(fragment_, inputs), true);
+  }
+  /// One entry, at coordinates all over the volume.
+  ProbedImage everywhere(std::size_t entry, const InputValues& inputs) {
+    show(1, {ramp_[entry]});
+    return bench_.draw(without_coordinate(fragment_, inputs), true);
+  }
+  /// One entry, while one number runs from `low` in the first pixel to `high` in the last.
+  ProbedImage along(std::size_t entry, const InputNumber& number, float low, float high) {
+    show(1, {ramp_[entry]});
+    const float step = (high - low) / float(probe_pixels - 1);
+    InputValues values = fragment_.first;
+    InputValues across(values.size());
+    InputValues up(values.size());
+    values[number.input][number.component] = low - step * 0.5F * float(probe_edge + 1);
+    across[number.input][number.component] = step * float(probe_edge);
+    up[number.input][number.component] = step * float(probe_edge * probe_edge);
+    return bench_.draw(without_coordinate(fragment_, values), true, {}, without_coordinate(fragment_, across),
+                       without_coordinate(fragment_, up));
+  }
+  InputValues first_but(const InputNumber& number, float value) const {
+    InputValues values = fragment_.first;
+    values[number.input][number.component] = value;
+    return values;
+  }
+
+ private:
+  void show(int extent, const std::vector<float>& texels) {
+    bench_.show(probe_format(texture_.base), upload_format(texture_.base), extent, extent, texels,
+                texture_.swizzle, context_.version >= 330);
+  }
+
+  ProbeBench& bench_;
+  const GlContext& context_;
+  const TextureDescription& texture_;
+  const FragmentInputs& fragment_;
+  std::vector<float> ramp_;
+};
+
+/// The fog in the one number that colours depend on; null when there is no such thing. Leaves in `table` the
+/// colours where the fog is thinnest.
+std::optional<MeasuredFog> probe_fog(TableProbe& probe, const InputNumber& number, const InputRange& needed,
+                                     const InputRange& range, bool premultiplied, ProbedImage& table) {
+  const float low = range.low[number.input][number.component];
+  const float high = range.high[number.input][number.component];
+  std::vector<float> values(probe_pixels);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = low + (high - low) * float(i) / float(probe_pixels - 1);
+  const auto bound = [&](const InputValues& end) { return end[number.input][number.component]; };
+  auto fog = measure_fog(table, premultiplied, values, {bound(needed.low), bound(needed.high)},
+                         [&](std::size_t entry) { return probe.along(entry, number, low, high); });
+  if (!fog) return std::nullopt;
+  fog->input = number.input;
+  fog->component = number.component;
+  table = probe.table(probe.first_but(number, fog->reference));
+  // It was found with a few samples, and must hold for all.
+  for (const std::size_t k : {std::size_t(0), fog->entries.size() / 2, fog->entries.size() - 1}) {
+    const volume::Rgba& entry = fog->entries[k];
+    const float value = fog->low + (fog->high - fog->low) * float(k) / float(fog->entries.size() - 1);
+    const ProbedImage seen = probe.table(probe.first_but(number, value));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (!(std::abs(seen[i][3] - table[i][3]) <= same_colour)) return std::nullopt;
+      for (std::size_t c = 0; seen[i][3] > 0 && c < 3; ++c) {
+        const float added = premultiplied ? seen[i][3] * entry[c] : entry[c];
+        const float expected = entry[3] * std::clamp(table[i][c], 0.0F, 1.0F) + added;
+        if (!(std::abs(expected - std::clamp(seen[i][c], 0.0F, 1.0F)) <= same_fogged_colour))
+          return std::nullopt;
+      }
+    }
+  }
+  return fog;
+}
+
+/// On which of the varying numbers the table depends, as they run over `range`.
+std::vector<InputNumber> telling_numbers(TableProbe& probe, const ProbedImage& table,
+                                         const FragmentInputs& fragment, const InputRange& range) {
+  std::vector<InputNumber> telling;
+  for (const InputNumber& number : varying_numbers(fragment)) {
+    for (const InputValues* end : {&range.low, &range.high}) {
+      const float value = (*end)[number.input][number.component];
+      if (largest_difference(probe.table(probe.first_but(number, value)), table) <= same_colour) continue;
+      telling.push_back(number);
+      break;
+    }
+  }
+  return telling;
+}
+
+/// What varies over the run: nothing that colours depend on, or fog, which leaves `table` where it is thinnest.
+/// Null where colours depend on more.
+std::optional<Probed> explained_inputs(TableProbe& probe, const FragmentInputs& fragment, bool premultiplied,
+                                       ProbedImage& table) {
+  for (const InputRange& tried : {widened(fragment.range, varying_numbers(fragment)), fragment.range}) {
+    Probed probed;
+    probed.range = tried;
+    const std::vector<InputNumber> telling = telling_numbers(probe, table, fragment, tried);
+    if (telling.empty()) return probed;
+    if (telling.size() > 1 || fragment.inputs[telling.front().input].integer) continue;
+    probed.fog = probe_fog(probe, telling.front(), fragment.range, tried, premultiplied, table);
+    if (!probed.fog) continue;
+    probed.range.low[probed.fog->input][probed.fog->component] = probed.fog->low;
+    probed.range.high[probed.fog->input][probed.fog->component] = probed.fog->high;
+    return probed;
+  }
+  return std::nullopt;
+}
+
+/// With the fog's number, where there is fog, as it is where the table was taken.
+InputValues at_reference(InputValues inputs, const std::optional<MeasuredFog>& fog) {
+  if (fog) inputs[fog->input][fog->component] = fog->reference;
+  return inputs;
+}
+
+/// Whether samples have the colours of `table` with these inputs and at other coordinates: a single texel,
+/// spread over the whole image.
+bool same_everywhere(TableProbe& probe, const ProbedImage& table, const InputValues& inputs) {
+  for (const int entry :
+       {0, probed_entries / 5, probed_entries / 2, 4 * probed_entries / 5, probed_entries - 1}) {
+    for (const volume::Rgba& colour : probe.everywhere(std::size_t(entry), inputs)) {
+      if (!(largest_difference(colour, table[std::size_t(entry)]) <= same_colour)) return false;
+    }
+  }
+  return true;
+}
+
+/// The table as the nodes have it: premultiplied. Null where it cannot be composed.
+std::optional<volume::TransferFunction> composable(const ProbedImage& table, const Pipeline& pipeline,
+                                                   const std::array<float, 2>& range) {
+  volume::TransferFunction function;
+  function.low = range[0];
+  function.high = range[1];
+  function.entries.assign(table.begin(), table.begin() + probed_entries);
+  for (volume::Rgba& entry : function.entries) {
+    if (!clamp_as_stored(entry, pipeline.target.floating)) return std::nullopt;
+    if (pipeline.blending.premultiplied) continue;
+    for (std::size_t c = 0; c < 3; ++c) entry[c] *= entry[3];
+  }
+  return function;
+}
+
+}  // namespace
+
+ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipeline& pipeline,
+                         const TextureDescription& texture, const FragmentInputs& fragment,
+                         const std::array<float, 2>& range) {
+  TableProbe probe(bench, context, texture, fragment, range);
+  ProbedImage table = probe.table(fragment.first);
+  if (!finite(table)) return "the fragment stage gives colours that are not finite";
+
+  // A fragment that is discarded is transparent to every operator but the minimum, for which zero is a value.
+  if (pipeline.blending.op == volume::Operator::min || pipeline.blending.alpha.op == volume::Operator::min) {
+    if (bench.draw(without_coordinate(fragment, fragment.first), true, {1, 1, 1, 1}) != table)
+      return "fragments are discarded under a minimum";
+  }
+  auto probed = explained_inputs(probe, fragment, pipeline.blending.premultiplied, table);
+  if (!probed || !same_everywhere(probe, table, at_reference(fragment.last, probed->fog)))
+    return more_than_the_sample;
+
+  const InputValues tabled = at_reference(fragment.first, probed->fog);
+  // The fixed function of a stack's slices looks at one place only.
+  const bool one_place = pipeline.stack && pipeline.program == 0;
+  if (!one_place && sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table,
+                                    pipeline.stack))
+    return "the colour depends on the field around the sample (gradient, lighting)";
+  auto function = composable(table, pipeline, range);
+  if (!function) return "the colours leave [0,1] in a float framebuffer";
+  probed->classification = *std::move(function);
+  return *std::move(probed);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,25 @@
+// Whether somebody looks at the depth that substituted slices would have written (deferred_depth_write.h).
+#pragma once
+
+#include "spu/volume/observation/run.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
+
+namespace understudy::spu {
+
+class DepthWatch {
+ public:
+  DepthWatch(const GlContext& context, RenderSession& session, FrameAccount& account)
+      : context_(context), session_(session), account_(account) {}
+
+  /// `run` was substituted, the first of its volume or not: draws the depth that it writes where somebody may
+  /// look at it, as `looked_at` says of earlier frames. True where its use is to be watched from now on.
+  bool settle(const Run& run, bool first, bool looked_at);
+
+ private:
+  const GlContext& context_;
+  RenderSession& session_;
+  FrameAccount& account_;
+};
+
+}  // namespace understudy::spu

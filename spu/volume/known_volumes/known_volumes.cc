@@ -1,0 +1,133 @@
+#include "spu/volume/known_volumes/known_volumes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+namespace understudy::spu {
+namespace {
+
+/// Frames until a volume is tried again, by lost comparisons in a row.
+constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
+
+}  // namespace
+
+KnownVolumes::KnownVolumes(ShareGroup& group, std::shared_ptr<RenderSession> session)
+    : group_(group), session_(std::move(session)) {}
+
+KnownVolumes::~KnownVolumes() {
+  for (auto& [texture, volume] : volumes_)
+    if (volume.counters != nullptr) leave_behind(*volume.counters);
+}
+
+KnownVolume& KnownVolumes::of(GLuint texture) {
+  KnownVolume& volume = volumes_[texture];
+  if (volume.counters == nullptr) {
+    group_.remember(texture);
+    volume.counters = &count_volume(texture);
+  }
+  return volume;
+}
+
+KnownVolume* KnownVolumes::find(GLuint texture) {
+  const auto found = volumes_.find(texture);
+  return found == volumes_.end() ? nullptr : &found->second;
+}
+
+std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture) {
+  const KnownVolume& volume = of(texture);
+  const RefusalHistory& history = volume.refusals;
+  if (!history.handed_back.empty()) return Refusal{history.handed_back};
+  if (session_->ledger().frames() < history.next_try && !history.last_reason.empty())
+    return Refusal{history.last_reason};
+  std::string slower = volume.speed.reason(SpeedGuard::Clock::now());
+  if (slower.empty()) return std::nullopt;
+  return Refusal{std::move(slower), {}, "--speed-guard off substitutes it all the same"};
+}
+
+void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say) {
+  KnownVolume& volume = of(texture);
+  account.note([](FrameRecord& frame) { ++frame.left; });
+  volume.counters->draws_left.fetch_add(1, std::memory_order_relaxed);
+  count_reason(*volume.counters, refusal.reason);
+  const bool new_reason = std::exchange(volume.refusals.last_reason, refusal.reason) != refusal.reason;
+  if (!new_reason || !say) return;
+  fmt::print(stderr, "understudy: volume {} not substituted: {}\n", texture, refusal.reason);
+  if (!session_->options().explain) return;
+  if (!refusal.evidence.empty()) fmt::print(stderr, "understudy:   seen: {}\n", refusal.evidence);
+  if (!refusal.advice.empty()) fmt::print(stderr, "understudy:   what helps: {}\n", refusal.advice);
+}
+
+void KnownVolumes::refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account) {
+  const std::uint64_t frame = session_->ledger().frames();
+  if (of(texture).refusals.left_in_frame != frame) refuse(texture, refusal, account);
+  of(texture).refusals.left_in_frame = frame;
+}
+
+void KnownVolumes::forget(const KnownVolume& volume) {
+  if (volume.counters != nullptr) leave_behind(*volume.counters);
+  if (volume.sent.generation == 0) return;
+  const auto lock = session_->lock();
+  if (volume.sent.generation == session_->generation()) session_->forget(volume.sent.description.id);
+}
+
+void KnownVolumes::forget_deleted() {
+  std::erase_if(volumes_, [&](auto& entry) {
+    if (group_.remembers(entry.first)) return false;
+    forget(entry.second);
+    return true;
+  });
+}
+
+void KnownVolumes::forget_all() {
+  for (auto& [texture, volume] : volumes_) forget(volume);
+  volumes_.clear();
+}
+
+void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, FrameAccount& account) {
+  volume.refusals.in_a_row = 0;
+  volume.counters->draws_substituted.fetch_add(1, std::memory_order_relaxed);
+  account.note([&](FrameRecord& frame) {
+    ++frame.substituted;
+    frame.counts += counts;
+  });
+}
+
+void count_speed(KnownVolume& volume, const FrameShares& spent, const Options& options) {
+  const auto native_ms = volume.verified.schedule.native_ms();
+  if (!options.speed_guard || options.debug_tint || !native_ms) return;
+  // Waiting for what was drawn before, and comparing, are not what the volume costs.
+  const double ours_ms = spent.recognition + spent.upload + spent.render + spent.presentation + spent.budget;
+  volume.speed.substituted(ours_ms, *native_ms, SpeedGuard::Clock::now());
+}
+
+void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& volume, std::uint64_t frame) {
+  if (!comparison) return;
+  VerificationSchedule& schedule = volume.verified.schedule;
+  if (comparison->right) {
+    const bool anything_visible = comparison->difference.anything_visible;
+    if (anything_visible) volume.colours.rounding.won();
+    schedule.whole_was_right(anything_visible, comparison->native_ms.value_or(0));
+    return;
+  }
+  Refusal refusal = refusal_of(comparison->difference);
+  if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
+    volume.refusals.next_try = frame + 1;
+    schedule.ask_for_whole();
+    refusal.reason += "; tried again with samples rounded to 8 bits";
+    throw Refusal{std::move(refusal)};
+  }
+  schedule.lost();
+  volume.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);
+  volume.colours.probed.reset();
+  volume.march.march.reset();
+  const auto in_a_row = std::min(std::size_t(schedule.lost_in_a_row()), pauses.size());
+  volume.refusals.next_try = frame + pauses[in_a_row - 1];
+  if (schedule.gives_up()) volume.refusals.handed_back = refusal.reason;
+  throw Refusal{std::move(refusal)};
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,62 @@
+// Finds out which textures are bricks of one volume: in the first frame each is a volume of its own, and where
+// they turn out to be a tiling, they are drawn as one from then on.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/geometry/recognised_run.h"
+#include "spu/volume/known_volumes/known_volumes.h"
+#include "spu/volume/merging/merged_volume.h"
+
+namespace understudy::spu {
+
+class MergedVolumes {
+ public:
+  MergedVolumes(ShareGroup& group, RenderSession& session, KnownVolumes& volumes)
+      : group_(group), session_(session), volumes_(volumes) {}
+
+  /// A run of slices was shown by itself, with this request: it may be a brick.
+  void note_brick(const Pipeline& pipeline, const RecognisedRun& seen, const volume::RenderRequest& request,
+                  const TextureDescription& texture);
+  /// Looks for tilings among what was noted since the last call.
+  void find();
+
+  /// Of which `texture` is a brick; null: of none.
+  MergedVolume* volume_with(GLuint texture) const;
+  /// `texture` is not what was known of it, its slices read `texels`: its volume is forgotten, and learnt anew.
+  void learn_anew(GLuint texture, const volume::TexelBox& texels);
+
+  void forget_deleted();
+  void forget_all();
+
+ private:
+  /// Bricks that were shown one by one in this frame and have one lattice and one classification.
+  struct Group {
+    std::vector<GLuint> textures;
+    std::vector<DrawnBrick> bricks;
+    volume::TexelType type{};
+  };
+
+  bool belongs(const Group& group, GLuint texture, const DrawnBrick& brick, volume::TexelType type,
+               const volume::Classification& classification);
+  bool may_be_one(const Group& group);
+  std::unique_ptr<MergedVolume> merged(const Group& group);
+  void forget(GLuint texture);
+  void forget_texels(const MergedVolume& merged);
+
+  ShareGroup& group_;
+  RenderSession& session_;
+  KnownVolumes& volumes_;
+  std::vector<std::unique_ptr<MergedVolume>> merged_;
+  std::vector<Group> groups_;
+  std::map<GLuint, volume::TexelBox> shown_;  ///< what each texture's slices ever read, in its texels
+  /// Tilings that hold for one view only are found ever more rarely.
+  std::uint64_t next_search_ = 0;
+  std::uint64_t pause_ = 1;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,293 @@
+#include "spu/volume/merging/run_merger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "spu/volume/context/saved_state.h"
+#include "spu/volume/depth/depth.h"
+#include "spu/volume/merging/merged_geometry.h"
+#include "spu/volume/merging/merged_upload.h"
+#include "spu/volume/request/explanation.h"
+#include "spu/volume/verification/tile_comparison.h"
+#include "volume/texel_box.h"
+
+namespace understudy::spu {
+namespace {
+
+/// In so many frames the whole must have been shown before the nodes forget the bricks.
+constexpr std::uint64_t frames_before_bricks_go = 16;
+
+/// Binds a run's texture where it was bound when it was drawn; sampler objects stay.
+class BoundAgain {
+ public:
+  BoundAgain(const DispatchTable& gl, const SampledTexture& sampled) : gl_(gl), unit_(sampled.unit) {
+    gl_.GetIntegerv(GL_ACTIVE_TEXTURE, &active_);
+    gl_.ActiveTexture(GLenum(GL_TEXTURE0 + unit_));
+    gl_.GetIntegerv(GL_TEXTURE_BINDING_3D, &bound_);
+    gl_.BindTexture(GL_TEXTURE_3D, sampled.texture);
+  }
+  ~BoundAgain() {
+    gl_.ActiveTexture(GLenum(GL_TEXTURE0 + unit_));
+    gl_.BindTexture(GL_TEXTURE_3D, GLuint(bound_));
+    gl_.ActiveTexture(GLenum(active_));
+  }
+  BoundAgain(const BoundAgain&) = delete;
+  BoundAgain& operator=(const BoundAgain&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  int unit_;
+  GLint active_ = 0;
+  GLint bound_ = 0;
+};
+
+}  // namespace
+
+bool RunMerger::still_known(const Pipeline& pipeline, const RecognisedRun& seen,
+                            const TextureDescription& texture, const MergedVolume& merged) const {
+  const std::size_t place = *merged.place_of(pipeline.volume.texture);
+  const volume::TexelBox read = texels_read(seen.slices.region, texture.size, texture.filter);
+  // A table over float values was probed for those that were known.
+  const bool other_values =
+      texture.type == volume::TexelType::f32 && seen.texture_version != merged.versions[place];
+  return alike(texture, merged.descriptions[place]) && texture.size == merged.descriptions[place].size &&
+         volume::contains(merged.shown[place], read) && !other_values;
+}
+
+MergedVolume* RunMerger::volume_of(const Pipeline& pipeline, const RecognisedRun& seen,
+                                   const KnownVolume& volume) const {
+  if (pipeline.stack || seen.ray_caster || volume.frames == 0 || (pipeline.depth_test && pipeline.depth_write))
+    return nullptr;
+  MergedVolume* const merged = merged_.volume_with(pipeline.volume.texture);
+  return merged != nullptr && merged->volume.refusals.handed_back.empty() ? merged : nullptr;
+}
+
+std::optional<ImageRequest> RunMerger::request_of(const Pipeline& pipeline, const RecognisedRun& seen,
+                                                  KnownVolume& volume, const MergedVolume& merged) {
+  SentVolume& sent = volume.sent;
+  if (sent.texture.type == volume::TexelType::f32) sent.range = merged.volume.sent.range;
+  ImageRequest image = stages_.slices.compose(pipeline, seen, {sent, volume.colours, *volume.counters});
+  if (image.request.slice_segment || image.request.fog) return std::nullopt;
+  return image;
+}
+
+bool RunMerger::goes_with_held(const MergedVolume& merged, const Pipeline& pipeline,
+                               const volume::RenderRequest& request) const {
+  if (held_.empty()) return true;
+  const auto same_texture = [&](const HeldRun& other) {
+    return other.pipeline().volume.texture == pipeline.volume.texture;
+  };
+  return held_volume_ == &merged && !std::any_of(held_.begin(), held_.end(), same_texture) &&
+         alike(held_.front().pipeline(), held_.front().image.request, pipeline, request);
+}
+
+bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolume& volume) {
+  const Pipeline& pipeline = run->pipeline();
+  MergedVolume* const merged = volume_of(pipeline, seen, volume);
+  if (merged == nullptr) return false;
+  {
+    // Without nodes the application draws: what waits is not waited with.
+    const auto lock = stages_.session.lock();
+    process_counters().nodes = stages_.session.service().nodes();
+  }
+  volume.sent.texture = stages_.uploader.describe(pipeline, 0);
+  count_texture(*volume.counters, volume.sent.texture);
+  if (!still_known(pipeline, seen, volume.sent.texture, *merged)) {
+    settle();
+    merged_.learn_anew(pipeline.volume.texture,
+                       texels_read(seen.slices.region, volume.sent.texture.size, volume.sent.texture.filter));
+    return false;
+  }
+  auto image = request_of(pipeline, seen, volume, *merged);
+  if (!image) return false;
+  if (!goes_with_held(*merged, pipeline, image->request)) settle();
+  VerifiedVolume& verified = merged->volume.verified;
+  if (held_.empty())
+    verified.schedule.begin(image->inputs,
+                            intersection(image->request.window, image->request.viewport).pixels());
+  if (stages_.verifier.whole_due(verified, false, merged->volume.frames)) draw_natively(*run, image->request);
+  held_volume_ = merged;
+  held_.push_back({std::move(run), std::move(seen), std::move(*image), &volume});
+  if (held_.size() == merged->textures.size()) settle();
+  return true;
+}
+
+void RunMerger::draw_natively(const Run& run, volume::RenderRequest request) {
+  const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
+  const Pipeline& pipeline = run.pipeline();
+  if (held_.empty()) {
+    if (pipeline.depth_test)
+      request.depth = read_depth(stages_.context, pipeline.target, request.window, pipeline.depth_or_equal);
+    drawn_ = std::make_unique<NativeDrawing>(stages_.context, pipeline, request);
+  }
+  if (drawn_) drawn_->add(run);
+}
+
+void RunMerger::forget_held() {
+  held_.clear();
+  drawn_.reset();
+}
+
+void RunMerger::settle() {
+  if (held_.empty()) return;
+  FrameClock& clock = stages_.account.clock();
+  {
+    const TimedShare timed(clock, &FrameShares::recognition);
+    std::vector<HeldRun> held = std::exchange(held_, {});
+    MergedVolume& merged = *held_volume_;
+    nothing_held_();
+    const bool all = held.size() == merged.textures.size();
+    if (!all || !shows_as_one(merged, held)) {
+      for (HeldRun& each : held) show_alone(each);
+    }
+    drawn_.reset();
+  }
+  stages_.account.note([spent = clock.take()](FrameRecord& frame) { frame.spent_ms += spent; });
+}
+
+volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vector<HeldRun>& held,
+                                          ImageRequest& image, compositor::RenderService& service) {
+  const HeldRun& first = held.front();
+  std::vector<BrickVersion> versions;
+  for (const HeldRun& each : held)
+    versions.push_back({each.pipeline().volume.texture, each.seen.texture_version});
+  upload_merged(stages_.context, stages_.group, stages_.session, stages_.uploader, stages_.account, merged,
+                versions, first.pipeline().volume, service);
+  image.request.volume = merged.volume.sent.description.id;
+  image.request.version = merged.volume.sent.description.version;
+  KnownVolume& volume = merged.volume;
+  const bool compared_whole = stages_.verifier.whole_due(volume.verified, false, volume.frames);
+  return stages_.presentation.show(
+      service, {first.pipeline(), image, volume, compared_whole}, [&](const volume::ImageView& shown) {
+        if (!drawn_ || !drawn_->complete()) return;
+        const TimedShare timed(stages_.account.clock(), &FrameShares::verification);
+        const volume::Rect window = intersection(image.request.window, image.request.viewport);
+        const ImageDifference difference = difference_between(first.pipeline(), drawn_->image(window), shown);
+        take_comparison(stages_.verifier.judge(difference, 0, *volume.counters), volume,
+                        stages_.account.frames());
+      });
+}
+
+bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
+  KnownVolume& volume = merged.volume;
+  try {
+    const Pipeline& pipeline = held.front().pipeline();
+    std::vector<BrickSlices> bricks;
+    for (const HeldRun& each : held) bricks.push_back({each.pipeline().volume.texture, &each.seen});
+    MergedSlices whole = merged_slices(merged, bricks, pipeline);
+    ImageRequest image;
+    image.request = held.front().image.request;
+    image.request.texture_to_clip = whole.camera.texture_to_clip;
+    image.request.planes = whole.slices.planes;
+    image.request.region = whole.slices.region;
+    image.request.clip_planes = std::move(whole.clip_planes);
+    stages_.composer.hide_behind_geometry(pipeline, image.request);
+    const auto lock = stages_.session.lock();
+    const volume::FrameCounts counts = show_whole(merged, held, image, stages_.session.service());
+    for (std::size_t k = 0; k < 3; ++k) volume.counters->size[k] = merged.tiling.size[k];
+    if (volume.frames == 0 || stages_.session.options().explain)
+      put_text(volume.counters->explanation,
+               fmt::format("merged of {} textures: {}", merged.textures.size(),
+                           explanation(pipeline, volume.sent.texture, image, whole.camera.residual)));
+    for (const HeldRun& each : held) ++each.volume->frames;
+    if (++volume.frames == frames_before_bricks_go) forget_single_bricks(merged);
+    count_substituted(volume, counts, stages_.account);
+    return true;
+  } catch (const Refusal& refusal) {
+    volume.refusals.handed_back = refusal.reason;
+  } catch (const compositor::ServiceLost& lost) {
+    const auto lock = stages_.session.lock();
+    stages_.session.lost(lost);
+    return false;
+  } catch (const std::exception& error) {
+    volume.refusals.handed_back = error.what();
+  }
+  fmt::print(stderr, "understudy: {} textures of one volume are shown one by one: {}\n", merged.textures.size(),
+             volume.refusals.handed_back);
+  return false;
+}
+
+void RunMerger::forget_single_bricks(const MergedVolume& merged) {
+  for (const GLuint texture : merged.textures) {
+    SentVolume& brick = volumes_.find(texture)->sent;
+    if (brick.generation == stages_.session.generation()) stages_.session.forget(brick.description.id);
+    brick.generation = 0;
+  }
+}
+
+volume::FrameCounts RunMerger::show(HeldRun& run, compositor::RenderService& service) {
+  KnownVolume& volume = *run.volume;
+  const bool compared_whole = stages_.verifier.whole_due(volume.verified, false, volume.frames);
+  const auto unverified = [](const volume::ImageView&) {};
+  return stages_.presentation.show(service, {run.pipeline(), run.image, volume, compared_whole}, unverified);
+}
+
+volume::FrameCounts RunMerger::show_by_session(HeldRun& run) {
+  KnownVolume& volume = *run.volume;
+  const Pipeline& pipeline = run.pipeline();
+  const auto lock = stages_.session.lock();
+  compositor::RenderService& service = stages_.session.service();
+  {
+    const BoundAgain bound(*stages_.context.gl, pipeline.volume);
+    volume.sent.texture = stages_.uploader.describe(pipeline, 0);
+    count_texture(*volume.counters, volume.sent.texture);
+    stages_.uploader.upload(
+        {pipeline, {}, run.seen.texture_version, run.seen.slices.region, run.seen.slice_segments}, volume.sent,
+        *volume.counters, service);
+  }
+  run.image.request.volume = volume.sent.description.id;
+  run.image.request.version = volume.sent.description.version;
+  return show(run, service);
+}
+
+volume::FrameCounts RunMerger::show_by_itself(HeldRun& run) {
+  const auto service = compositor::embedded_service();
+  const TextureDescription& texture = run.volume->sent.texture;
+  volume::VolumeDescription description = run.volume->sent.description;
+  description.size = texture.size;
+  description.type = texture.type;
+  description.wrap = texture.wrap;
+  description.border = texture.border;
+  description.stored = {{0, 0, 0}, description.size};
+  description.id = 1;
+  {
+    const SavedState saved(stages_.context);
+    const BoundAgain bound(*stages_.context.gl, run.pipeline().volume);
+    BlockHashes hashes(description.stored, description.type);
+    const auto source = texture_source(stages_.context, run.pipeline().volume.texture, texture);
+    send_volume(*service, description, *source, hashes);
+  }
+  run.image.request.volume = description.id;
+  run.image.request.version = description.version;
+  return show(run, *service);
+}
+
+void RunMerger::show_alone(HeldRun& run) {
+  KnownVolume& volume = *run.volume;
+  stages_.composer.hide_behind_geometry(run.pipeline(), run.image.request);
+  try {
+    const volume::FrameCounts counts = show_by_session(run);
+    ++volume.frames;
+    count_substituted(volume, counts, stages_.account);
+    return;
+  } catch (const compositor::ServiceLost& lost) {
+    const auto lock = stages_.session.lock();
+    stages_.session.lost(lost);
+  } catch (const Refusal&) {
+    // The texture cannot be read as it was: the last way tells why.
+  } catch (const std::exception&) {
+    // Refused, for want of memory perhaps: below it is told what the last way came to.
+  }
+  // The run's calls are gone, and whatever could be seen of it is about to be: it is rendered here.
+  try {
+    count_substituted(volume, show_by_itself(run), stages_.account);
+  } catch (const std::exception& error) {
+    volume.refusals.handed_back = error.what();
+    volumes_.refuse(run.pipeline().volume.texture, Refusal{error.what()}, stages_.account);
+  }
+}
+
+}  // namespace understudy::spu

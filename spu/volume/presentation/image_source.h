@@ -1,0 +1,54 @@
+// Where images come from: the render service, with the application's own samples, or with those that keep the
+// error or the time that was asked for.
+#pragma once
+
+#include "compositor/service.h"
+#include "spu/volume/known_volumes/known_volume.h"
+#include "spu/volume/pipeline/pipeline.h"
+#include "spu/volume/proxy/ray_caster_stage.h"
+#include "spu/volume/request/image_request.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
+#include "volume/image.h"
+
+namespace understudy::spu {
+
+/// An image on its way to the framebuffer.
+struct RenderedImage {
+  volume::ImageView shown;  ///< the service's, gone with its next one; or the one that is kept here
+  volume::Image kept;
+  volume::FrameCounts counts;
+
+  void keep();
+};
+
+/// What is to be shown of one volume.
+struct ImageToShow {
+  const Pipeline& pipeline;
+  ImageRequest& image;
+  KnownVolume& volume;
+  bool compared_whole = false;  ///< before it is shown
+};
+
+class ImageSource {
+ public:
+  ImageSource(const GlContext& context, RenderSession& session, RayCasterStage& ray_casters,
+              FrameAccount& account)
+      : context_(context), session_(session), ray_casters_(ray_casters), account_(account) {}
+
+  /// With the samples of the request.
+  void cast_own_samples(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
+  /// With samples as the error or the time that was asked for wants them; false where they must be the
+  /// application's own.
+  bool cast_within_budget(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
+
+ private:
+  bool may_be_behind(const ImageToShow& what) const;
+
+  const GlContext& context_;
+  RenderSession& session_;
+  RayCasterStage& ray_casters_;
+  FrameAccount& account_;
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,88 @@
+#include "spu/volume/presentation/presentation.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+#include "spu/volume/presentation/save_frames.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::spu {
+namespace {
+
+/// Magenta wherever the volume is: an image that proves where it came from.
+void tint(volume::Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const float alpha = image.rgba[i + 3];
+    image.rgba[i] = alpha;
+    image.rgba[i + 1] = 0;
+    image.rgba[i + 2] = alpha;
+  }
+}
+
+/// Of a ray caster, whose whole ray is one fragment: what blending leaves of `shown` in the framebuffer's
+/// alpha.
+volume::Image alpha_of_fragments(const volume::ImageView& shown, const AlphaBlending& blending) {
+  volume::Image alpha(shown.rect);
+  for (std::size_t i = 0; i < alpha.rgba.size(); i += 4) {
+    const float a = shown.rgba[i + 3];
+    alpha.rgba[i] = blending.squared ? a * a : a;
+    alpha.rgba[i + 3] = a;
+  }
+  return alpha;
+}
+
+}  // namespace
+
+volume::FrameCounts Presentation::show(compositor::RenderService& service, const ImageToShow& what,
+                                       const Check& check) {
+  const Options& options = session_.options();
+  volume::RenderRequest& request = what.image.request;
+  request.optimizations = {skips(Optimization::empty_bricks), skips(Optimization::dominated_samples),
+                           skips(Optimization::footprints)};
+  if (!skips(Optimization::hidden_samples)) request.termination = 0;
+  RenderedImage image;
+  const bool own = !options.has_budget() || what.compared_whole;
+  if (own) {
+    source_.cast_own_samples(service, what, image);
+    check(image.shown);
+  }
+  if (options.has_budget() && !source_.cast_within_budget(service, what, image) && !own)
+    source_.cast_own_samples(service, what, image);
+  if (options.debug_tint || what.pipeline.blending.alpha_stands_apart()) image.keep();
+  if (!options.save_frames.empty()) save(what, image.shown);
+  if (options.debug_tint) tint(image.kept);
+  const TimedShare timed(account_.clock(), &FrameShares::presentation);
+  present(service, what, image);
+  return image.counts;
+}
+
+void Presentation::save(const ImageToShow& what, const volume::ImageView& shown) {
+  const std::string trouble = save_frame(session_.options().save_frames, saved_++, what.image.request.viewport,
+                                         shown, volume::neutral_value(what.pipeline.blending.op));
+  if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
+}
+
+void Presentation::present(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image) {
+  const Blending& blending = what.pipeline.blending;
+  const Target& target = what.pipeline.target;
+  if (!blending.alpha_stands_apart()) return presenter_.present(image.shown, blending, target, nullptr);
+  if (what.image.ray_caster) {
+    const volume::Image alpha = alpha_of_fragments(image.shown, blending.alpha);
+    const volume::ImageView view = alpha.view();
+    return presenter_.present(image.shown, blending, target, &view);
+  }
+  volume::RenderRequest request = what.image.request;
+  request.classification = alpha_as_colour(request.classification, blending.alpha);
+  request.op = blending.alpha.op;
+  request.fog.reset();
+  // Below half a step of what the framebuffer keeps of alpha, nothing is left to see.
+  if (target.alpha_bits <= 8 && skips(Optimization::hidden_samples)) request.termination = 1e-3F;
+  const TimedShare also_rendered(account_.clock(), &FrameShares::render);
+  const compositor::Rendered alpha = service.render(request);
+  image.counts += alpha.counts;
+  presenter_.present(image.shown, blending, target, &alpha.image);
+}
+
+}  // namespace understudy::spu

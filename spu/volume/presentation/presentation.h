@@ -1,0 +1,37 @@
+// The stage that shows a volume: its image is rendered, checked, and put where the application would have
+// drawn.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "spu/volume/presentation/image_source.h"
+#include "spu/volume/presentation/present.h"
+
+namespace understudy::spu {
+
+class Presentation {
+ public:
+  /// Sees the image before it is shown, and may throw.
+  using Check = std::function<void(const volume::ImageView&)>;
+
+  Presentation(const GlContext& context, RenderSession& session, ImageSource& source, FrameAccount& account)
+      : session_(session), source_(source), account_(account), presenter_(context) {}
+
+  /// Renders the request and puts the image into the application's framebuffer. Needs the session's lock.
+  /// Throws what `check` and the service throw; nothing is shown then.
+  volume::FrameCounts show(compositor::RenderService& service, const ImageToShow& what, const Check& check);
+
+ private:
+  bool skips(Optimization optimization) const { return !session_.disabled_optimizations(optimization); }
+  void save(const ImageToShow& what, const volume::ImageView& shown);
+  void present(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image);
+
+  RenderSession& session_;
+  ImageSource& source_;
+  FrameAccount& account_;
+  Presenter presenter_;
+  std::uint64_t saved_ = 0;
+};
+
+}  // namespace understudy::spu

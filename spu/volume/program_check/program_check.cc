@@ -1,0 +1,219 @@
+#include "spu/volume/program_check/program_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace understudy::spu {
+namespace {
+
+using program::Influence;
+using program::Source;
+using program::SourceKind;
+using program::StageFacts;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Texels of idle samplers end the way as the volume's do: nothing reaches colours through them.
+std::vector<std::string> ends_of_ways(const SamplerRoles& roles) {
+  std::vector<std::string> names = roles.volume;
+  names.insert(names.end(), roles.idle.begin(), roles.idle.end());
+  return names;
+}
+
+/// Tables whose contents are tracked (spu/track) and can be given to a probe.
+bool is_known_table(const program::SamplerType& type) {
+  using program::TextureShape;
+  return !type.array && !type.shadow && !type.multisample &&
+         (type.shape == TextureShape::line || type.shape == TextureShape::plane ||
+          type.shape == TextureShape::rectangle);
+}
+
+std::optional<Refusal> refusal_of_tables(const StageFacts& facts, const std::vector<std::string>& tables,
+                                         const SamplerRoles& roles) {
+  for (const program::Fetch& fetch : facts.fetches) {
+    if (!contains(tables, fetch.sampler) || contains(roles.idle, fetch.sampler)) continue;
+    if (!is_known_table(fetch.type))
+      return Refusal(fmt::format("colours come from '{}', a {}, whose contents are not followed", fetch.sampler,
+                                 text(fetch.type)));
+  }
+  return {};
+}
+
+std::optional<Refusal> refusal_of_side_effects(const StageFacts& facts) {
+  if (!facts.side_effects.empty())
+    return Refusal(fmt::format("the fragment shader writes to '{}'", facts.side_effects.front().name));
+  return {};
+}
+
+/// Names with and without the array element that queries of OpenGL add.
+bool same_variable(const std::string& a, const std::string& b) {
+  return a == b || a == b + "[0]" || b == a + "[0]";
+}
+
+const StageInput* input_of(const ProgramStages& stages, const std::string& name) {
+  // A shader reads gl_Color where the vertex stage writes gl_FrontColor.
+  const auto found = std::ranges::find_if(stages.inputs, [&](const StageInput& input) {
+    return same_variable(input.name, name) || (name == "gl_Color" && input.name == "gl_FrontColor") ||
+           (name == "gl_SecondaryColor" && input.name == "gl_FrontSecondaryColor");
+  });
+  return found == stages.inputs.end() ? nullptr : &*found;
+}
+
+/// The same for all fragments of the run, or measured as fog.
+bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, const Influence& influence,
+                 const Source& source) {
+  const StageInput* const input = input_of(stages, source.name);
+  if (input == nullptr || input->name == fragment.coordinate) return false;
+  const auto index = std::size_t(input - stages.inputs.data());
+  if (index >= fragment.range.low.size()) return false;
+  const auto component = std::size_t(source.component);
+  if (fragment.range.low[index][component] == fragment.range.high[index][component]) return true;
+  // A fade that is decided by a number (PyMOL's fog) is measured as one that is computed from it.
+  return influence.target == program::Target::colour && !influence.through_table;
+}
+
+/// Whether loop `inner` is run through in one iteration of `outer`: it is that loop, or stands in it.
+bool is_within(const StageFacts& facts, std::size_t inner, std::size_t outer) {
+  for (std::optional<std::size_t> loop = inner; loop; loop = facts.loops[*loop].outer) {
+    if (*loop == outer) return true;
+  }
+  return false;
+}
+
+/// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
+/// second one looks for the maximum more closely.
+bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
+  std::vector<std::size_t> loops;
+  return std::ranges::any_of(finding.samples, [&](std::size_t index) {
+    const program::Fetch& fetch = facts.fetches[index];
+    if (contains(roles.idle, fetch.sampler) || !fetch.loop) return false;
+    const bool mixes = std::ranges::any_of(loops, [&](std::size_t other) {
+      return is_within(facts, *fetch.loop, other) || is_within(facts, other, *fetch.loop);
+    });
+    loops.push_back(*fetch.loop);
+    return mixes;
+  });
+}
+
+Refusal of_fragment_shader(const std::string& text) {
+  return {"the fragment shader: " + text};
+}
+
+}  // namespace
+
+SamplerRoles sampler_roles(const DispatchTable& gl, const Pipeline& pipeline,
+                           const std::vector<SamplerUniform>& samplers) {
+  SamplerRoles roles;
+  for (const SamplerUniform& sampler : samplers) {
+    if (sampler.location == pipeline.volume.sampler_location) {
+      roles.volume.push_back(sampler.name);
+      continue;
+    }
+    const auto other = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
+      return sampled.sampler_location == sampler.location;
+    });
+    if (other != pipeline.others.end()) {
+      if (other->texture == 0) roles.idle.push_back(sampler.name);
+      continue;
+    }
+    GLint unit = 0;
+    gl.GetUniformiv(pipeline.program, sampler.location, &unit);
+    if (unit == pipeline.volume.unit) roles.volume.push_back(sampler.name);
+  }
+  return roles;
+}
+
+bool ProgramText::holds(const SamplerRoles& roles, const std::vector<program::KnownUniform>& known) const {
+  return readings_ > 0 && known == known_ && (!findings_ || findings_->roles == roles);
+}
+
+const ProgramFindings* ProgramText::findings(std::span<const std::string> fragment_sources,
+                                             std::span<const std::string> extensions, const SamplerRoles& roles,
+                                             std::span<const UniformValue> values, Subject subject) {
+  std::vector<program::KnownUniform> known;
+  if (readings_ < most_readings) {
+    for (const UniformValue& value : values) {
+      if (value.chooses) known.push_back({std::string(value.name), value.component, double(value.value)});
+    }
+  }
+  if (!holds(roles, known)) {
+    ++readings_;
+    known_ = std::move(known);
+    findings_.reset();
+    program::StageFinding read =
+        program::analyse(program::Stage::fragment, fragment_sources, known_, extensions);
+    if (const auto* failure = std::get_if<program::Failure>(&read)) {
+      trouble_ = "the fragment shader is not understood: " + failure->what;
+    } else {
+      findings_.emplace(std::get<program::StageFacts>(std::move(read)), roles);
+    }
+  }
+  if (!findings_) return nullptr;
+  const std::vector<std::string> volumes = ends_of_ways(roles);
+  if (subject == Subject::slices && !findings_->slices)
+    findings_->slices = slice_finding(findings_->facts, volumes);
+  if (subject == Subject::ray_caster && !findings_->ray)
+    findings_->ray = ray_finding(findings_->facts, volumes);
+  return &*findings_;
+}
+
+std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const ProgramFindings& findings,
+                                         const FragmentInputs& fragment, bool slice_segments) {
+  const StageFacts& facts = findings.facts;
+  const SamplerRoles& roles = findings.roles;
+  if (auto refusal = refusal_of_side_effects(facts)) return refusal;
+  const program::SliceFinding& finding = *findings.slices;
+  std::vector<std::size_t> texels;
+  std::ranges::copy_if(finding.texels, std::back_inserter(texels),
+                       [&](std::size_t fetch) { return !contains(roles.idle, facts.fetches[fetch].sampler); });
+  if (texels.empty()) return "no colour of the fragment shader depends on the volume's texels";
+  const std::size_t most = slice_segments ? 2 : 1;
+  if ((texels.size() > most || finding.texels_vary_in_loop) && !finding.reasons.empty())
+    return of_fragment_shader(finding.reasons.front());
+  if (auto refusal = refusal_of_tables(facts, finding.tables, roles)) return refusal;
+  std::vector<Influence> unexplained = finding.coordinate_others;
+  for (const Influence& influence : finding.others) {
+    const Source& source = facts.sources[influence.source];
+    if (source.kind == SourceKind::varying && is_measured(stages, fragment, influence, source)) continue;
+    unexplained.push_back(influence);
+  }
+  if (unexplained.empty()) return {};
+  return of_fragment_shader(texts(facts, unexplained).front());
+}
+
+std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
+  const StageFacts& facts = findings.facts;
+  if (auto refusal = refusal_of_side_effects(facts)) return refusal;
+  const program::RayFinding& finding = *findings.ray;
+  if (!finding.loop) return "no loop of the fragment shader samples the volume";
+  if (auto refusal = refusal_of_tables(facts, finding.tables, findings.roles)) return refusal;
+  if (mixes_samples(facts, finding, findings.roles))
+    return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
+           "lighting)";
+  if (!finding.data.empty()) return of_fragment_shader(texts(facts, finding.data).front());
+  return {};
+}
+
+VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,
+                                            std::span<const UniformValue> values) {
+  const auto only_colours = [&](const UniformValue& value) {
+    return !value.chooses &&
+           std::ranges::none_of(findings.slices->uniforms, [&](const program::UniformUse& use) {
+             const Source& source = findings.facts.sources[use.source];
+             if (!use.discard && !use.branch && !use.coordinate) return false;
+             if (value.name.empty()) return source.kind == SourceKind::uniform_block;
+             return source.component == value.component && same_variable(source.name, std::string(value.name));
+           });
+  };
+  using Effect = VerificationSchedule::Effect;
+  VerificationSchedule::Inputs inputs;
+  for (const UniformValue& value : values)
+    inputs.push_back({value.value, only_colours(value) ? Effect::measured : Effect::unknown});
+  return inputs;
+}
+
+}  // namespace understudy::spu

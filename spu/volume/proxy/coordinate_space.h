@@ -1,0 +1,52 @@
+// Which input of the fragment stage addresses a ray caster's volume, and the box that is drawn in it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spu/volume/geometry/capture.h"
+#include "spu/volume/pipeline/program_stages.h"
+#include "spu/volume/proxy/box.h"
+#include "spu/volume/texture/texels.h"
+
+namespace understudy::spu {
+
+/// Texture coordinate = scale * input + offset, axis by axis.
+struct CoordinateSpace {
+  std::string input;
+  volume::Vec3 scale{1, 1, 1};
+  volume::Vec3 offset{};
+};
+
+/// The box of one draw, in texture space.
+struct ProxyBox {
+  volume::Box region;
+  CameraFit camera;
+  std::vector<volume::HalfSpace> cuts;  ///< where the application has cut it off before the near plane
+};
+
+/// Everything that `run` is measured on.
+struct MarchContext {
+  const GlContext& context;
+  const Run& run;
+  const ProgramStages& stages;
+  const TextureDescription& texture;
+  std::array<float, 2> range;     ///< of the texels' values
+  bool clipped = false;           ///< rays begin or end at clipping planes
+  const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
+};
+
+/// Whether the draw covers a whole box in some input of the fragment stage; `seen` is one that was captured
+/// already.
+bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen);
+
+/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole box
+/// that fits the texture's.
+std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
+
+/// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has
+/// cut it).
+std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space);
+
+}  // namespace understudy::spu

@@ -1,0 +1,23 @@
+// What is remembered of the ray caster of one volume.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "spu/volume/proxy/march.h"
+#include "spu/volume/proxy/march_inputs.h"
+
+namespace understudy::spu {
+
+struct KnownMarch {
+  std::optional<March> march;
+  MarchInputs inputs;        ///< what the march was measured under
+  volume::Matrix4 camera{};  ///< of its last image, from texture to clip coordinates
+};
+
+/// The input of the fragment stage that addressed the volume; empty: none is known.
+inline std::string known_coordinate(const KnownMarch& known) {
+  return known.march ? known.march->space.input : std::string();
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,16 @@
+// The colour of one sample of every value, measured on rays of few samples.
+#pragma once
+
+#include <optional>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march.h"
+
+namespace understudy::spu {
+
+/// Into the march's table, whose steps are those of `rule`. Several rays are asked, from one sample on: the
+/// longest that is not opaque tells best, because some programs keep a ray's opacity above a floor.
+std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& probe,
+                                     const RaysThroughBox& rays, const volume::RaySteps& rule, March& march);
+
+}  // namespace understudy::spu

@@ -1,0 +1,265 @@
+#include "spu/volume/proxy/ray_caster_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compositor/blend.h"
+#include "compositor/service/limits.h"
+#include "spu/volume/proxy/ray_ends.h"
+#include "spu/volume/verification/tile_comparison.h"
+#include "volume/footprint.h"
+#include "volume/raycast/ray_caster.h"
+
+namespace understudy::spu {
+namespace {
+
+/// A box whose texture coordinates are known by name: measured again when the program or the texture changes.
+ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
+  const auto box = proxy_box(measured, space);
+  if (!box)
+    throw Refusal{"the near plane cuts the ray caster's box, or the eye is inside",
+                  {},
+                  "move the eye out of the volume, or the near plane closer to the eye"};
+  return *box;
+}
+
+/// Of the image's nine parts the one that shows something in most pixels: enough to tell marches by.
+NativeImage fullest_part(const NativeImage& whole) {
+  const volume::Rect& all = whole.rect;
+  const int columns = std::max(1, all.width / 3);
+  const int rows = std::max(1, all.height / 3);
+  NativeImage fullest;
+  std::size_t most = 0;
+  for (int y = 0; y + rows <= all.height; y += rows) {
+    for (int x = 0; x + columns <= all.width; x += columns) {
+      NativeImage part{{all.x + x, all.y + y, columns, rows}, {}};
+      part.rgba.reserve(4 * part.rect.pixels());
+      std::size_t visible = 0;
+      for (int row = y; row < y + rows; ++row) {
+        const auto from = whole.rgba.begin() + 4 * (std::ptrdiff_t(row) * all.width + x);
+        for (auto pixel = from; pixel < from + 4 * std::ptrdiff_t(columns); pixel += 4)
+          visible += pixel[3] > 0 ? 1 : 0;
+        part.rgba.insert(part.rgba.end(), from, from + 4 * std::ptrdiff_t(columns));
+      }
+      if (visible <= most && !fullest.rgba.empty()) continue;
+      most = visible;
+      fullest = std::move(part);
+    }
+  }
+  return fullest;
+}
+
+/// Planes where rays begin and end.
+std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
+  std::vector<volume::HalfSpace> planes = box.cuts;
+  planes.insert(planes.end(), cuts.clipping.begin(), cuts.clipping.end());
+  return planes;
+}
+
+/// Vectors and matrices move with the camera where it has `turned`; one that changes alone may cut the volume.
+VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, bool turned) {
+  using Effect = VerificationSchedule::Effect;
+  VerificationSchedule::Inputs all;
+  for (const float value : inputs.fixed) all.push_back({value});
+  for (const float value : inputs.varying) {
+    // Not a number: the depth of opaque geometry, which is drawn in every frame.
+    all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
+  }
+  return all;
+}
+
+Refusal no_coordinate() {
+  return "no output of the vertex shader is a texture coordinate over the whole box";
+}
+
+}  // namespace
+
+/// One draw of a box, on its way through this stage.
+struct RayCasterStage::Draw {
+  const GlContext& context;
+  const Run& run;
+  const RecognisedRun& seen;
+  const ProgramStages& stages;
+  KnownRayCaster known;
+  std::vector<CoordinateSpace> spaces{};
+  Cuts cuts{};
+  bool eye_inside = false;
+
+  MarchContext measured() const {
+    return {context, run, stages, known.sent.texture, known.sent.range, !cuts.clipping.empty(), &*seen.capture};
+  }
+};
+
+ProxyBox RayCasterStage::find_box(Draw& draw) {
+  std::optional<March>& march = draw.known.march.march;
+  if (march) {
+    draw.spaces = {march->space};
+  } else {
+    draw.spaces = coordinate_spaces(draw.measured());
+    if (draw.spaces.empty()) throw no_coordinate();
+  }
+  ProxyBox box = box_in(draw.measured(), draw.spaces.front());
+  if (!box.cuts.empty() && !draw.known.verified.left_inside.empty())
+    throw Refusal{draw.known.verified.left_inside};
+  draw.cuts = read_cuts(context_, draw.run.pipeline().program, box.camera.texture_to_clip);
+  if (march && march->clipped == draw.cuts.clipping.empty()) march.reset();
+  return box;
+}
+
+void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs) {
+  std::optional<March>& march = draw.known.march.march;
+  if (!march || march->from_inside || box.cuts.empty() || inputs.fixed != draw.known.march.inputs.fixed) return;
+  // Rays of all directions, which may show that the step was not known in every one.
+  auto again = with_new_steps(draw.measured(), *march, box);
+  if (const auto* refusal = std::get_if<Refusal>(&again)) throw *refusal;
+  march = std::get<March>(std::move(again));
+}
+
+std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box,
+                                              const MarchInputs& inputs) const {
+  const KnownMarch& known = draw.known.march;
+  if (!known.march) return "the first of the volume";
+  const bool same = inputs == known.inputs;
+  const bool holds =
+      same || (inputs.fixed == known.inputs.fixed && still_marches(draw.measured(), *known.march, box));
+  if (!holds) return "tables, uniforms or state that colours depend on changed";
+  return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
+}
+
+ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, compositor::RenderService& service) {
+  // Another table is usual while somebody edits one; where samples lie is not tried again for that.
+  std::optional<March>& march = draw.known.march.march;
+  std::optional<March> again;
+  if (march) again = with_new_table(draw.measured(), *march, box);
+  march = again;
+  if (!again) {
+    const RefusalHistory& refusals = draw.known.refusals;
+    if (refusals.in_a_row >= patient_refusals && account_.frames() % refused_retry_frames != 0)
+      throw Refusal{refusals.last_reason};
+    draw.spaces = coordinate_spaces(draw.measured());
+    if (draw.spaces.empty()) throw no_coordinate();
+    const ProxyBox first = box_in(draw.measured(), draw.spaces.front());
+    MarchFinding finding = measure_march(draw.measured(), draw.spaces, first);
+    if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;
+    march = choose_march(draw, service, std::get<std::vector<March>>(finding));
+    draw.known.frames = 0;  // looked at again, as a new volume is
+  }
+  return box_in(draw.measured(), march->space);
+}
+
+RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& seen, KnownRayCaster known,
+                                         compositor::RenderService& service) {
+  const Pipeline& pipeline = run.pipeline();
+  Draw draw{context_, run, seen, programs_.stages(pipeline.program), known};
+  known.sent.texture = uploader_.describe(pipeline, 0);
+  count_texture(known.counters, known.sent.texture);
+  ProxyBox box = find_box(draw);
+  draw.eye_inside = !box.cuts.empty();
+  // Says what values there are.
+  uploader_.upload({pipeline, {}, seen.texture_version, box.region, {}}, known.sent, known.counters, service);
+
+  MarchInputs inputs = march_inputs(draw.measured(), group_);
+  const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
+  if (auto refusal = refusal_of_ray_caster(programs_.findings(pipeline, values, Subject::ray_caster)))
+    throw Refusal{std::move(*refusal)};
+  VerificationSchedule::Inputs depends_on = inputs_of(inputs, known.march.camera != box.camera.texture_to_clip);
+  known.march.camera = box.camera.texture_to_clip;
+  follow_inside(draw, box, inputs);
+  const std::string_view why = why_measured(draw, box, inputs);
+  classifier_.count_probe(why);
+  if (!why.empty()) box = measure(draw, box, service);
+  known.march.inputs = std::move(inputs);
+  RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, box)), box.camera};
+  asked.image.inputs = std::move(depends_on);
+  return asked;
+}
+
+volume::RenderRequest RayCasterStage::compose(const Draw& draw, const ProxyBox& box) {
+  const Pipeline& pipeline = draw.run.pipeline();
+  const SentVolume& sent = draw.known.sent;
+  volume::RenderRequest request =
+      composer_.compose(pipeline, box.camera, box.region, sent.description, sent.texture.filter);
+  composer_.hide_behind_geometry(pipeline, request);
+  return request;
+}
+
+ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const ProxyBox& box,
+                                 volume::RenderRequest composed) const {
+  ImageRequest image;
+  image.request = std::move(composed);
+  image.ray_caster = true;
+  image.eye_inside = draw.eye_inside;
+  image.opaque = image.request.depth;
+  image.parts = draw.cuts.parts;
+  image.ray_ends = ends_of(box, draw.cuts);
+  ask_nodes(march, image.request);
+  image.request.clip_planes = image.parts.front();
+  if (!image.ray_ends.empty() && march.steps.divided)
+    throw Refusal{"planes cut a ray caster's box whose rays are divided evenly"};
+  // One number a pixel travels to the nodes.
+  const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
+  if (!image.ray_ends.empty() && pixels > std::size_t(compositor::limits::max_ray_offsets))
+    throw Refusal{"planes cut a ray caster's box in more pixels than the nodes take beginnings of rays for",
+                  fmt::format("{} pixels, {} are taken", pixels, compositor::limits::max_ray_offsets),
+                  "make the window smaller"};
+  end_rays_at(image.ray_ends, march.past_planes, image.request);
+  return image;
+}
+
+void RayCasterStage::complete_image(const March& march, ImageRequest& asked, compositor::RenderService& service,
+                                    volume::Image& image, volume::FrameCounts& counts) {
+  volume::RenderRequest& request = asked.request;
+  // The nodes leave out the rim that shows nothing.
+  volume::Image whole(volume::footprint(request, request.region));
+  std::fill(whole.rgba.begin(), whole.rgba.end(), volume::neutral_value(request.op));
+  compositor::blend(request.op, whole, image.view());
+  image = std::move(whole);
+  for (std::size_t part = 1; part < asked.parts.size(); ++part) {
+    request.clip_planes = asked.parts[part];
+    const TimedShare timed(account_.clock(), &FrameShares::render);
+    const compositor::Rendered rendered = service.render(request);
+    compositor::blend(request.op, image, rendered.image);
+    counts += rendered.counts;
+  }
+  request.depth = asked.opaque;
+  if (needs_finish(march)) finish_image(march, image);
+  if (march.sum && march.sum->everywhere) cover_entered(asked.ray_ends, request, march.sum->alpha, image);
+}
+
+March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& service,
+                                   const std::vector<March>& marches) {
+  std::optional<NativeImage> looked_at;
+  const March* best = nullptr;
+  double least = 0;
+  for (const March& march : marches) {
+    const auto box = proxy_box(draw.measured(), march.space);
+    if (!box) continue;
+    volume::RenderRequest composed = compose(draw, *box);
+    if (!looked_at) {
+      const auto drawn =
+          native_image(context_, draw.run, composed, volume::footprint(composed, composed.region));
+      if (!drawn) break;
+      looked_at = fullest_part(*drawn);
+    }
+    composed.window = intersection(composed.window, looked_at->rect);
+    ImageRequest image = ask(draw, march, *box, std::move(composed));
+    const compositor::Rendered rendered = service.render(image.request);
+    volume::Image shown = copy_of(rendered.image);
+    volume::FrameCounts counts;
+    complete_image(march, image, service, shown, counts);
+    const double difference = difference_between(draw.run.pipeline(), *looked_at, shown.view()).mean_square;
+    if (best != nullptr && difference >= least) continue;
+    best = &march;
+    least = difference;
+  }
+  if (best == nullptr) throw Refusal{"the driver offers no float framebuffer to compare images in"};
+  return *best;
+}
+
+bool is_finished_here(const ImageRequest& image, const std::optional<March>& march) {
+  return image.ray_caster && (needs_finish(*march) || image.parts.size() > 1);
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,85 @@
+// The stage for ray casters: from the draw of a box, whose fragment shader marches, to a request. Stands where
+// upload, classification and composition stand for slices: how rays march says what colours mean, and is
+// measured on the texels' own range of values.
+#pragma once
+
+#include <vector>
+
+#include "compositor/service.h"
+#include "spu/volume/classification/classifier.h"
+#include "spu/volume/proxy/cuts.h"
+#include "spu/volume/proxy/known_march.h"
+#include "spu/volume/request/image_request.h"
+#include "spu/volume/request/request_composer.h"
+#include "spu/volume/upload/uploader.h"
+#include "spu/volume/verification/native_image.h"
+#include "spu/volume/verification/verified_volume.h"
+
+namespace understudy::spu {
+
+/// What is remembered of the volume that a ray caster draws.
+struct KnownRayCaster {
+  KnownMarch& march;
+  SentVolume& sent;
+  const VerifiedVolume& verified;
+  const RefusalHistory& refusals;
+  std::uint64_t& frames;  ///< in which it was substituted: none, once its march is measured anew
+  VolumeCounters& counters;
+};
+
+/// What is asked for.
+struct RayCasterRequest {
+  ImageRequest image;
+  CameraFit camera;
+};
+
+class RayCasterStage {
+ public:
+  RayCasterStage(const GlContext& context, ShareGroup& group, RenderSession& session, ProgramReader& programs,
+                 Uploader& uploader, Classifier& classifier, RequestComposer& composer, FrameAccount& account)
+      : context_(context),
+        group_(group),
+        session_(session),
+        programs_(programs),
+        uploader_(uploader),
+        classifier_(classifier),
+        composer_(composer),
+        account_(account) {}
+
+  /// The request for `run`, the draw of a box. Measures what `known` does not tell, and leaves it there. Needs
+  /// the session's lock. Throws Refusal, and what the service throws.
+  RayCasterRequest request(const Run& run, const RecognisedRun& seen, KnownRayCaster known,
+                           compositor::RenderService& service);
+
+  /// From the nodes' image of a ray caster to what it shows, together with the parts that cropping has left
+  /// behind the nearest. Renders these, whose figures are added to `counts`.
+  void complete_image(const March& march, ImageRequest& asked, compositor::RenderService& service,
+                      volume::Image& image, volume::FrameCounts& counts);
+
+ private:
+  struct Draw;
+
+  ProxyBox find_box(Draw& draw);
+  void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
+  std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;
+  ProxyBox measure(Draw& draw, const ProxyBox& box, compositor::RenderService& service);
+  volume::RenderRequest compose(const Draw& draw, const ProxyBox& box);
+  ImageRequest ask(const Draw& draw, const March& march, const ProxyBox& box,
+                   volume::RenderRequest composed) const;
+  /// The march whose image is most like the application's.
+  March choose_march(Draw& draw, compositor::RenderService& service, const std::vector<March>& marches);
+
+  const GlContext& context_;
+  ShareGroup& group_;
+  RenderSession& session_;
+  ProgramReader& programs_;
+  Uploader& uploader_;
+  Classifier& classifier_;
+  RequestComposer& composer_;
+  FrameAccount& account_;
+};
+
+/// Not every image of the nodes is what the application shows of it: this one goes through complete_image().
+bool is_finished_here(const ImageRequest& image, const std::optional<March>& march);
+
+}  // namespace understudy::spu

@@ -1,0 +1,89 @@
+#include "spu/volume/proxy/ray_colours.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spu/volume/proxy/field_probe.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+float value_at(const std::array<float, 2>& range, double place) {
+  return float(range[0] + place * (double(range[1]) - range[0]));
+}
+
+bool reached(const Rgba& fragment) {
+  return fragment[3] != no_fragment;
+}
+
+Rgba premultiplied(Rgba fragment, bool already) {
+  if (!reached(fragment)) return {};
+  for (std::size_t c = 0; c < 3 && !already; ++c) fragment[c] *= fragment[3];
+  return fragment;
+}
+
+float brightest_channel(const Rgba& colour) {
+  return std::max({colour[0], colour[1], colour[2]});
+}
+
+Rgba sample_of(const March& march, const Rgba& ray, double n) {
+  if (march.sum) return {float(ray[0] / n), float(ray[1] / n), float(ray[2] / n), 1};
+  if (n == 1) return ray;
+  Rgba sample{};
+  sample[3] = float(-std::expm1(std::log1p(-std::min(double(ray[3]), 1.0)) / n));
+  const float part = ray[3] > 0 ? sample[3] / ray[3] : float(1 / n);
+  for (std::size_t c = 0; c < 3; ++c) sample[c] = ray[c] * part;
+  return sample;
+}
+
+Rgba ray_of(const March& march, const Rgba& sample, double n) {
+  if (march.sum) {
+    Rgba ray{0, 0, 0, march.sum->alpha};
+    for (std::size_t c = 0; c < 3; ++c) ray[c] = std::min(float(sample[c] * n), march.sum->ceiling);
+    return ray;
+  }
+  Rgba ray{};
+  ray[3] = float(-std::expm1(n * std::log1p(-std::min(double(sample[3]), 1.0))));
+  const float times = sample[3] > 0 ? ray[3] / sample[3] : float(n);
+  for (std::size_t c = 0; c < 3; ++c) ray[c] = sample[c] * times;
+  return ray;
+}
+
+Rgba table_at(const volume::TransferFunction& table, float value) {
+  const auto last = float(table.entries.size() - 1);
+  const float place = std::clamp((value - table.low) / (table.high - table.low), 0.0F, 1.0F) * last;
+  const auto below = std::size_t(place);
+  const std::size_t above = std::min(below + 1, table.entries.size() - 1);
+  const float s = place - float(below);
+  Rgba colour;
+  for (std::size_t c = 0; c < 4; ++c)
+    colour[c] = table.entries[below][c] + s * (table.entries[above][c] - table.entries[below][c]);
+  return colour;
+}
+
+float amount(const March& march, const Rgba& ray) {
+  return march.sum ? brightest_channel(ray) / std::min(1.0F, march.sum->ceiling) : ray[3];
+}
+
+std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
+  constexpr float same = 1e-3F;
+  const float alpha = through.front()[3];
+  if (!(alpha > 0)) return std::nullopt;
+  for (const auto* rays : {&through, &briefly}) {
+    for (const Rgba& ray : *rays) {
+      if (!(std::abs(ray[3] - alpha) <= same)) return std::nullopt;
+    }
+  }
+  PlainSum sum{alpha, false};
+  float largest = 0;
+  for (const Rgba& ray : through) largest = std::max(largest, brightest_channel(ray));
+  // A sum that several values reach is where the program stops counting.
+  const auto reached_by = std::count_if(through.begin(), through.end(), [&](const Rgba& ray) {
+    return largest - brightest_channel(ray) <= 1e-6F * largest;
+  });
+  if (reached_by > 1) sum.ceiling = largest;
+  return sum;
+}
+
+}  // namespace understudy::spu

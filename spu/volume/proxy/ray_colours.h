@@ -1,0 +1,39 @@
+// Colours of rays and of their samples: how samples add up to a ray, by over, as a sum, or as an extreme.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "spu/volume/classification/colour_difference.h"
+#include "spu/volume/proxy/march.h"
+#include "volume/rgba.h"
+
+namespace understudy::spu {
+
+/// The value at `place` of a range, in [0,1].
+float value_at(const std::array<float, 2>& range, double place);
+
+/// Whether there was a fragment.
+bool reached(const volume::Rgba& fragment);
+
+/// The fragment as it would be blended: premultiplied.
+volume::Rgba premultiplied(volume::Rgba fragment, bool already);
+float brightest_channel(const volume::Rgba& colour);
+
+/// One of `n` equal samples that make up `ray`, and the ray that `n` equal samples make up; premultiplied.
+volume::Rgba sample_of(const March& march, const volume::Rgba& ray, double n);
+volume::Rgba ray_of(const March& march, const volume::Rgba& sample, double n);
+
+/// Linear between entries.
+volume::Rgba table_at(const volume::TransferFunction& table, float value);
+
+/// How much of a ray's samples is seen: between nothing and 1, but for sums that shine brighter.
+float amount(const March& march, const volume::Rgba& ray);
+
+/// Samples that are added up under one opacity, as `through` and `briefly`, a long ray and a short one over the
+/// same fields, show them.
+std::optional<PlainSum> plain_sum(const std::vector<volume::Rgba>& through,
+                                  const std::vector<volume::Rgba>& briefly);
+
+}  // namespace understudy::spu

@@ -1,0 +1,166 @@
+#include "spu/volume/proxy/ray_probes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "spu/volume/proxy/ray_colours.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+namespace {
+
+constexpr int bands = 24;  ///< of two rows each, on which samples are counted
+constexpr float same_but_for_rounding = 0.02F;
+/// Lighting needs a gradient, however small: by so much of the range of values the fields rise that show it.
+constexpr float slight_rise = 1e-5F;
+
+/// Whether the colour jumps at `value`: a slope there says nothing about lighting.
+bool is_at_step(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
+  const float rise = slight_rise * (measured.range[1] - measured.range[0]);
+  const std::array around{std::max(value - rise, measured.range[0]), value,
+                          std::min(value + rise, measured.range[1])};
+  const auto colours = probe.at(ray.x, ray.y, around);
+  return !(largest_difference(colours[0], colours[1]) <= same_but_for_rounding &&
+           largest_difference(colours[1], colours[2]) <= same_but_for_rounding);
+}
+
+}  // namespace
+
+Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted) {
+  const auto length_at = [&](double x, double y) {
+    const auto way = rays.way(x, y);
+    return way ? steps_of_way(steps, *way) : 0.0;
+  };
+  const auto middle = rays.middle();
+  const double mx = std::clamp(middle[0], -0.9, 0.9);
+  const double my = std::clamp(middle[1], -0.9, 0.9);
+  Ray best{mx, my, length_at(mx, my)};
+  for (int direction = 0; direction < 16; ++direction) {
+    const double angle = M_PI / 8 * direction + 0.1;
+    double inside = 0;
+    double outside = 3;
+    for (int halving = 0; halving < 24; ++halving) {
+      const double reach = (inside + outside) / 2;
+      const double x = mx + reach * std::cos(angle);
+      const double y = my + reach * std::sin(angle);
+      const bool in_view = std::abs(x) < 0.99 && std::abs(y) < 0.99;
+      const double length = in_view ? length_at(x, y) : 0;
+      if (length > 0 && std::abs(length - wanted) < std::abs(best.length - wanted)) best = {x, y, length};
+      (length > wanted ? inside : outside) = reach;
+    }
+  }
+  return best;
+}
+
+bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value) {
+  const float rise = slight_rise * (measured.range[1] - measured.range[0]);
+  const std::array one{value};
+  const Rgba flat = probe.at(ray.x, ray.y, one).front();
+  const Rgba sloping = probe.at_slope(ray.x, ray.y, one, rise).front();
+  return !(largest_difference(flat, sloping) <= same_but_for_rounding);
+}
+
+std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, FieldProbe& probe,
+                                              const RaysThroughBox& rays, const volume::RaySteps& texels,
+                                              const March& march, const std::vector<float>& values) {
+  constexpr float too_far_from_half = 0.48F;
+  constexpr std::size_t looked_at = 4;
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  const Ray longest{middle[0], middle[1], way ? steps_of_way(texels, *way) : 0};
+  for (const double part : {1.0, 0.25, 0.0625}) {
+    const Ray ray = part == 1 ? longest : ray_of_length(rays, texels, part * longest.length);
+    const auto fragments = probe.at(ray.x, ray.y, values);
+    std::vector<std::pair<float, float>> by_distance;  // from half, and the value
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      const float distance = std::abs(amount(march, fragments[i]) - 0.5F);
+      if (reached(fragments[i]) && distance < too_far_from_half) by_distance.emplace_back(distance, values[i]);
+    }
+    std::ranges::sort(by_distance);
+    by_distance.resize(std::min(by_distance.size(), looked_at));
+    for (const auto& [distance, value] : by_distance) {
+      if (!is_at_step(measured, probe, ray, value)) return TranslucentRay{ray, value};
+    }
+  }
+  return std::nullopt;
+}
+
+std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
+                                                                const RaysThroughBox& rays,
+                                                                const March& march) {
+  // Where nearly nothing is let through any more, programs stop, or one sample makes no difference.
+  constexpr float most_counted = 0.99F;
+  const bool already = measured.run.pipeline().blending.premultiplied;
+  std::vector<CountedRay> counted;
+  std::vector<double> amounts;
+  std::vector<Rgba> colours;
+  for (int band = 0; band < bands; ++band) {
+    const int y = std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2));
+    const auto fragments = probe.rows(y, 2, march.translucent);
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (!reached(fragments[i])) continue;
+      const int column = int(i) % probe.width();
+      const int row = y + int(i) / probe.width();
+      const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+      const float seen = amount(march, premultiplied(fragments[i], already));
+      if (!way || (!march.sum && seen > most_counted)) continue;
+      counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});
+      colours.push_back(premultiplied(fragments[i], already));
+      amounts.push_back(double(amount(march, colours.back())));
+    }
+  }
+  if (counted.size() < 64) return "too little of the box is in view to measure its rays";
+  const auto most = std::max_element(amounts.begin(), amounts.end());
+  const std::vector<double> counts = march.sum ? counts_from_amounts(amounts) : counts_from_opacities(amounts);
+  if (counts.empty() && march.sum) return "the colours of a ray's samples do not add up";
+  if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
+  // Colour over opacity stays what it is for one sample.
+  const std::size_t longest = std::size_t(most - amounts.begin());
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double expected = double(colours[longest][c]) / *most * amounts[i];
+      if (std::abs(colours[i][c] - expected) > 0.01)
+        return "the colours of a ray's samples are not composed by over";
+    }
+    counted[i].samples = counts[i];
+  }
+  return counted;
+}
+
+double shortest_seen(FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& texels, float value,
+                     const Rgba& shown) {
+  const std::array one{value};
+  const auto middle = rays.middle();
+  const double mx = std::clamp(middle[0], -0.9, 0.9);
+  const double my = std::clamp(middle[1], -0.9, 0.9);
+  std::vector<double> lengths;
+  for (int direction = 0; direction < 5; ++direction) {
+    const double angle = 2 * M_PI / 5 * direction + 0.1;
+    double inside = 0;
+    double outside = 3;
+    double length = 0;
+    for (int halving = 0; halving < 16; ++halving) {
+      const double reach = (inside + outside) / 2;
+      const double x = mx + reach * std::cos(angle);
+      const double y = my + reach * std::sin(angle);
+      const bool in_view = std::abs(x) < 0.99 && std::abs(y) < 0.99;
+      const auto way = rays.way(x, y);
+      const bool seen =
+          in_view && way && largest_difference(probe.at(x, y, one).front(), shown) < 0.01F * shown[3];
+      (seen ? inside : outside) = reach;
+      if (seen) length = steps_of_way(texels, *way);
+    }
+    lengths.push_back(length);
+  }
+  // Where the window ends before the box does, rays stay long: the shortest of all is the silhouette's.
+  return *std::min_element(lengths.begin(), lengths.end());
+}
+
+bool held_still(const MarchContext& measured, FieldProbe& probe, const March& march) {
+  return !march.jitter || hold_still(measured.run, probe, *march.jitter);
+}
+
+}  // namespace understudy::spu

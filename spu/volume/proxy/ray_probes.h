@@ -1,0 +1,53 @@
+// Rays through the application's box, looked at over fields of one value.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu {
+
+/// At normalised device coordinates (x, y).
+struct Ray {
+  double x = 0;
+  double y = 0;
+  double length = 0;  ///< in steps
+};
+
+/// The ray in view whose length comes closest to `wanted` steps, looked for from the middle of the box
+/// outwards.
+Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, double wanted);
+
+/// Whether the colour of a ray changes when the field of `value` gets the slightest slope, as lighting would.
+bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value);
+
+/// A value whose field lets about half of the light through a ray.
+struct TranslucentRay {
+  Ray ray;
+  float value = 0;
+};
+
+/// On the longest ray on which there is one of `values`: where samples are nearly opaque, only short rays let
+/// light through. `texels`: steps of one texel.
+std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, FieldProbe& probe,
+                                              const RaysThroughBox& rays, const volume::RaySteps& texels,
+                                              const March& march, const std::vector<float>& values);
+
+/// Counts of samples on rays all over the box, or why they cannot be counted.
+std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchContext& measured, FieldProbe& probe,
+                                                                const RaysThroughBox& rays, const March& march);
+
+/// The length from which on a ray has a sample, in steps of `texels`: at the box's silhouette rays are as short
+/// as can be, and those that are too short show nothing. `shown` is what the field of `value` looks like.
+double shortest_seen(FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& texels, float value,
+                     const volume::Rgba& shown);
+
+/// Noise at the rays' beginnings, where there is any, is taken away; false where that fails.
+bool held_still(const MarchContext& measured, FieldProbe& probe, const March& march);
+
+}  // namespace understudy::spu

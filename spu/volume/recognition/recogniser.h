@@ -1,0 +1,41 @@
+// The second stage: what a run of draws is. Its vertices are observed as the application's own pipeline places
+// them; a camera is fitted to them, and the slices' planes and segments are found. Cabral, Cam, Foran 1994 draw
+// such slices; Krüger and Westermann 2003 such a box.
+#pragma once
+
+#include <string>
+
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/geometry/recognised_run.h"
+#include "spu/volume/observation/run.h"
+#include "spu/volume/program_check/program_reader.h"
+
+namespace understudy::spu {
+
+class Recogniser {
+ public:
+  Recogniser(const GlContext& context, ShareGroup& group, ProgramReader& programs)
+      : context_(context), group_(group), programs_(programs) {}
+
+  /// What `run` is. `known_coordinate` names the input that addressed the volume of this ray caster before;
+  /// empty: none is known. Throws Refusal where the run is no volume that nodes can render, NothingVisible
+  /// where it draws nothing.
+  RecognisedRun recognise(const Run& run, const std::string& known_coordinate);
+  /// The same as far as geometry tells; nothing is known of the texture.
+  RecognisedRun find_geometry(const Run& run, const std::string& known_coordinate);
+
+ private:
+  RecognisedRun observe(const Run& run, const std::string& known_coordinate);
+  void observe_shader(const Run& run, const ProgramStages& stages, const std::string& known_coordinate,
+                      RecognisedRun& seen);
+  void observe_fixed_function(const Run& run, RecognisedRun& seen);
+  void find_slices_of(const Pipeline& pipeline, RecognisedRun& seen);
+  std::uint64_t texture_version(const Pipeline& pipeline, const RecognisedRun& seen) const;
+
+  const GlContext& context_;
+  ShareGroup& group_;
+  ProgramReader& programs_;
+};
+
+}  // namespace understudy::spu

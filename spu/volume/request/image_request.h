@@ -1,0 +1,26 @@
+// What is asked of the nodes for one run, and what their image needs besides to become the run's.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "spu/volume/verification/schedule.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+struct ImageRequest {
+  volume::RenderRequest request;
+  VerificationSchedule::Inputs inputs;  ///< what the image depends on
+
+  // Of a ray caster.
+  bool ray_caster = false;
+  bool eye_inside = false;  ///< its box has been cut before the eye
+  /// Convex parts of the volume that cropping has left, nearest to the eye first; `request` asks for the first.
+  std::vector<std::vector<volume::HalfSpace>> parts{{}};
+  std::vector<volume::HalfSpace> ray_ends;  ///< planes where its rays begin and end
+  /// Of the application's opaque geometry, where the request's own depth tells ends of rays as well.
+  std::optional<volume::DepthImage> opaque;
+};
+
+}  // namespace understudy::spu

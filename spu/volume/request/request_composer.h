@@ -1,0 +1,32 @@
+// The stage that puts a request together: camera, samples, colours, window, and what hides the volume.
+#pragma once
+
+#include "spu/volume/context/context.h"
+#include "spu/volume/geometry/fit.h"
+#include "spu/volume/pipeline/pipeline.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+class RequestComposer {
+ public:
+  RequestComposer(const GlContext& context, RenderSession& session, FrameAccount& account)
+      : context_(context), session_(session), account_(account) {}
+
+  /// A request for the part `region` of `volume`, as `pipeline` draws it into the context's viewport; samples
+  /// and colours are for the caller to fill in.
+  volume::RenderRequest compose(const Pipeline& pipeline, const CameraFit& camera, const volume::Box& region,
+                                const volume::VolumeDescription& volume, volume::Filter filter) const;
+
+  /// Gives it the depth of the application's opaque geometry, if the pipeline is hidden by that.
+  void hide_behind_geometry(const Pipeline& pipeline, volume::RenderRequest& request);
+
+ private:
+  const GlContext& context_;
+  RenderSession& session_;
+  FrameAccount& account_;
+};
+
+}  // namespace understudy::spu

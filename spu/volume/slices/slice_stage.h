@@ -1,0 +1,38 @@
+// The stage for slices: from a recognised run to a request, by way of upload, classification and composition.
+#pragma once
+
+#include "compositor/service.h"
+#include "spu/volume/classification/classifier.h"
+#include "spu/volume/request/image_request.h"
+#include "spu/volume/request/request_composer.h"
+#include "spu/volume/upload/uploader.h"
+
+namespace understudy::spu {
+
+/// What is remembered of the volume that slices draw.
+struct KnownSlices {
+  SentVolume& sent;
+  KnownColours& colours;
+  VolumeCounters& counters;
+};
+
+class SliceStage {
+ public:
+  SliceStage(Uploader& uploader, Classifier& classifier, RequestComposer& composer)
+      : uploader_(uploader), classifier_(classifier), composer_(composer) {}
+
+  /// The request for `seen`, drawn by `pipeline`. Sends texels and probes colours where `known` does not hold,
+  /// and leaves there what it has found. Needs the session's lock. Throws Refusal, and what the service throws.
+  ImageRequest request(const Pipeline& pipeline, const RecognisedRun& seen, KnownSlices known,
+                       compositor::RenderService& service);
+
+  /// The same of a texture whose texels are not sent; nothing hides the volume.
+  ImageRequest compose(const Pipeline& pipeline, const RecognisedRun& seen, KnownSlices known);
+
+ private:
+  Uploader& uploader_;
+  Classifier& classifier_;
+  RequestComposer& composer_;
+};
+
+}  // namespace understudy::spu

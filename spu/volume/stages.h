@@ -1,0 +1,56 @@
+// The stages of the volume unit, wired: each is handed the stages below it that it works with.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "spu/volume/depth/depth_watch.h"
+#include "spu/volume/known_volumes/known_volumes.h"
+#include "spu/volume/merging/run_merger.h"
+#include "spu/volume/presentation/presentation.h"
+#include "spu/volume/proxy/ray_caster_stage.h"
+#include "spu/volume/recognition/recogniser.h"
+#include "spu/volume/slices/slice_stage.h"
+
+namespace understudy::spu {
+
+/// Of one context, which must be current whenever one of them is used.
+struct Stages {
+  /// `owner` names the context in the ledger; `nothing_held` is called when runs no longer wait for each other.
+  Stages(const GlContext& context, ShareGroup& group, RenderSession& session, KnownVolumes& volumes,
+         ProgramSamplers& samplers, FrameLedger::Context owner, std::function<void()> nothing_held)
+      : account(context, session.ledger(), owner),
+        programs(context, group, samplers),
+        recogniser(context, group, programs),
+        uploader(context, group, session, account),
+        classifier(context, group, session, programs, account),
+        composer(context, session, account),
+        slices(uploader, classifier, composer),
+        ray_casters(context, group, session, programs, uploader, classifier, composer, account),
+        source(context, session, ray_casters, account),
+        presentation(context, session, source, account),
+        verifier(context, session, account),
+        depth(context, session, account),
+        merged(group, session, volumes),
+        merger({context, group, session, uploader, slices, composer, verifier, presentation, account}, volumes,
+               merged, std::move(nothing_held)) {}
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
+
+  FrameAccount account;
+  ProgramReader programs;
+  Recogniser recogniser;
+  Uploader uploader;
+  Classifier classifier;
+  RequestComposer composer;
+  SliceStage slices;
+  RayCasterStage ray_casters;
+  ImageSource source;
+  Presentation presentation;
+  Verifier verifier;
+  DepthWatch depth;
+  MergedVolumes merged;
+  RunMerger merger;
+};
+
+}  // namespace understudy::spu

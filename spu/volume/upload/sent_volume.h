@@ -1,0 +1,22 @@
+// What the render service holds of one texture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "spu/volume/texture/texels.h"
+#include "spu/volume/upload/block_hashes.h"
+#include "volume/request.h"
+
+namespace understudy::spu {
+
+struct SentVolume {
+  volume::VolumeDescription description;  ///< as the service has it
+  std::uint64_t generation = 0;           ///< of the service that has it; 0: none
+  std::uint64_t texture_version = 0;      ///< of the texture, whose texels it has
+  BlockHashes hashes;                     ///< of the texels that it has
+  TextureDescription texture;
+  std::array<float, 2> range{0, 1};  ///< of its values
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,16 @@
+// What is remembered of the comparisons of one volume.
+#pragma once
+
+#include <string>
+
+#include "spu/volume/verification/schedule.h"
+
+namespace understudy::spu {
+
+struct VerifiedVolume {
+  VerificationSchedule schedule;
+  bool inside = false;      ///< an image with the eye inside was like the application's
+  std::string left_inside;  ///< why it is left while the eye is inside; empty: it is not
+};
+
+}  // namespace understudy::spu

@@ -1,0 +1,134 @@
+#include "spu/volume/verification/verifier.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace understudy::spu {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Rays of all directions begin at the eye: a step that is not quite known shows more than from outside, and in
+/// other views than the one that is compared.
+constexpr double inside_psnr = 40;
+
+/// Neighbours of a sentinel's pixels are compared with, too.
+constexpr int sentinel_rim = 1;
+
+}  // namespace
+
+Refusal refusal_of(const ImageDifference& difference) {
+  const TileDifference& tile = difference.worst;
+  return {fmt::format(
+      "its image differs from the viewer's own in the {} x {} pixels at ({}, {}): by {:.1f}/255 on average "
+      "beyond "
+      "their neighbours ({:.0f}/255 are allowed), an eighth of them by {:.0f}/255 ({:.0f}/255)",
+      tile.tile.width, tile.tile.height, tile.tile.x, tile.tile.y, 255 * tile.excess, 255 * max_tile_excess,
+      255 * tile.common, 255 * max_common_difference)};
+}
+
+bool Verifier::whole_due(const VerifiedVolume& volume, bool eye_inside, std::uint64_t frames) const {
+  const Options& options = session_.options();
+  if (options.verify < 0) return false;
+  const bool due = options.verify > 0 && frames % std::uint64_t(options.verify) == 0;
+  const bool first_inside = eye_inside && !volume.inside;
+  return due || first_inside || volume.schedule.whole_due();
+}
+
+std::optional<Comparison> Verifier::verify(const ImageToVerify& what, const volume::ImageView& image,
+                                           VerifiedVolume& volume, VolumeCounters& counters) {
+  if (session_.options().verify < 0) return std::nullopt;
+  const TimedShare timed(account_.clock(), &FrameShares::verification);
+  return whole_due(volume, what.eye_inside, what.frames) ? compare_whole(what, image, volume, counters)
+                                                         : compare_sentinels(what, image, volume, counters);
+}
+
+std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, const volume::ImageView& image,
+                                                  VerifiedVolume& volume, VolumeCounters& counters) {
+  const Pipeline& pipeline = what.run.pipeline();
+  const volume::Rect window = intersection(what.request.window, what.request.viewport);
+  if (window.empty()) return std::nullopt;
+  NativeDrawing drawing(context_, pipeline, what.request);
+  if (!drawing.complete()) return std::nullopt;
+  const double native_ms = drawing.add_timed(what.run);
+  const ImageDifference difference = difference_between(pipeline, drawing.image(window), image);
+  if (what.eye_inside && difference.psnr() < inside_psnr) {
+    volume.left_inside = fmt::format(
+        "seen from inside, its image differs from the application's own by {:.1f} dB", difference.psnr());
+    throw Refusal{volume.left_inside, fmt::format("{:.0f} dB are needed", inside_psnr),
+                  "move the eye out of the volume"};
+  }
+  volume.inside = what.eye_inside;
+  return judge(difference, native_ms, counters);
+}
+
+Comparison Verifier::judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters) {
+  count(difference, counters);
+  account_.note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
+  const double asked_psnr = session_.options().verify_psnr;
+  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms};
+}
+
+void Verifier::count(const ImageDifference& difference, VolumeCounters& counters) {
+  counters.verify_max = std::max(counters.verify_max, difference.max);
+  counters.verify_sum_sq += difference.mean_square;
+  counters.verified_frames.fetch_add(1, std::memory_order_relaxed);
+  if (difference.worst.severity() >= counters.verify_worst_tile) {
+    counters.verify_worst_tile = difference.worst.severity();
+    counters.verify_worst_frame = account_.frames() + 1;
+  }
+}
+
+NativeDrawing& Verifier::sentinel_drawing(const ImageToVerify& what) {
+  const Pipeline& pipeline = what.run.pipeline();
+  const volume::Rect& viewport = what.request.viewport;
+  const bool white = pipeline.blending.op == volume::Operator::min;
+  const std::array<int, 4> extent{viewport.x + viewport.width, viewport.y + viewport.height,
+                                  pipeline.target.samples, white ? 1 : 0};
+  if (!sentinel_drawing_ || sentinel_extent_ != extent) {
+    sentinel_drawing_ = std::make_unique<NativeDrawing>(context_, pipeline, what.request);
+    sentinel_extent_ = extent;
+  }
+  return *sentinel_drawing_;
+}
+
+volume::Rect Verifier::random_tile(const volume::Rect& window) {
+  const auto place = [&](int low, int extent) {
+    return low + std::uniform_int_distribution<int>(0, std::max(extent - compared_tile_edge, 0))(random_);
+  };
+  return intersection(
+      window, {place(window.x, window.width) - sentinel_rim, place(window.y, window.height) - sentinel_rim,
+               compared_tile_edge + 2 * sentinel_rim, compared_tile_edge + 2 * sentinel_rim});
+}
+
+std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
+                                                      VerifiedVolume& volume, VolumeCounters& counters) {
+  const int tiles = volume.schedule.sentinels();
+  const volume::Rect window = intersection(what.request.window, what.request.viewport);
+  if (tiles == 0 || window.empty()) return std::nullopt;
+  NativeDrawing& drawing = sentinel_drawing(what);
+  if (!drawing.complete()) return std::nullopt;
+  const auto start = Clock::now();
+  for (int i = 0; i < tiles; ++i) {
+    const volume::Rect tile = random_tile(window);
+    drawing.redraw(what.run, tile, what.request.depth);
+    const ImageDifference difference = difference_between(what.run.pipeline(), drawing.image(tile), image);
+    counters.verified_tiles.fetch_add(1, std::memory_order_relaxed);
+    if (difference.worst.severity() > counters.verify_worst_tile) {
+      counters.verify_worst_tile = difference.worst.severity();
+      counters.verify_worst_frame = account_.frames() + 1;
+    }
+    if (!difference.worst.within_bound()) return Comparison{difference, false, std::nullopt};
+  }
+  volume.schedule.sentinels_took(tiles, milliseconds_since(start));
+  return std::nullopt;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,72 @@
+// The stage that compares an image with what the application itself would draw, before it is shown: whole, or
+// in sentinels (schedule.h says when, tile_comparison.h by what bound).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <random>
+
+#include "spu/report/counters.h"
+#include "spu/volume/refusal/refusal.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
+#include "spu/volume/verification/native_image.h"
+#include "spu/volume/verification/tile_comparison.h"
+#include "spu/volume/verification/verified_volume.h"
+
+namespace understudy::spu {
+
+/// Of an image, or of the first of its tiles that was wrong.
+struct Comparison {
+  ImageDifference difference;
+  bool right = false;               ///< within the bound
+  std::optional<double> native_ms;  ///< of a whole image: what the application's own drawing took; 0: not known
+};
+
+/// The sentence for a comparison that was lost.
+Refusal refusal_of(const ImageDifference& difference);
+
+/// What is compared.
+struct ImageToVerify {
+  const Run& run;
+  const volume::RenderRequest& request;
+  bool eye_inside = false;
+  std::uint64_t frames = 0;  ///< of the volume, before this one
+};
+
+class Verifier {
+ public:
+  Verifier(const GlContext& context, RenderSession& session, FrameAccount& account)
+      : context_(context), session_(session), account_(account) {}
+
+  /// Whether the volume's next image is compared whole.
+  bool whole_due(const VerifiedVolume& volume, bool eye_inside, std::uint64_t frames) const;
+
+  /// Compares `image` with what the application draws. Null where nothing was compared, or sentinels were
+  /// right. Throws Refusal where the eye is inside and the steps are not known well enough.
+  std::optional<Comparison> verify(const ImageToVerify& what, const volume::ImageView& image,
+                                   VerifiedVolume& volume, VolumeCounters& counters);
+
+  /// The verdict on a whole image, which is counted.
+  Comparison judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters);
+
+ private:
+  std::optional<Comparison> compare_whole(const ImageToVerify& what, const volume::ImageView& image,
+                                          VerifiedVolume& volume, VolumeCounters& counters);
+  std::optional<Comparison> compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
+                                              VerifiedVolume& volume, VolumeCounters& counters);
+  void count(const ImageDifference& difference, VolumeCounters& counters);
+  NativeDrawing& sentinel_drawing(const ImageToVerify& what);
+  volume::Rect random_tile(const volume::Rect& window);
+
+  const GlContext& context_;
+  RenderSession& session_;
+  FrameAccount& account_;
+  std::unique_ptr<NativeDrawing> sentinel_drawing_;
+  std::array<int, 4> sentinel_extent_{};  ///< of it: width, height, samples, whether its background is white
+  std::minstd_rand random_;               ///< where sentinels stand
+};
+
+}  // namespace understudy::spu

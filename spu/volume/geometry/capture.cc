@@ -136,6 +136,76 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
   return range;
 }
 
+/// The vertices of `run` as they leave the vertex stage, three a triangle; empty where nothing was drawn, or
+/// too much.
+std::vector<float> captured_data(const GlContext& context, const Run& run, const ProgramStages& stages,
+                                 std::size_t stride) {
+  const DispatchTable& gl = *context.gl;
+  CaptureState state(gl, stages.observer);
+  copy_uniforms(context, run.pipeline().program, stages.observer);
+  gl.UseProgram(stages.observer);
+  GLsizeiptr bytes = first_buffer;
+  std::array<GLuint, 2> triangles = state.draw(run, bytes);
+  if (triangles[1] < triangles[0]) {
+    bytes = GLsizeiptr(triangles[0]) * 3 * GLsizeiptr(stride * sizeof(float));
+    if (bytes > largest_buffer) return {};
+    triangles = state.draw(run, bytes);
+  }
+  if (triangles[1] == 0 || triangles[1] < triangles[0]) return {};
+  std::vector<float> data(std::size_t(triangles[1]) * 3 * stride);
+  gl.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
+  return data;
+}
+
+/// Positions; texture coordinates are not chosen yet.
+ObservedPolygons triangles_of(const Capture& capture) {
+  ObservedPolygons polygons;
+  const std::size_t vertices = capture.data.size() / capture.stride;
+  polygons.vertices.resize(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    for (std::size_t c = 0; c < 4; ++c) polygons.vertices[v].clip[c] = capture.data[v * capture.stride + c];
+    if (v % 3 == 2) polygons.first.push_back(v + 1);
+  }
+  return polygons;
+}
+
+/// Gives the triangles of `capture` the texture coordinates that stand at `offset` of each vertex: `axes` of
+/// them, and the number of the slice, of which there are `slices`, for the third of a stack.
+void take_coordinates(Capture& capture, std::size_t offset, std::size_t axes, std::size_t slices) {
+  auto& vertices = capture.polygons.vertices;
+  const std::size_t of_slice = vertices.size() / std::max<std::size_t>(slices, 1);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    for (std::size_t c = 0; c < axes; ++c)
+      vertices[v].texture[c] = capture.data[v * capture.stride + offset + c];
+    if (axes == 3) continue;
+    const std::size_t slice = v / of_slice;
+    vertices[v].texture[2] = double(slice);
+  }
+}
+
+/// Of several inputs that are affine maps of the position (a place in the world, a second coordinate), the one
+/// that stays within the texture addresses it. With a `coordinate` no other is tried.
+void choose_coordinate(Capture& capture, const ProgramStages& stages, const std::string& coordinate,
+                       std::size_t axes, std::size_t slices) {
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
+    const StageInput& input = stages.inputs[i];
+    if (input.integer || !input.written || std::size_t(input.components) < axes) continue;
+    if (!coordinate.empty() && input.name != coordinate) continue;
+    take_coordinates(capture, capture.offsets[i], axes, slices);
+    const auto fit = fit_camera(capture.polygons.vertices);
+    if (!fit || fit->residual > max_fit_residual) continue;
+    const bool inside = within_texture(capture.polygons.vertices, axes);
+    if (!capture.fit || inside) {
+      capture.coordinate = input.name;
+      capture.fit = fit;
+      chosen = capture.offsets[i];
+    }
+    if (inside) break;
+  }
+  if (capture.fit) take_coordinates(capture, chosen, axes, slices);
+}
+
 }  // namespace
 
 bool InputRange::covers(const InputRange& inner) const {
@@ -150,79 +220,26 @@ bool InputRange::covers(const InputRange& inner) const {
 
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
                          const std::string& coordinate) {
-  const DispatchTable& gl = *context.gl;
   Capture capture;
-  std::size_t stride = 4;
+  capture.stride = 4;
   for (const StageInput& input : stages.inputs) {
-    capture.offsets.push_back(stride);
-    if (input.written) stride += std::size_t(input.components);
+    capture.offsets.push_back(capture.stride);
+    if (input.written) capture.stride += std::size_t(input.components);
   }
-  capture.stride = stride;
-  std::vector<float>& data = capture.data;
-  {
-    CaptureState state(gl, stages.observer);
-    copy_uniforms(context, run.pipeline().program, stages.observer);
-    gl.UseProgram(stages.observer);
-    GLsizeiptr bytes = first_buffer;
-    std::array<GLuint, 2> triangles = state.draw(run, bytes);
-    if (triangles[1] < triangles[0]) {
-      bytes = GLsizeiptr(triangles[0]) * 3 * GLsizeiptr(stride * sizeof(float));
-      if (bytes > largest_buffer) return capture;
-      triangles = state.draw(run, bytes);
-    }
-    if (triangles[1] == 0 || triangles[1] < triangles[0]) return capture;
-    data.resize(std::size_t(triangles[1]) * 3 * stride);
-    gl.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
-  }
+  capture.data = captured_data(context, run, stages, capture.stride);
+  drop_degenerate_triangles(capture.data, capture.stride);
+  if (capture.data.empty()) return capture;
+  const float* const last = capture.data.data() + (capture.data.size() - capture.stride);
+  capture.first = values_at(capture.data.data(), stages, capture.offsets);
+  capture.last = values_at(last, stages, capture.offsets);
+  capture.polygons = triangles_of(capture);
 
-  drop_degenerate_triangles(data, stride);
-  if (data.empty()) return capture;
-  const std::size_t vertices = data.size() / stride;
-  const auto vertex = [&](std::size_t v) { return std::span<const float>(data).subspan(v * stride, stride); };
-  capture.first = values_at(vertex(0).data(), stages, capture.offsets);
-  capture.last = values_at(vertex(vertices - 1).data(), stages, capture.offsets);
-  ObservedPolygons& polygons = capture.polygons;
-  polygons.vertices.resize(vertices);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    for (std::size_t c = 0; c < 4; ++c) polygons.vertices[v].clip[c] = vertex(v)[c];
-    if (v % 3 == 2) polygons.first.push_back(v + 1);
-  }
-
-  // Of several that are affine maps of the position (a place in the world, a second coordinate), the one that
-  // stays within the texture addresses it.
   const bool stack = run.pipeline().stack;
-  const std::size_t axes = stack ? 2 : 3;
   const std::size_t slices = stack ? run.slices().size() : 1;
   // Whoever draws slices of a stack draws the same with each; if not, nothing will fit.
-  if (vertices % (3 * slices) != 0) return capture;
-  const std::size_t of_slice = vertices / std::max<std::size_t>(slices, 1);
-  const auto take_coordinates = [&](std::size_t at) {
-    for (std::size_t v = 0; v < vertices; ++v) {
-      for (std::size_t c = 0; c < axes; ++c) polygons.vertices[v].texture[c] = vertex(v)[at + c];
-      if (!stack) continue;
-      const std::size_t slice = v / of_slice;
-      polygons.vertices[v].texture[2] = double(slice);
-    }
-  };
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < stages.inputs.size(); ++i) {
-    const StageInput& input = stages.inputs[i];
-    if (input.integer || !input.written || std::size_t(input.components) < axes) continue;
-    if (!coordinate.empty() && input.name != coordinate) continue;
-    take_coordinates(capture.offsets[i]);
-    const auto fit = fit_camera(polygons.vertices);
-    if (!fit || fit->residual > max_fit_residual) continue;
-    const bool inside = within_texture(polygons.vertices, axes);
-    if (!capture.fit || inside) {
-      capture.coordinate = input.name;
-      capture.fit = fit;
-      chosen = capture.offsets[i];
-    }
-    if (inside) break;
-  }
-  if (!capture.fit) return capture;
-  take_coordinates(chosen);
-  capture.range = range_of(capture, stages);
+  if (capture.polygons.vertices.size() % (3 * slices) != 0) return capture;
+  choose_coordinate(capture, stages, coordinate, stack ? 2 : 3, slices);
+  if (capture.fit) capture.range = range_of(capture, stages);
   return capture;
 }
 

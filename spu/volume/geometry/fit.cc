@@ -43,40 +43,69 @@ volume::Vec3 solve(const Symmetric3& l, const volume::Vec3& right) {
   return y;
 }
 
+/// The middle of all vertices, and how far they reach from it. Centring keeps a volume that stands far from the
+/// origin (offset 1e7) from drowning its own extent.
+struct Centre {
+  volume::Vec3 texture{};
+  std::array<double, 4> clip{};
+  volume::Vec3 scale{};  ///< of texture coordinates
+};
+
+/// Null where they are not finite, or do not span texture space.
+std::optional<Centre> centre_of(std::span<const ObservedVertex> vertices) {
+  Centre centre;
+  for (const ObservedVertex& v : vertices) {
+    for (int i = 0; i < 3; ++i) centre.texture[i] += v.texture[i];
+    for (int i = 0; i < 4; ++i) centre.clip[i] += v.clip[i];
+  }
+  const double n = double(vertices.size());
+  for (double& x : centre.texture) x /= n;
+  for (double& x : centre.clip) x /= n;
+  for (double x : centre.clip) {
+    if (!std::isfinite(x)) return std::nullopt;
+  }
+  for (const ObservedVertex& v : vertices) {
+    for (int i = 0; i < 3; ++i)
+      centre.scale[i] = std::max(centre.scale[i], std::abs(v.texture[i] - centre.texture[i]));
+  }
+  for (double s : centre.scale) {
+    if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
+  }
+  return centre;
+}
+
+/// Largest deviation of a vertex from the map, relative to the extent of the clip positions.
+double residual_of(std::span<const ObservedVertex> vertices, const volume::Matrix4& texture_to_clip,
+                   const Centre& centre) {
+  double extent = 0;
+  double deviation = 0;
+  for (const ObservedVertex& v : vertices) {
+    for (int row = 0; row < 4; ++row) {
+      const double* a = &texture_to_clip[4 * row];
+      const double predicted = a[0] * v.texture[0] + a[1] * v.texture[1] + a[2] * v.texture[2] + a[3];
+      deviation = std::max(deviation, std::abs(predicted - v.clip[row]));
+      extent = std::max(extent, std::abs(v.clip[row] - centre.clip[row]));
+    }
+  }
+  return extent > 0 ? deviation / extent : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 std::optional<CameraFit> fit_camera(std::span<const ObservedVertex> vertices) {
   if (vertices.size() < 4) return std::nullopt;
-  // Centring keeps a volume that stands far from the origin (offset 1e7) from drowning its own extent.
-  volume::Vec3 centre_t{};
-  std::array<double, 4> centre_c{};
-  for (const ObservedVertex& v : vertices) {
-    for (int i = 0; i < 3; ++i) centre_t[i] += v.texture[i];
-    for (int i = 0; i < 4; ++i) centre_c[i] += v.clip[i];
-  }
-  const double n = double(vertices.size());
-  for (double& x : centre_t) x /= n;
-  for (double& x : centre_c) x /= n;
-  for (double x : centre_c) {
-    if (!std::isfinite(x)) return std::nullopt;
-  }
-
-  volume::Vec3 scale{};
-  for (const ObservedVertex& v : vertices) {
-    for (int i = 0; i < 3; ++i) scale[i] = std::max(scale[i], std::abs(v.texture[i] - centre_t[i]));
-  }
-  for (double s : scale) {
-    if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
-  }
+  const auto centre = centre_of(vertices);
+  if (!centre) return std::nullopt;
+  const volume::Vec3& scale = centre->scale;
 
   Symmetric3 normal{};
   std::array<volume::Vec3, 4> right{};
   for (const ObservedVertex& v : vertices) {
     volume::Vec3 t{};
-    for (int i = 0; i < 3; ++i) t[i] = (v.texture[i] - centre_t[i]) / scale[i];
+    for (int i = 0; i < 3; ++i) t[i] = (v.texture[i] - centre->texture[i]) / scale[i];
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) normal[i][j] += t[i] * t[j];
-      for (int row = 0; row < 4; ++row) right[row][i] += t[i] * (v.clip[row] - centre_c[row]);
+      for (int row = 0; row < 4; ++row) right[row][i] += t[i] * (v.clip[row] - centre->clip[row]);
     }
   }
   // Two slices of N lie 1/N apart at least; squared and scaled that is far above 1e-10, float noise far below.
@@ -86,25 +115,14 @@ std::optional<CameraFit> fit_camera(std::span<const ObservedVertex> vertices) {
   CameraFit fit;
   for (int row = 0; row < 4; ++row) {
     const volume::Vec3 solution = solve(*factor, right[row]);
-    double constant = centre_c[row];
+    double constant = centre->clip[row];
     for (int i = 0; i < 3; ++i) {
       fit.texture_to_clip[4 * row + i] = solution[i] / scale[i];
-      constant -= solution[i] / scale[i] * centre_t[i];
+      constant -= solution[i] / scale[i] * centre->texture[i];
     }
     fit.texture_to_clip[4 * row + 3] = constant;
   }
-
-  double extent = 0;
-  double deviation = 0;
-  for (const ObservedVertex& v : vertices) {
-    for (int row = 0; row < 4; ++row) {
-      const double* a = &fit.texture_to_clip[4 * row];
-      const double predicted = a[0] * v.texture[0] + a[1] * v.texture[1] + a[2] * v.texture[2] + a[3];
-      deviation = std::max(deviation, std::abs(predicted - v.clip[row]));
-      extent = std::max(extent, std::abs(v.clip[row] - centre_c[row]));
-    }
-  }
-  fit.residual = extent > 0 ? deviation / extent : std::numeric_limits<double>::infinity();
+  fit.residual = residual_of(vertices, fit.texture_to_clip, *centre);
   if (!std::isfinite(fit.residual)) return std::nullopt;
   return fit;
 }

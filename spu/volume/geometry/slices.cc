@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "volume/matrix.h"
 
@@ -94,29 +96,41 @@ double depth_at(const volume::Matrix4& a, const Vec3& t) {
   return z / w;
 }
 
-}  // namespace
-
-SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
-                         std::span<const volume::HalfSpace> clip_planes, SliceOrder order) {
-  std::vector<Vec3> points;
-  // One normal for all slices: the sum of all area vectors, turned to agree, outweighs slivers.
+/// One normal for all slices: the sum of all area vectors, turned to agree, outweighs slivers.
+struct CommonNormal {
   Vec3 normal{};
-  double observed_area = 0;
+  double total = 0;          ///< length of the sum
+  double observed_area = 0;  ///< of all polygons, doubled
+};
+
+CommonNormal common_normal(const ObservedPolygons& polygons) {
+  CommonNormal common;
+  std::vector<Vec3> points;
   for (std::size_t p = 0; p < polygons.count(); ++p) {
     points.clear();
     for (const ObservedVertex& v : polygons.polygon(p)) points.push_back(v.texture);
     const Vec3 area = area_vector(points);
-    const double sign = dot(area, normal) < 0 ? -1 : 1;
-    for (int k = 0; k < 3; ++k) normal[k] += sign * area[k];
-    observed_area += length(area);
+    const double sign = dot(area, common.normal) < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) common.normal[k] += sign * area[k];
+    common.observed_area += length(area);
   }
-  const double total = length(normal);
-  if (!(total > 0)) return "slices have no area";
-  if (total < 0.999 * observed_area) return "slices are not parallel";
-  for (double& x : normal) x /= total;
+  common.total = length(common.normal);
+  if (common.total > 0) {
+    for (double& x : common.normal) x /= common.total;
+  }
+  return common;
+}
 
-  std::vector<double> offsets;  // in drawing order
+/// Where the slices lie along their normal, in drawing order, and the box around them.
+struct Places {
+  std::vector<double> offsets;
   volume::Box box{{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+};
+
+/// Null where a slice is not flat.
+std::optional<Places> places_of(const ObservedPolygons& polygons, const Vec3& normal) {
+  Places places;
+  std::vector<Vec3> points;
   for (std::size_t p = 0; p < polygons.count(); ++p) {
     double low = 1e30;
     double high = -1e30;
@@ -129,72 +143,109 @@ SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& came
     }
     // A degenerate vertex run (batched tiles) paints nothing and says nothing.
     if (length(area_vector(points)) < 1e-12) continue;
-    if (high - low > 16 * same_plane) return "slices are not flat in texture space";
+    if (high - low > 16 * same_plane) return std::nullopt;
     for (const Vec3& t : points) {
       for (int k = 0; k < 3; ++k) {
-        box.low[k] = std::min(box.low[k], t[k]);
-        box.high[k] = std::max(box.high[k], t[k]);
+        places.box.low[k] = std::min(places.box.low[k], t[k]);
+        places.box.high[k] = std::max(places.box.high[k], t[k]);
       }
     }
     const double offset = (low + high) / 2;
-    if (offsets.empty() || std::abs(offset - offsets.back()) > 16 * same_plane) offsets.push_back(offset);
+    if (places.offsets.empty() || std::abs(offset - places.offsets.back()) > 16 * same_plane)
+      places.offsets.push_back(offset);
   }
-  if (offsets.size() < 2) return "fewer than two slices";
+  return places;
+}
+
+/// Coordinates close to the texture's edge become the edge; false where the box leaves the texture.
+bool snap_to_texture(volume::Box& box) {
   for (int k = 0; k < 3; ++k) {
     if (std::abs(box.low[k]) < snap) box.low[k] = 0;
     if (std::abs(box.high[k] - 1) < snap) box.high[k] = 1;
-    if (box.low[k] < 0 || box.high[k] > 1) return "slices leave the texture";
+    if (box.low[k] < 0 || box.high[k] > 1) return false;
   }
+  return true;
+}
 
+/// From one to the next; null where slices are not equally spaced.
+std::optional<double> step_between(const std::vector<double>& offsets) {
   const std::size_t n = offsets.size();
   const double step = (offsets.back() - offsets.front()) / double(n - 1);
   for (std::size_t i = 0; i < n; ++i) {
-    if (std::abs(offsets.front() + double(i) * step - offsets[i]) > even_spacing * std::abs(step)) {
-      return "slices are not equally spaced";
-    }
+    if (std::abs(offsets.front() + double(i) * step - offsets[i]) > even_spacing * std::abs(step))
+      return std::nullopt;
   }
+  return step;
+}
 
-  SliceSet set;
-  set.region = box;
-  set.planes.normal = normal;
-  set.planes.first = offsets.back();
-  set.planes.spacing = -step;
-  set.planes.count = int(n);
-
+/// Whether plane 0 is the nearest to the eye.
+bool starts_at_eye(const volume::SlicePlanes& planes, const volume::Box& box, const volume::Matrix4& camera) {
   const Vec3 middle{(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
                     (box.low[2] + box.high[2]) / 2};
   Vec3 beyond = middle;
-  for (int k = 0; k < 3; ++k) beyond[k] += 1e-3 * (set.planes.spacing < 0 ? -normal[k] : normal[k]);
-  if (depth_at(camera.texture_to_clip, beyond) < depth_at(camera.texture_to_clip, middle)) {
-    if (order == SliceOrder::back_to_front) return "slices are drawn front to back under a back-to-front blend";
-    set.planes.first = offsets.front();
-    set.planes.spacing = step;
-  } else if (order == SliceOrder::front_to_back) {
-    return "slices are drawn back to front under a front-to-back blend";
-  }
+  for (int k = 0; k < 3; ++k) beyond[k] += 1e-3 * (planes.spacing < 0 ? -planes.normal[k] : planes.normal[k]);
+  return !(depth_at(camera, beyond) < depth_at(camera, middle));
+}
 
+/// What the planes cut out of the box, the clip planes and, where polygons were clipped, the view volume: its
+/// area, doubled.
+double expected_area(const Vec3& normal, const Places& places, std::span<const HalfSpace> clip_planes,
+                     bool clipped_to_view, const volume::Matrix4& camera) {
   std::vector<HalfSpace> cuts(clip_planes.begin(), clip_planes.end());
   for (int k = 0; k < 3; ++k) {
     HalfSpace low;
     low.normal[k] = 1;
-    low.offset = -box.low[k];
+    low.offset = -places.box.low[k];
     HalfSpace high;
     high.normal[k] = -1;
-    high.offset = box.high[k];
+    high.offset = places.box.high[k];
     cuts.push_back(low);
     cuts.push_back(high);
   }
-  if (polygons.clipped) {
-    const auto view = view_volume(camera.texture_to_clip);
+  if (clipped_to_view) {
+    const auto view = view_volume(camera);
     cuts.insert(cuts.end(), view.begin(), view.end());
   }
-  double expected_area = 0;
-  for (double offset : offsets) {
+  double area = 0;
+  for (const double offset : places.offsets) {
     std::vector<Vec3> polygon = plane_square(normal, offset);
     for (const HalfSpace& cut : cuts) polygon = clipped(std::move(polygon), cut);
-    expected_area += length(area_vector(polygon));
+    area += length(area_vector(polygon));
   }
-  if (std::abs(expected_area - observed_area) > same_area * expected_area) return "slices do not fill a box";
+  return area;
+}
+
+}  // namespace
+
+SliceFinding find_slices(const ObservedPolygons& polygons, const CameraFit& camera,
+                         std::span<const volume::HalfSpace> clip_planes, SliceOrder order) {
+  const CommonNormal common = common_normal(polygons);
+  const Vec3& normal = common.normal;
+  if (!(common.total > 0)) return "slices have no area";
+  if (common.total < 0.999 * common.observed_area) return "slices are not parallel";
+  auto places = places_of(polygons, normal);
+  if (!places) return "slices are not flat in texture space";
+  const std::vector<double>& offsets = places->offsets;
+  if (offsets.size() < 2) return "fewer than two slices";
+  if (!snap_to_texture(places->box)) return "slices leave the texture";
+  const auto step = step_between(offsets);
+  if (!step) return "slices are not equally spaced";
+
+  SliceSet set;
+  set.region = places->box;
+  set.planes.normal = normal;
+  set.planes.first = offsets.back();
+  set.planes.spacing = -*step;
+  set.planes.count = int(offsets.size());
+  if (!starts_at_eye(set.planes, places->box, camera.texture_to_clip)) {
+    if (order == SliceOrder::back_to_front) return "slices are drawn front to back under a back-to-front blend";
+    set.planes.first = offsets.front();
+    set.planes.spacing = *step;
+  } else if (order == SliceOrder::front_to_back) {
+    return "slices are drawn back to front under a front-to-back blend";
+  }
+  const double expected = expected_area(normal, *places, clip_planes, polygons.clipped, camera.texture_to_clip);
+  if (std::abs(expected - common.observed_area) > same_area * expected) return "slices do not fill a box";
   // Slices across an axis begin and end on the box's own faces: rounding must not lose the outermost two.
   for (int k = 0; k < 3; ++k) {
     if (std::abs(normal[k]) < across_axis) continue;

@@ -43,6 +43,13 @@ bool overlap(const volume::Box& a, const volume::Box& b) {
   return true;
 }
 
+/// It tells best where the others are.
+const DrawnBrick& largest_of(std::span<const DrawnBrick> bricks) {
+  return *std::max_element(bricks.begin(), bricks.end(), [](const DrawnBrick& a, const DrawnBrick& b) {
+    return std::int64_t(a.size[0]) * a.size[1] * a.size[2] < std::int64_t(b.size[0]) * b.size[1] * b.size[2];
+  });
+}
+
 }  // namespace
 
 TexelBox texels_read(const volume::Box& region, const std::array<int, 3>& size, volume::Filter filter) {
@@ -86,12 +93,7 @@ std::optional<std::array<int, 3>> lattice_offset(const DrawnBrick& base, const D
 std::variant<Tiling, std::string> find_tiling(std::span<const DrawnBrick> bricks, volume::Filter filter,
                                               const std::array<volume::Wrap, 3>& wrap) {
   if (bricks.size() < 2) return "one texture is no tiling";
-  // The largest brick tells best where the others are.
-  const DrawnBrick& base =
-      *std::max_element(bricks.begin(), bricks.end(), [](const DrawnBrick& a, const DrawnBrick& b) {
-        return std::int64_t(a.size[0]) * a.size[1] * a.size[2] <
-               std::int64_t(b.size[0]) * b.size[1] * b.size[2];
-      });
+  const DrawnBrick& base = largest_of(bricks);
   Tiling tiling;
   std::vector<volume::Box> regions;
   constexpr double far = std::numeric_limits<double>::max();

@@ -87,6 +87,32 @@ bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, 
   return size != 0 && array.components >= 1 && array.components <= 4;
 }
 
+/// The generic attribute `index`, which is enabled. False where it is not understood.
+bool add_generic(const DispatchTable& gl, ArraySources& sources, int& in_buffers, GLuint index) {
+  ClientArray array{.role = ClientArray::Role::generic, .index = GLint(index)};
+  GLint buffer = 0;
+  GLint value = 0;
+  gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &buffer);
+  if (buffer != 0) {
+    ++in_buffers;
+    return true;
+  }
+  gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_SIZE, &array.components);
+  gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_TYPE, &value);
+  array.type = GLenum(value);
+  gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_NORMALIZED, &value);
+  array.normalised = value != 0;
+  gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_STRIDE, &value);
+  const std::size_t size = size_of(array.type);
+  array.stride = value != 0 ? std::size_t(value) : size * std::size_t(array.components);
+  void* pointer = nullptr;
+  gl.GetVertexAttribPointerv(index, GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
+  array.first = static_cast<const std::byte*>(pointer);
+  sources.client_memory = true;
+  sources.arrays.push_back(array);
+  return size != 0 && array.components >= 1 && array.components <= 4;
+}
+
 }  // namespace
 
 std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources) {
@@ -123,29 +149,7 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   for (GLint i = attributes - 1; i >= 0; --i) {
     GLint enabled = 0;
     gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_ENABLED, &enabled);
-    if (!enabled) continue;
-    ClientArray array{.role = Role::generic, .index = i};
-    GLint buffer = 0;
-    GLint value = 0;
-    gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &buffer);
-    if (buffer != 0) {
-      ++in_buffers;
-      continue;
-    }
-    gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_SIZE, &array.components);
-    gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_TYPE, &value);
-    array.type = GLenum(value);
-    gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_NORMALIZED, &value);
-    array.normalised = value != 0;
-    gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_STRIDE, &value);
-    const std::size_t size = size_of(array.type);
-    array.stride = value != 0 ? std::size_t(value) : size * std::size_t(array.components);
-    void* pointer = nullptr;
-    gl.GetVertexAttribPointerv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_POINTER, &pointer);
-    array.first = static_cast<const std::byte*>(pointer);
-    understood &= size != 0 && array.components >= 1 && array.components <= 4;
-    sources.client_memory = true;
-    sources.arrays.push_back(array);
+    if (enabled) understood &= add_generic(gl, sources, in_buffers, GLuint(i));
   }
   if (!context.core) {
     understood &= add_fixed(gl, sources, in_buffers, {.role = Role::vertex},

@@ -66,10 +66,8 @@ std::optional<std::size_t> face_under(const std::vector<Vec3>& polygon) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
-  if (polygons.count() < 4) return std::nullopt;
+/// Of one vertex at least.
+volume::Box box_around(const ObservedPolygons& polygons) {
   volume::Box box{polygons.vertices.front().texture, polygons.vertices.front().texture};
   for (const ObservedVertex& v : polygons.vertices) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -77,6 +75,14 @@ std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
       box.high[k] = std::max(box.high[k], v.texture[k]);
     }
   }
+  return box;
+}
+
+}  // namespace
+
+std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
+  if (polygons.count() < 4) return std::nullopt;
+  const volume::Box box = box_around(polygons);
   const Vec3 edge = volume::subtract(box.high, box.low);
   if (!(edge[0] > 0 && edge[1] > 0 && edge[2] > 0)) return std::nullopt;
 

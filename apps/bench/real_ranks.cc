@@ -18,7 +18,7 @@
 
 #include "apps/bench/frame_parts.h"
 #include "apps/bench/frame_time.h"
-#include "apps/understudy/own_node_group.h"
+#include "apps/understudy/launch/own_node_group.h"
 #include "compositor/service/loading_service.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"

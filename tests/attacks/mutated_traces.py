@@ -2,7 +2,7 @@
 
     mutated_traces.py UNDERSTUDY COUNT SEED TRACE...
 
-A driver that crashes says so by status 5 and the call (apps/understudy/guarded_player.h); such runs are counted and
+A driver that crashes says so by status 5 and the call (apps/understudy/gl_server/guarded_player.h); such runs are counted and
 listed. Anything else but success and a refusal fails.
 """
 

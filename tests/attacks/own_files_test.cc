@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "apps/understudy/run_folder.h"
+#include "apps/understudy/launch/run_folder.h"
 #include "compositor/transport/socket.h"
 #include "compositor/transport/socket_file.h"
 #include "tests/clients/command_test.h"

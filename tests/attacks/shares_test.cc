@@ -5,7 +5,7 @@
 
 #include <thread>
 
-#include "apps/understudy/restarts.h"
+#include "apps/understudy/launch/restarts.h"
 #include "compositor/node/turns.h"
 #include "compositor/service/rank_renderer.h"
 #include "tests/attacks/server.h"

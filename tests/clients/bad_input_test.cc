@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "tests/clients/command_test.h"
 #include "tests/clients/osgvolume_command.h"
 

@@ -14,7 +14,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "volume/file/volume_file.h"
 #include "volume/matrix.h"
 #include "volume/reference/pixel_integral.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "tests/clients/command_test.h"
 #include "tests/emulation/precision.h"
 #include "tests/emulation/viewer_frame.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "spu/report/optimization.h"
 #include "tests/clients/command_test.h"
 

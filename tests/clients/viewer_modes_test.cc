@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "tests/clients/command_test.h"
 
 namespace clients {

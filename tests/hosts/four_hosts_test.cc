@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/compare.h"
-#include "apps/understudy/image.h"
+#include "apps/understudy/cli/compare.h"
+#include "apps/understudy/images/image.h"
 #include "tests/clients/command_test.h"
 #include "tests/hosts/own_namespaces.h"
 

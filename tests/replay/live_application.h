@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/egl_contexts.h"
+#include "apps/understudy/offscreen/egl_contexts.h"
 #include "spu/chain.h"
 #include "spu/window_system/window_system.h"
 

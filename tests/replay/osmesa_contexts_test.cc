@@ -1,6 +1,6 @@
 // Contexts on OSMesa do what contexts on EGL do, although their one colour buffer is a front buffer and no
 // framebuffer is shared.
-#include "apps/understudy/osmesa_contexts.h"
+#include "apps/understudy/offscreen/osmesa_contexts.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/compare.h"
-#include "apps/understudy/image.h"
-#include "apps/understudy/play.h"
-#include "apps/understudy/read_image.h"
+#include "apps/understudy/cli/compare.h"
+#include "apps/understudy/cli/play.h"
+#include "apps/understudy/images/image.h"
+#include "apps/understudy/images/read_image.h"
 #include "spu/window_system/shown_image.h"
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/understudy/compare.h"
-#include "apps/understudy/image.h"
-#include "apps/understudy/play.h"
-#include "apps/understudy/trim.h"
+#include "apps/understudy/cli/compare.h"
+#include "apps/understudy/cli/play.h"
+#include "apps/understudy/cli/trim.h"
+#include "apps/understudy/images/image.h"
 #include "live_application.h"
 #include "spu/stream/trace_file.h"
 #include "tests/emulation/precision.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/child_process.h"
 #include "apps/understudy/hosts/hostfile.h"
+#include "apps/understudy/launch/child_process.h"
 
 namespace understudy::launcher {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/environment.h"
 #include "apps/understudy/hosts/placement.h"
+#include "apps/understudy/launch/environment.h"
 
 namespace understudy::launcher {
 

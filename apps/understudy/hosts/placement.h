@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/environment.h"
 #include "apps/understudy/hosts/hostfile.h"
+#include "apps/understudy/launch/environment.h"
 
 namespace understudy::launcher {
 

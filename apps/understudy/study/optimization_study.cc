@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "apps/understudy/image.h"
-#include "apps/understudy/installation.h"
+#include "apps/understudy/images/image.h"
+#include "apps/understudy/launch/installation.h"
 #include "apps/understudy/study/viewer_command.h"
 #include "spu/report/optimization.h"
 

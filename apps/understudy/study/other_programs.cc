@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/understudy/image.h"
-#include "apps/understudy/installation.h"
+#include "apps/understudy/images/image.h"
+#include "apps/understudy/launch/installation.h"
 #include "apps/understudy/study/viewer_command.h"
 #include "volume/image.h"
 

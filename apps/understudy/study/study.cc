@@ -14,10 +14,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "apps/understudy/child_process.h"
-#include "apps/understudy/control_points_file.h"
-#include "apps/understudy/image.h"
-#include "apps/understudy/installation.h"
+#include "apps/understudy/file_scene/control_points_file.h"
+#include "apps/understudy/images/image.h"
+#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/launch/installation.h"
 #include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
 #include "volume/file/volume_file.h"

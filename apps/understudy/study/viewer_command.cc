@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/understudy/child_process.h"
-#include "apps/understudy/installation.h"
+#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/launch/installation.h"
 #include "volume/texture_space.h"
 
 namespace understudy::launcher::study {

@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "compositor/relay/jpeg.h"
 
 namespace understudy::launcher {

@@ -4,7 +4,7 @@
 #include <exception>
 #include <functional>
 
-#include "apps/understudy/run.h"
+#include "apps/understudy/cli/run.h"
 #include "apps/understudy/view/view.h"
 
 namespace launcher = understudy::launcher;

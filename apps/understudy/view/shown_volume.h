@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "apps/understudy/file_scene.h"
-#include "apps/understudy/loading_nodes.h"
+#include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/view_state.h"
 #include "volume/frame_counts.h"

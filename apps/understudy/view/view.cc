@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/understudy/file_scene.h"
-#include "apps/understudy/loading_nodes.h"
+#include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/cli/view_program.h"
+#include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/view/view_state.h"
 #include "apps/understudy/view/web_view.h"
 #include "apps/understudy/view/window.h"
-#include "apps/understudy/view_program.h"
 #include "compositor/service.h"
 
 namespace understudy::launcher {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/understudy/control_points_file.h"
+#include "apps/understudy/file_scene/control_points_file.h"
 #include "volume/surface.h"
 
 namespace understudy::launcher {

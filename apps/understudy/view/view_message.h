@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/understudy/shading_options.h"
+#include "apps/understudy/file_scene/shading_options.h"
 #include "apps/understudy/view/camera.h"
 #include "volume/transfer_control_points.h"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "apps/understudy/file_scene.h"
+#include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/view/camera.h"
 #include "apps/understudy/view/view_message.h"
 #include "volume/request.h"

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <optional>
 
-#include "apps/understudy/load_progress.h"
+#include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/view/page_messages.h"
 #include "apps/understudy/view/secret.h"
 #include "apps/understudy/view/shown_volume.h"

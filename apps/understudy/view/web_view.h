@@ -4,8 +4,8 @@
 #include <stop_token>
 #include <string>
 
-#include "apps/understudy/file_scene.h"
-#include "apps/understudy/loading_nodes.h"
+#include "apps/understudy/cli/loading_nodes.h"
+#include "apps/understudy/file_scene/file_scene.h"
 
 namespace understudy::launcher {
 

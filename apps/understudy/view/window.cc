@@ -12,7 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/understudy/load_progress.h"
+#include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/shown_volume.h"
 #include "apps/understudy/view/view_state.h"

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/compare.h"
-#include "apps/understudy/image.h"
+#include "apps/understudy/cli/compare.h"
+#include "apps/understudy/images/image.h"
 #include "tests/apps/viewer/temporary_folder.h"
 
 namespace understudy::launcher {

@@ -1,5 +1,5 @@
 // `understudy compare`: what two images differ by, and which files it reads.
-#include "apps/understudy/compare.h"
+#include "apps/understudy/cli/compare.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

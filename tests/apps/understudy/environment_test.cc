@@ -1,5 +1,5 @@
 // The environments of children: injection methods for the viewer, none for the nodes.
-#include "apps/understudy/environment.h"
+#include "apps/understudy/launch/environment.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

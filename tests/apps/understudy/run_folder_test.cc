@@ -1,5 +1,5 @@
 // The folder of a run is private, and gone at the end.
-#include "apps/understudy/run_folder.h"
+#include "apps/understudy/launch/run_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

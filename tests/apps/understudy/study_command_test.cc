@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/image.h"
+#include "apps/understudy/images/image.h"
 #include "apps/understudy/study/measure.h"
 #include "tests/apps/render/render_command.h"
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "apps/understudy/frame_changes.h"
+#include "apps/understudy/gl_server/frame_changes.h"
 #include "compositor/transport/wire.h"
 #include "spu/stream/call_answer.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/gl_server.h"
+#include "apps/understudy/gl_server/gl_server.h"
 #include "spu/registry/assemble.h"
 #include "spu/remote/remote.h"
 #include "spu/track/share_group.h"

@@ -1,0 +1,187 @@
+#include "apps/understudy/cli/play.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include "apps/understudy/images/read_image.h"
+#include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "spu/player/player.h"
+#include "spu/report/counters.h"
+#include "spu/stream/event.h"
+#include "spu/stream/trace_file.h"
+#include "spu/window_system/shown_image.h"
+
+namespace understudy::launcher {
+namespace {
+
+/// Different faults of a trace that are said; more are only counted.
+constexpr std::size_t most_faults_told = 20;
+
+/// One line that rewrites itself, where somebody may be looking at it.
+class Progress {
+ public:
+  explicit Progress(const std::filesystem::path& trace)
+      : bytes_(std::filesystem::file_size(trace)), shown_(isatty(STDERR_FILENO) != 0) {}
+  ~Progress() {
+    if (told_) fmt::print(stderr, "\r\033[K");
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void tell(std::uint64_t offset, std::uint64_t frames) {
+    const std::uint64_t percent = bytes_ == 0 ? 100 : 100 * offset / bytes_;
+    if (!shown_ || percent == percent_) return;
+    percent_ = percent;
+    told_ = true;
+    fmt::print(stderr, "\runderstudy: {} frames, {} % of the trace\033[K", frames, percent);
+    std::fflush(stderr);
+  }
+
+ private:
+  const std::uintmax_t bytes_;
+  const bool shown_;
+  bool told_ = false;
+  std::uint64_t percent_ = ~std::uint64_t(0);
+};
+
+class Playing {
+ public:
+  Playing(const PlayPlan& plan, const spu::Options& options)
+      : plan_(plan),
+        reader_(plan.trace),
+        progress_(plan.trace),
+        windows_(open_offscreen_contexts(options.server_opengl)),
+        player_(*windows_, options) {
+    player_.on_frame = [this](const spu::ShownFrame& frame) { frame_shown(frame); };
+    player_.on_read = [this](const spu::Decoder::ReadImage& image) { image_read(image); };
+  }
+
+  Played run() {
+    if (!plan_.save_frames.empty()) std::filesystem::create_directories(plan_.save_frames);
+    while (frame_ <= plan_.frames.last) {
+      const std::optional<spu::Block> block = reader_.next();
+      if (!block) break;
+      progress_.tell(block->file_offset, played_.frames);
+      play(*block);
+    }
+    if (reader_.cut_off())
+      fmt::print(stderr, "understudy: {} was cut off; it was played to its last whole block\n",
+                 plan_.trace.string());
+    if (frame_ <= plan_.frames.first && plan_.frames.first > 1) {
+      spu::forget_counted_frames();
+      fmt::print(stderr, "understudy: {} has only {} frames\n", plan_.trace.string(), frame_ - 1);
+    }
+    if (played_.errors > 0) fmt::print(stderr, "understudy: {} records could not be played\n", played_.errors);
+    return played_;
+  }
+
+ private:
+  void play(const spu::Block& block) {
+    std::size_t position = 0;
+    std::uint64_t& calls = *spu::thread_call_counter();
+    while (position < block.records.size() && frame_ <= plan_.frames.last) {
+      const auto record = spu::record_at(block.records, position, block.payload);
+      if (!record)
+        throw std::runtime_error(
+            fmt::format("{}: {}", plan_.trace.string(), in_block(block, "a record is longer than its block")));
+      position += record->words.size();
+      if (plan_.played != nullptr) plan_.played->is(record->id);
+      const std::string error = player_.play(*record);
+      if (spu::event::name_of(record->id) == nullptr) ++calls;
+      if (!error.empty()) tell(in_block(block, error), error);
+    }
+  }
+
+  void tell(const std::string& fault, const std::string& kind) {
+    ++played_.errors;
+    if (told_.size() < most_faults_told && told_.insert(kind).second)
+      fmt::print(stderr, "understudy: {}: {}\n", plan_.trace.string(), fault);
+  }
+
+  void frame_shown(const spu::ShownFrame& shown) {
+    if (frame_ == plan_.frames.first) spu::forget_counted_frames();
+    if (plan_.frames.contains(frame_)) {
+      ++played_.frames;
+      if (!plan_.save_frames.empty() && shown.extent.width > 0 && shown.extent.height > 0) {
+        write_png(plan_.save_frames / fmt::format("frame_{:04}.png", frame_),
+                  image_of(shown_image(player_.driver(), shown.extent), shown.extent));
+      }
+    }
+    ++frame_;
+  }
+
+  void image_read(const spu::Decoder::ReadImage& read) {
+    if (!plan_.frames.contains(frame_)) return;
+    const std::optional<RgbaImage> image = image_of(read);
+    if (!image) return;
+    ++played_.reads;
+    if (plan_.save_frames.empty()) return;
+    write_png(plan_.save_frames / fmt::format("read_{:04}.png", played_.reads), *image);
+  }
+
+  const PlayPlan plan_;
+  spu::TraceReader reader_;
+  Progress progress_;
+  const std::unique_ptr<OffscreenContexts> windows_;
+  spu::Player player_;
+  Played played_;
+  std::uint64_t frame_ = 1;  ///< that is being drawn
+  std::set<std::string> told_;
+};
+
+int play_and_say(const PlayPlan& plan) {
+  return play_guarded(plan.trace, [&](PlayedRecord& played) {
+    PlayPlan guarded = plan;
+    guarded.played = &played;
+    play(guarded, spu::options_from_environment());
+    return 0;
+  });
+}
+
+}  // namespace
+
+FrameRange parse_frame_range(const std::string& text) {
+  FrameRange range;
+  const std::size_t dash = text.find('-');
+  const auto number = [&](const std::string& digits) -> std::uint64_t {
+    const bool valid = !digits.empty() && digits.size() < 10 &&
+                       std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!valid) throw std::runtime_error(fmt::format("'{}' is no range of frames; write 3-7, 3- or 3", text));
+    return std::stoull(digits);
+  };
+  range.first = number(text.substr(0, dash));
+  if (dash == std::string::npos) {
+    range.last = range.first;
+  } else if (dash + 1 < text.size()) {
+    range.last = number(text.substr(dash + 1));
+  }
+  if (range.first == 0 || range.last < range.first)
+    throw std::runtime_error(fmt::format("'{}' is no range of frames; they are counted from 1", text));
+  return range;
+}
+
+Played play(const PlayPlan& plan, const spu::Options& options) {
+  return Playing(plan, options).run();
+}
+
+void add_play(CLI::App& app, std::function<int()>& chosen) {
+  const auto plan = std::make_shared<PlayPlan>();
+  const auto frames = std::make_shared<std::string>();
+  CLI::App* subcommand = app.add_subcommand("play", "plays a trace in this process, for replay");
+  subcommand->group("");
+  subcommand->add_option("trace", plan->trace)->required();
+  subcommand->add_option("--frames", *frames);
+  subcommand->add_option("--save-frames", plan->save_frames);
+  subcommand->callback([plan, frames, &chosen] {
+    if (!frames->empty()) plan->frames = parse_frame_range(*frames);
+    chosen = [plan] { return play_and_say(*plan); };
+  });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,137 @@
+#include "apps/understudy/cli/render_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "apps/understudy/file_scene/file_scene.h"
+
+namespace understudy::launcher {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+const char* name_of(volume::TexelType type) {
+  return type == volume::TexelType::u8 ? "u8" : type == volume::TexelType::u16 ? "u16" : "f32";
+}
+
+/// "12 MiB", or "8 to 12 MiB" over the ranks.
+template <class Figure>
+std::string over_ranks(const std::vector<compositor::RankLoad>& ranks, Figure figure) {
+  const auto [least, most] = std::ranges::minmax(ranks, {}, figure);
+  const auto text = [](std::uint64_t bytes) {
+    return bytes < 10U << 20U ? fmt::format("{:.1f}", double(bytes) / (1 << 20)) : std::to_string(bytes >> 20U);
+  };
+  const std::string low = text(std::invoke(figure, least)), high = text(std::invoke(figure, most));
+  return low == high ? high + " MiB" : fmt::format("{} to {} MiB", low, high);
+}
+
+/// Surfaces by their values.
+Json image_json(const RenderFigures& figures) {
+  const volume::RenderRequest& request = figures.request;
+  Json surfaces = Json::array();
+  const double units = figures.mapping.normalised(figures.mapping.offset + figures.mapping.scale);
+  for (const volume::Surface& surface : request.surfaces)
+    surfaces.push_back({{"value", figures.mapping.offset + figures.mapping.scale * surface.value / units},
+                        {"colour", surface.colour}});
+  const char* const method = request.method == volume::Method::pre_integrated ? "pre-integrated"
+                             : request.method == volume::Method::adaptive     ? "adaptive"
+                                                                              : "post-classified";
+  const char* const op = request.op == volume::Operator::first_hit ? "first-hit"
+                         : request.op == volume::Operator::max     ? "max"
+                         : request.op == volume::Operator::add     ? "add"
+                                                                   : "over";
+  return {{"width", figures.width},
+          {"height", figures.height},
+          {"step", figures.step},
+          {"method", method},
+          {"operator", op},
+          {"surfaces", surfaces},
+          {"light", !request.light              ? "none"
+                    : request.light->on_samples ? "all"
+                                                : "surfaces"}};
+}
+
+}  // namespace
+
+std::string summary_text(const RenderFigures& figures) {
+  const auto& size = figures.description.size;
+  const volume::FrameCounts& counts = figures.counts;
+  const double left_out =
+      counts.samples == 0 ? 0 : 100 * (1 - double(counts.samples_taken) / double(counts.samples));
+  std::string text = fmt::format(
+      "understudy: {} x {} x {} of {}, {}: loaded in {:.0f} ms, {} in {:.1f} ms each; {:.1f} % of {:.1f} "
+      "million "
+      "samples left out, {} of {} blocks empty\n",
+      size[0], size[1], size[2], volume::name_of(figures.description.type),
+      figures.nodes == 0 ? "in this process" : fmt::format("{} nodes", figures.nodes), figures.load_ms,
+      figures.frame_ms.size() == 1 ? "1 frame" : fmt::format("{} frames", figures.frame_ms.size()),
+      median(figures.frame_ms), left_out, double(counts.samples) / 1e6, counts.blocks_empty, counts.blocks);
+  text += fmt::format("understudy: each rank read {}, keeps {} of bricks, and had at most {} in memory\n",
+                      over_ranks(figures.ranks, &compositor::RankLoad::bytes_read),
+                      over_ranks(figures.ranks, &compositor::RankLoad::brick_bytes),
+                      over_ranks(figures.ranks, &compositor::RankLoad::peak_bytes));
+  const volume::TexelFigures texels = texel_figures(figures.ranks);
+  if (texels.largest_error > 0 || texels.not_numbers > 0)
+    text += fmt::format(
+        "understudy: values {:g} to {:g} became {} texels, at most {:.3g} off; {} were no numbers\n",
+        texels.low, texels.high, name_of(figures.mapping.type), texels.largest_error, texels.not_numbers);
+  return text;
+}
+
+void write_render_report(const std::string& path, const RenderFigures& figures) {
+  const volume::TexelFigures texels = texel_figures(figures.ranks);
+  const volume::FrameCounts& counts = figures.counts;
+  Json report;
+  report["volume"] = {{"file", figures.file},
+                      {"size", figures.description.size},
+                      {"spacing", figures.description.spacing},
+                      {"scalar_type", std::string(volume::name_of(figures.description.type))},
+                      {"texel_type", name_of(figures.mapping.type)},
+                      {"scale", figures.mapping.scale},
+                      {"offset", figures.mapping.offset},
+                      {"values", texels.low <= texels.high ? Json{texels.low, texels.high} : Json()},
+                      {"largest_conversion_error", texels.largest_error},
+                      {"not_numbers", texels.not_numbers}};
+  report["image"] = image_json(figures);
+  report["nodes"] = figures.nodes;
+  report["backends"] = figures.backends;
+  report["time_ms"] = {{"open", figures.open_ms},
+                       {"load", figures.load_ms},
+                       {"frame_median", median(figures.frame_ms)},
+                       {"render", counts.render_ms},
+                       {"composite", counts.composite_ms}};
+  report["frames_ms"] = figures.frame_ms;
+  report["samples"] = counts.samples;
+  report["samples_taken"] = counts.samples_taken;
+  report["rays"] = counts.rays;
+  report["blocks"] = counts.blocks;
+  report["bytes_exchanged"] = counts.bytes_exchanged;
+  report["left_out"] = {{"samples_skipped", counts.samples - std::min(counts.samples, counts.samples_taken)},
+                        {"rays_ended_early", counts.rays_terminated},
+                        {"blocks_empty", counts.blocks_empty},
+                        {"nodes_idle", counts.nodes_idle}};
+  report["ranks"] = Json::array();
+  for (const compositor::RankLoad& rank : figures.ranks)
+    report["ranks"].push_back({{"texels", rank.texels_in_all},
+                               {"bytes_read", rank.bytes_read},
+                               {"brick_bytes", rank.brick_bytes},
+                               {"peak_bytes", rank.peak_bytes}});
+  std::ofstream file(path);
+  file << report.dump(2) << '\n';
+  file.close();
+  if (!file)
+    throw std::runtime_error(
+        fmt::format("{}: the report cannot be written; check that the folder exists and has room", path));
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,76 @@
+#include "apps/understudy/cli/replay.h"
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/understudy/cli/backend_option.h"
+#include "apps/understudy/cli/balance_option.h"
+#include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/play.h"
+#include "apps/understudy/cli/run.h"
+#include "apps/understudy/launch/installation.h"
+#include "spu/registry/assemble.h"
+
+namespace understudy::launcher {
+namespace {
+
+struct ReplayArguments {
+  std::filesystem::path trace;
+  std::string frames;
+  std::filesystem::path save_frames;
+  bool native = false;
+  std::string chain;
+};
+
+/// The player is a process of its own, as a viewer is: nodes are looked after while it plays, and whatever a
+/// driver does to it, the figures remain.
+int replay(const ReplayArguments& replay, RunArguments arguments) {
+  arguments.injection.reset();
+  if (replay.native) arguments.settings["UNDERSTUDY_CHAIN"] = "driver";
+  if (!replay.chain.empty())
+    arguments.settings["UNDERSTUDY_CHAIN"] = spu::resolved_chain(replay.chain, std::filesystem::current_path());
+  std::vector<std::string> command = {this_installation().programs / "understudy", "play", replay.trace};
+  if (!replay.frames.empty()) command.insert(command.end(), {"--frames", replay.frames});
+  if (!replay.save_frames.empty()) command.insert(command.end(), {"--save-frames", replay.save_frames});
+  return run(arguments, command);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, std::function<int()>& chosen) {
+  // These mean something else to a replay.
+  constexpr std::array<std::string_view, 2> without = {"--save-frames", "--chain"};
+  const auto own = std::make_shared<ReplayArguments>();
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* subcommand =
+      app.add_subcommand("replay", "plays a trace of `understudy run --trace`, without viewer or display");
+  subcommand->add_option("trace", own->trace, "the file")->required()->check(CLI::ExistingFile);
+  subcommand
+      ->add_option("--frames", own->frames, "save and count only frames A to B (counted from 1), end behind B")
+      ->type_name("A-B");
+  subcommand
+      ->add_option("--save-frames", own->save_frames,
+                   "save what the viewer showed (frame_0001.png, …) and what it read back (read_0001.png, …), "
+                   "with 8 bits; UNDERSTUDY_SAVE_FRAMES saves the nodes' float images, as in `run`")
+      ->type_name("DIR");
+  CLI::Option* native = subcommand->add_flag("--native", own->native, "the driver alone: what the viewer drew");
+  subcommand->add_option("--chain", own->chain, "the units to play on [UNDERSTUDY_CHAIN]")
+      ->type_name("UNITS")
+      ->excludes(native);
+  add_options_of_the_table(*subcommand, arguments, without);
+  add_backend_option(*subcommand, arguments->backend);
+  add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_balance_option(*subcommand, arguments->balance);
+  add_hostfile_option(*subcommand, arguments->hostfile);
+  add_connection_options(*subcommand, arguments->connection);
+  subcommand->callback([own, arguments, &chosen] {
+    if (!own->frames.empty()) parse_frame_range(own->frames);
+    chosen = [own, arguments] { return replay(*own, *arguments); };
+  });
+}
+
+}  // namespace understudy::launcher

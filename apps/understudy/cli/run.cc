@@ -1,0 +1,111 @@
+#include "apps/understudy/cli/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <map>
+
+#include "apps/understudy/cli/backend_option.h"
+#include "apps/understudy/cli/balance_option.h"
+#include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/trace_option.h"
+#include "spu/former_names.h"
+#include "spu/options.h"
+
+namespace understudy::launcher {
+namespace {
+
+void say(const std::string& line) {
+  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+}
+
+int run_viewer(RunArguments arguments, const std::vector<std::string>& command) {
+  if (command.empty()) {
+    say("which viewer? Put -- before its command: understudy run [options] -- viewer args…");
+    return usage_error;
+  }
+  if (!arguments.trace.empty()) prepare_trace(arguments);
+  const int status = run(arguments, command);
+  if (!arguments.trace.empty()) say(trace_summary(arguments.trace));
+  return status;
+}
+
+}  // namespace
+
+void add_options_of_the_table(CLI::App& subcommand, const std::shared_ptr<RunArguments>& arguments,
+                              std::span<const std::string_view> without) {
+  for (const spu::OptionText& option : spu::option_table()) {
+    const std::string flag = option.flag;
+    const std::string variable = option.environment;
+    const std::string value = option.value;
+    if (flag.empty() || std::find(without.begin(), without.end(), flag) != without.end()) continue;
+    const auto take = [arguments, variable, flag, help = option.help](const std::string& text) {
+      spu::Options scratch;
+      if (!spu::set_option(scratch, variable, text)) {
+        throw CLI::ValidationError(flag, fmt::format("'{}' is not a value this option takes: {}", text, help));
+      }
+      arguments->settings[variable] = text;
+    };
+    const std::string help = fmt::format("{} [{}]", option.help, variable);
+    if (value.empty()) {
+      subcommand.add_flag_callback(
+          flag, [take] { take("1"); }, help);
+    } else if (value.front() == '[') {
+      subcommand
+          .add_option_function<std::string>(
+              flag, [take](const std::string& text) { take(text.empty() ? "1" : text); }, help)
+          ->expected(0, 1)
+          ->type_name(value);
+    } else {
+      subcommand.add_option_function<std::string>(flag, take, help)->type_name(value);
+    }
+  }
+}
+
+CommandLine split_at_double_dash(int argc, char** argv) {
+  CommandLine line;
+  int position = 0;
+  while (position < argc && std::strcmp(argv[position], "--") != 0) line.own.emplace_back(argv[position++]);
+  line.own = spu::with_present_options(line.own);
+  for (++position; position < argc; ++position) line.viewer.emplace_back(argv[position]);
+  return line;
+}
+
+void add_run(CLI::App& app, const std::vector<std::string>& viewer, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* subcommand = app.add_subcommand("run", "runs a viewer: understudy run [options] -- viewer args…");
+  subcommand->footer("Each option can also be given by the environment variable in brackets.");
+  add_options_of_the_table(*subcommand, arguments);
+  add_backend_option(*subcommand, arguments->backend);
+  add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_balance_option(*subcommand, arguments->balance);
+  add_hostfile_option(*subcommand, arguments->hostfile);
+  add_connection_options(*subcommand, arguments->connection);
+  const std::map<std::string, InjectionMethod> injection_methods{{"audit", InjectionMethod::audit},
+                                                                 {"preload", InjectionMethod::preload},
+                                                                 {"folder", InjectionMethod::folder}};
+  subcommand
+      ->add_option("--injection", arguments->injection,
+                   "how OpenGL calls are intercepted: audit (default; all of them), preload or folder")
+      ->transform(CLI::CheckedTransformer(injection_methods, CLI::ignore_case).description(""))
+      ->type_name("audit|preload|folder");
+  subcommand
+      ->add_option("--trace", arguments->trace,
+                   "record every call in FILE for `understudy replay`; other processes of the viewer are "
+                   "recorded in FILE.PID")
+      ->type_name("FILE");
+  subcommand->add_flag(
+      "--remote", arguments->remote,
+      "run a viewer without OpenGL: a GL server beside the nodes executes its calls and sends images to its "
+      "windows; with --connect HOST:PORT on that machine (understudy serve --gl-server)");
+  subcommand->add_flag("--require", arguments->required,
+                       "exit with status 3 when no frame was substituted, with 4 when the GL server of "
+                       "--remote was lost, unless the viewer's own status tells of a failure");
+  subcommand->callback([arguments, &viewer, &chosen] {
+    chosen = [arguments, &viewer] { return run_viewer(*arguments, viewer); };
+  });
+}
+
+}  // namespace understudy::launcher

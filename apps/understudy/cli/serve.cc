@@ -1,0 +1,220 @@
+#include "apps/understudy/cli/serve.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/types.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "apps/understudy/cli/backend_option.h"
+#include "apps/understudy/cli/balance_option.h"
+#include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/gl_server/gl_server.h"
+#include "apps/understudy/hosts/placement.h"
+#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/launch/listener.h"
+#include "apps/understudy/launch/node_group.h"
+#include "apps/understudy/launch/run_folder.h"
+#include "apps/understudy/launch/signal_inbox.h"
+#include "compositor/service/limits.h"
+#include "compositor/transport/runtime_folder.h"
+#include "compositor/transport/tcp/secret.h"
+#include "spu/options.h"
+
+namespace understudy::launcher {
+namespace {
+
+struct ServeArguments {
+  std::optional<int> nodes;
+  std::filesystem::path hostfile;
+  NodeChoices choices;
+  std::string socket;       ///< empty: in the folder
+  std::string folder;       ///< empty: one of its own
+  pid_t while_process = 0;  ///< 0: until asked to end
+  std::string listen;       ///< host:port for clients of other machines; empty: none
+  std::filesystem::path secret_file;
+  bool server = false;
+  std::string tiles = "off";
+  std::string server_opengl = "auto";
+};
+
+bool is_over(const ServeArguments& arguments) {
+  return arguments.while_process > 0 && kill(arguments.while_process, 0) != 0 && errno == ESRCH;
+}
+
+/// What clients of other machines come to.
+struct Frontends {
+  std::unique_ptr<ChildProcess> server;
+  OpenListener listener;
+};
+
+/// The GL server has the options of this environment, and the nodes' socket.
+std::unique_ptr<ChildProcess> start_gl_server_of_nodes(const Installation& installation,
+                                                       const NodeGroupPlan& nodes,
+                                                       const std::filesystem::path& socket,
+                                                       const std::string& tiles, const std::string& opengl) {
+  Environment environment = current_environment();
+  environment.erase("UNDERSTUDY_REMOTE");
+  environment.erase("UNDERSTUDY_RUN_DIR");
+  environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
+  environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
+  environment["UNDERSTUDY_TILES"] = tiles;
+  environment["UNDERSTUDY_SERVER_OPENGL"] = opengl;
+  return start_gl_server(installation, socket, environment);
+}
+
+Frontends open_frontends(const Installation& installation, const ServeArguments& arguments,
+                         const NodeGroupPlan& nodes) {
+  Frontends frontends;
+  if (arguments.listen.empty()) return frontends;
+  const auto address = compositor::tcp_address_of(arguments.listen);
+  if (!address)
+    throw std::runtime_error(
+        fmt::format("--listen {}: this is no host:port; write :7070 for this machine alone, "
+                    "0.0.0.0:7070 for all of its networks",
+                    arguments.listen));
+  bool made = false;
+  compositor::read_or_make_secret(arguments.secret_file, made);
+  if (made)
+    fmt::print("understudy: made the secret {0}; copy it to where viewers are: scp {0} HOST:\n",
+               std::filesystem::absolute(arguments.secret_file).string());
+  ListenerPlan plan{.address = *address,
+                    .secret_file = arguments.secret_file,
+                    .nodes = nodes.socket,
+                    .server = {},
+                    .folder = nodes.folder};
+  if (arguments.server) {
+    plan.server = nodes.folder / "gl_server.sock";
+    frontends.server =
+        start_gl_server_of_nodes(installation, nodes, plan.server, arguments.tiles, arguments.server_opengl);
+  }
+  frontends.listener = start_listener(installation, plan);
+  return frontends;
+}
+
+/// Said, and done without: clients of this machine are served.
+void look_after(Frontends& frontends) {
+  const auto ended = [](std::unique_ptr<ChildProcess>& process, const char* what) {
+    if (!process) return;
+    const std::optional<Ending> ending = process->poll_ending();
+    if (!ending) return;
+    fmt::print(stderr, "understudy: {} {}; start serve again\n", what, ending->text());
+    process.reset();
+  };
+  ended(frontends.server, "the GL server, which draws for viewers of other machines,");
+  ended(frontends.listener.process, "the listener, which lets clients of other machines in,");
+}
+
+/// Returns when a signal asks for the end. The nodes and the socket are gone then.
+int serve(const ServeArguments& arguments) {
+  const Installation installation = this_installation();
+  const Placement placement = placement_of({arguments.nodes, arguments.hostfile}, current_environment());
+  if (placement.ranks == 0)
+    throw std::runtime_error("how many nodes? Give -n N, or --hostfile FILE with the hosts that they run on");
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
+  const RunFolder folder = arguments.folder.empty() ? RunFolder() : RunFolder(arguments.folder);
+  if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
+    fmt::print(stderr, "understudy: {}\n", obstacle);
+    return 1;
+  }
+  const std::filesystem::path socket = arguments.socket.empty() || !arguments.folder.empty()
+                                           ? folder.path() / "nodes.sock"
+                                           : std::filesystem::absolute(arguments.socket);
+  NodeChoices choices = arguments.choices;
+  for (std::string& data : choices.data) data = std::filesystem::absolute(data);
+  const NodeGroupPlan plan{placement, socket, folder.path(), choices};
+  NodeGroup nodes(installation, plan);
+  Frontends frontends = open_frontends(installation, arguments, plan);
+  bool announced = false;
+  while (!is_over(arguments)) {
+    while (const std::optional<ReceivedSignal> received = inbox.next()) {
+      if (received->number != SIGCHLD) return 0;
+      nodes.look_after_children();
+      look_after(frontends);
+    }
+    nodes.wait_and_serve(inbox.descriptor());
+    if (announced || !nodes.ready()) continue;
+    announced = true;
+    fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
+               nodes.ranks(), socket.string(), socket.string());
+    if (frontends.listener.process)
+      fmt::print(
+          "understudy: and at {0}; use them with: understudy run {1}--connect {0} --secret-file FILE -- viewer "
+          "args…\n",
+          frontends.listener.address.text(), frontends.server ? "[--remote] " : "");
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, std::function<int()>& chosen) {
+  const auto arguments = std::make_shared<ServeArguments>();
+  arguments->choices.image_ms = int(compositor::limits::image_time.count());
+  // A name that others could guess needs a folder that they cannot write into.
+  if (const auto runtime = compositor::private_runtime_folder())
+    arguments->socket = *runtime / "understudy-nodes.sock";
+  CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
+  subcommand
+      ->add_option("-n,--nodes", arguments->nodes,
+                   "number of MPI ranks, on this machine or on those of --hostfile; default: the slots of the "
+                   "hostfile, or the tasks of a Slurm allocation")
+      ->check(CLI::Range(1, spu::max_nodes));
+  add_hostfile_option(*subcommand, arguments->hostfile);
+  add_backend_option(*subcommand, arguments->choices.backend);
+  add_gpu_memory_option(*subcommand, arguments->choices.gpu_memory);
+  add_balance_option(*subcommand, arguments->choices.balance);
+  subcommand
+      ->add_option("--socket", arguments->socket,
+                   "where viewers find them; without XDG_RUNTIME_DIR: in a private folder, which is told")
+      ->capture_default_str();
+  subcommand
+      ->add_option("--folder", arguments->folder,
+                   "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--data", arguments->choices.data,
+                   "folders that clients may load volumes from (understudy render, view); without: none, "
+                   "clients send what is drawn")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      ->add_option("--image-time", arguments->choices.image_ms,
+                   "how long one image may take, in milliseconds; 0: as long as its client waits for it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  add_exchange_options(*subcommand, arguments->choices);
+  add_tiles_option(*subcommand, arguments->tiles);
+  CLI::Option* secret_file =
+      subcommand
+          ->add_option("--secret-file", arguments->secret_file,
+                       "with --listen: the secret that clients must have; created if the file does not exist")
+          ->type_name("FILE");
+  CLI::Option* listen =
+      subcommand
+          ->add_option("--listen", arguments->listen,
+                       "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
+                       "all of its networks; port 0 takes any that is free")
+          ->type_name("[HOST]:PORT")
+          ->needs(secret_file);
+  subcommand
+      ->add_flag("--gl-server", arguments->server,
+                 "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "
+                 "HOST:PORT)")
+      ->needs(listen);
+  add_gl_server_option(*subcommand, arguments->server_opengl);
+  subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
+      ->type_name("PID")
+      ->check(CLI::PositiveNumber);
+  subcommand->callback([arguments, &chosen] { chosen = [arguments] { return serve(*arguments); }; });
+}
+
+}  // namespace understudy::launcher

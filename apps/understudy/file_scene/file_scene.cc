@@ -1,0 +1,200 @@
+#include "apps/understudy/file_scene/file_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "apps/understudy/file_scene/control_points_file.h"
+#include "apps/understudy/file_scene/number_list.h"
+#include "apps/understudy/images/image.h"
+#include "volume/file/synthetic.h"
+#include "volume/raycast/segment_scene.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr volume::VolumeId volume_id = 1;
+
+volume::FileHints hints_of(const SceneArguments& arguments) {
+  volume::FileHints hints;
+  if (!arguments.volume_size.empty()) {
+    hints.size.emplace();
+    std::ranges::copy(arguments.volume_size, hints.size->begin());
+  }
+  if (!arguments.type.empty()) {
+    hints.type = volume::scalar_type_named(arguments.type);
+    if (!hints.type)
+      throw std::invalid_argument(fmt::format(
+          "there is no type '{}'; give u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64", arguments.type));
+  }
+  if (arguments.big_endian) hints.big_endian = true;
+  return hints;
+}
+
+volume::TexelChoice texels_of(const SceneArguments& arguments) {
+  volume::TexelChoice choice;
+  if (arguments.texels == "u8") choice.type = volume::TexelType::u8;
+  if (arguments.texels == "u16") choice.type = volume::TexelType::u16;
+  if (arguments.texels == "f32") choice.type = volume::TexelType::f32;
+  if (!arguments.range.empty()) {
+    const std::vector<double> range = numbers(arguments.range, ',', 2, "0,4095");
+    choice.range = {range[0], range[1]};
+  }
+  return choice;
+}
+
+ImageSettings image_of(const SceneArguments& arguments) {
+  ImageSettings image;
+  image.control_points = read_control_points(arguments.transfer_function);
+  const std::vector<double> camera = numbers(arguments.camera, ',', 3, "30,20,4", 1);
+  image.camera = {camera[0], camera[1], camera[2], camera.size() > 3 ? camera[3] : 0};
+  const std::vector<double> size = numbers(arguments.size, 'x', 2, "512x512");
+  for (const double side : size)
+    if (!(side >= 1 && side <= max_image_side))
+      throw std::invalid_argument(
+          fmt::format("an image of {} pixels; give 1 to {} a side", arguments.size, max_image_side));
+  image.width = int(size[0]);
+  image.height = int(size[1]);
+  image.step = arguments.step;
+  image.termination = float(arguments.termination);
+  return image;
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& subcommand, SceneArguments& arguments) {
+  subcommand
+      .add_option("VOLUME", arguments.volume,
+                  "raw (size and type in its name: head_256x256x113_int16be.raw.gz), NRRD, NIfTI or VTI, or "
+                  "synthetic:XxYxZ[:u8|u16|f32[:shells|lobes|gyroid]]")
+      ->required();
+  subcommand
+      .add_option(
+          "--transfer-function,--tf", arguments.transfer_function,
+          "transfer function: a JSON file of control points, or one of " + volume::built_in_control_points())
+      ->capture_default_str();
+  add_shading_options(subcommand, arguments.shading);
+  subcommand
+      .add_option("--camera", arguments.camera,
+                  "azimuth and elevation in degrees, distance in half diagonals, and degrees by which it "
+                  "rolls (180: z is down)")
+      ->type_name("A,E,D[,R]")
+      ->capture_default_str();
+  subcommand.add_option("--size", arguments.size, "of the image")->type_name("WxH")->capture_default_str();
+  subcommand.add_option("--step", arguments.step, "between samples, in voxels")->capture_default_str();
+  subcommand
+      .add_option("--termination", arguments.termination,
+                  "early ray termination: a ray ends where less than this shows through")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  subcommand.add_option("--volume-size", arguments.volume_size, "of raw scalars")
+      ->type_name("X Y Z")
+      ->expected(3);
+  subcommand.add_option("--type", arguments.type, "of raw scalars: u8, i8, … f64");
+  subcommand.add_flag("--big-endian", arguments.big_endian, "of raw scalars");
+  subcommand.add_option("--spacing", arguments.spacing, "between scalars, instead of the file's")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->check(CLI::PositiveNumber);
+  subcommand.add_option("--texels", arguments.texels, "what is kept of each scalar")
+      ->check(CLI::IsMember({"u8", "u16", "f32"}));
+  subcommand.add_option("--range", arguments.range, "values that the texels of u8 and u16 span")
+      ->type_name("LOW,HIGH");
+}
+
+volume::Vec3 FileScene::extent() const {
+  volume::Vec3 extent{};
+  for (std::size_t k = 0; k < 3; ++k) extent[k] = file.size[k] * file.spacing[k];
+  return extent;
+}
+
+FileScene scene_of(const SceneArguments& arguments) {
+  FileScene scene;
+  scene.image = image_of(arguments);
+  scene.load.file = volume::is_synthetic(arguments.volume)
+                        ? arguments.volume
+                        : std::filesystem::absolute(arguments.volume).string();
+  scene.load.hints = hints_of(arguments);
+  scene.load.texels = texels_of(arguments);
+  scene.file = volume::open_volume(scene.load.file, scene.load.hints)->description();
+  if (!arguments.spacing.empty()) std::ranges::copy(arguments.spacing, scene.file.spacing.begin());
+  for (double& distance : scene.file.spacing) distance = volume::believable_spacing(distance);
+  scene.mapping = volume::mapping_of(scene.file, scene.load.texels);
+  scene.load.volume.id = volume_id;
+  scene.load.volume.size = scene.file.size;
+  scene.load.volume.type = scene.mapping.type;
+  scene.load.volume.stored = {{0, 0, 0}, scene.file.size};
+  scene.image.shading = shading_of(arguments.shading, scene.extent());
+  // Segments and gradients reach beyond a node's own cells, by no more than the volume has.
+  scene.load.volume.ghost_layer =
+      volume::ghost_layer_needed(scene.load.volume, unclassified_request(scene, scene.image));
+  if (scene.load.volume.ghost_layer > *std::ranges::max_element(scene.file.size))
+    throw std::invalid_argument(
+        fmt::format("a step of {} voxels is longer than the volume; give a smaller one", arguments.step));
+  return scene;
+}
+
+volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image) {
+  volume::RenderRequest request = volume::orbit_request(scene.load.volume, scene.file.spacing, image.camera,
+                                                        image.width, image.height, image.step);
+  request.termination = image.termination;
+  const Shading& shading = image.shading;
+  request.method = shading.method;
+  request.tolerance = shading.tolerance;
+  request.cut_at_bricks = shading.cut_at_bricks;
+  request.op = shading.op;
+  request.light = shading.light;
+  for (const SurfaceChoice& surface : shading.surfaces) request.surfaces.push_back({0, surface.colour});
+  return request;
+}
+
+volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
+                                 const volume::TexelFigures& values) {
+  volume::RenderRequest request = unclassified_request(scene, image);
+  // A volume of one value has no range: the tables' least value is that one.
+  const double low = values.low <= values.high ? values.low : 0.0;
+  const double high = values.low < values.high ? values.high : low + 1;
+  const std::vector<double> surfaces = surface_values(image.shading, low, high);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    request.surfaces[i].value = scene.mapping.normalised(surfaces[i]);
+  if (request.light) {
+    // A thousandth of the values' range per voxel.
+    const double range = std::abs(scene.mapping.normalised(high) - scene.mapping.normalised(low));
+    request.light->full_slope = float(1e-3 * range / *std::ranges::max_element(scene.file.spacing));
+  }
+  if (!image.shading.shows_volume) {
+    request.classification = volume::TransferFunction{0, 1, {{}, {}}};
+    return request;
+  }
+  const bool segments = request.method == volume::Method::pre_integrated;
+  volume::TransferFunction table = sampled(
+      segments ? spanning(image.control_points, low, high) : image.control_points, low, high, image.step);
+  table.low = float(scene.mapping.normalised(table.low));
+  table.high = float(scene.mapping.normalised(table.high));
+  if (table.low > table.high) {  // texels fall where values rise
+    std::swap(table.low, table.high);
+    std::ranges::reverse(table.entries);
+  }
+  request.classification = std::move(table);
+  return request;
+}
+
+volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks) {
+  volume::TexelFigures figures;
+  for (const compositor::RankLoad& rank : ranks) {
+    if (rank.low <= rank.high) {  // a rank may have no share
+      const bool first = figures.low > figures.high;
+      figures.low = first ? rank.low : std::min(figures.low, rank.low);
+      figures.high = first ? rank.high : std::max(figures.high, rank.high);
+    }
+    figures.largest_error = std::max(figures.largest_error, rank.largest_error);
+    figures.not_numbers += rank.not_numbers;
+  }
+  return figures;
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,72 @@
+// A volume in a file and the image that is wanted of it, as commands without an application take them on
+// their command lines.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/understudy/file_scene/shading_options.h"
+#include "compositor/service/loading_service.h"
+#include "volume/file/texel_stream.h"
+#include "volume/file/volume_file.h"
+#include "volume/orbit_camera.h"
+#include "volume/request.h"
+#include "volume/transfer_control_points.h"
+
+namespace understudy::launcher {
+
+struct SceneArguments {
+  std::string volume;
+  ShadingArguments shading;
+  std::string transfer_function = "grey";
+  std::string camera = "30,20,4";
+  std::string size = "512x512";
+  double step = 1;
+  double termination = 5e-6;
+  std::vector<int> volume_size;
+  std::string type;
+  bool big_endian = false;
+  std::vector<double> spacing;
+  std::string texels;
+  std::string range;
+};
+
+void add_scene_options(CLI::App& subcommand, SceneArguments& arguments);
+
+/// What an image of a volume shows, from where, and how finely.
+struct ImageSettings {
+  volume::TransferControlPoints control_points;
+  Shading shading;
+  volume::OrbitCamera camera;
+  int width = 512;
+  int height = 512;
+  double step = 1;  ///< between samples, in voxels
+  float termination = 5e-6F;
+};
+
+struct FileScene {
+  compositor::LoadRequest load;
+  volume::FileDescription file;
+  volume::TexelMapping mapping;
+  ImageSettings image;
+
+  /// Of the volume, in the unit of its spacing.
+  volume::Vec3 extent() const;
+};
+
+/// Everything that can be known to be wrong before a byte of the volume is read. The volume's ghost layer is
+/// wide enough for the image. Throws std::invalid_argument and volume::FileError.
+FileScene scene_of(const SceneArguments& arguments);
+
+/// All but the classification, and the surfaces' values. Throws std::invalid_argument.
+volume::RenderRequest unclassified_request(const FileScene& scene, const ImageSettings& image);
+
+/// Once it is known which values the volume has. Throws std::invalid_argument.
+volume::RenderRequest request_of(const FileScene& scene, const ImageSettings& image,
+                                 const volume::TexelFigures& values);
+
+/// The values in the volume and how they became texels, summed over the ranks.
+volume::TexelFigures texel_figures(const std::vector<compositor::RankLoad>& ranks);
+
+}  // namespace understudy::launcher

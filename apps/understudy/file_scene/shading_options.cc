@@ -1,0 +1,201 @@
+#include "apps/understudy/file_scene/shading_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "apps/understudy/file_scene/number_list.h"
+#include "volume/brick/brick_store.h"
+#include "volume/surface.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr volume::Rgba plain_surface{0.9F, 0.9F, 0.9F, 1};
+
+/// All of `text` as one number.
+std::optional<double> number_in(std::string_view text) {
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// "#e8c090", without the sign in front as well.
+std::optional<std::array<float, 3>> colour_in(std::string_view text) {
+  if (text.starts_with('#')) text.remove_prefix(1);
+  unsigned bits = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), bits, 16);
+  if (text.size() != 6 || error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return std::array{float(bits >> 16U & 255U) / 255, float(bits >> 8U & 255U) / 255, float(bits & 255U) / 255};
+}
+
+SurfaceChoice surface_in(const std::string& text) {
+  const auto fail = [&](const char* what) {
+    throw std::invalid_argument(
+        fmt::format("--surface {}: {}; give a value of the volume or a place in its range, and then, if "
+                    "wanted, colour and opacity: 1150 or 40%,#e8c090,0.5",
+                    text, what));
+  };
+  std::vector<std::string_view> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    parts.push_back(std::string_view(text).substr(at, end - at));
+    at = end + 1;
+  }
+  if (parts.size() > 3) fail("has more than three parts");
+  SurfaceChoice surface{0, parts[0].ends_with('%'), plain_surface};
+  if (surface.of_range) parts[0].remove_suffix(1);
+  const auto at = number_in(parts[0]);
+  if (!at) fail("its value is no number");
+  surface.at = surface.of_range ? *at / 100 : *at;
+  if (surface.of_range && !(surface.at > 0 && surface.at <= 1)) fail("its place is not between 0% and 100%");
+  if (parts.size() > 1) {
+    const auto colour = colour_in(parts[1]);
+    if (!colour) fail("its colour is not of the form #rrggbb");
+    std::ranges::copy(*colour, surface.colour.begin());
+  }
+  if (parts.size() > 2) {
+    const auto opacity = number_in(parts[2]);
+    if (!opacity || !(*opacity > 0 && *opacity <= 1)) fail("its opacity is not above 0 and up to 1");
+    surface.colour[3] = float(*opacity);
+  }
+  return surface;
+}
+
+volume::Light light_of(const ShadingArguments& arguments, const volume::Vec3& extent) {
+  volume::Light light;
+  for (std::size_t k = 0; k < 3; ++k) light.space[4 * k] = extent[k];
+  light.on_samples = arguments.light != "surfaces";
+  if (!arguments.light_from.empty()) {
+    const std::vector<double> angles = numbers(arguments.light_from, ',', 2, "45,60");
+    if (!(std::isfinite(angles[0]) && std::abs(angles[1]) <= 90))
+      throw std::invalid_argument(
+          fmt::format("--light-from {}: give degrees, -90 to 90 for the second", arguments.light_from));
+    const double azimuth = angles[0] * std::numbers::pi / 180, elevation = angles[1] * std::numbers::pi / 180;
+    light.direction = {std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth),
+                       std::sin(elevation)};
+  }
+  if (!arguments.material.empty()) {
+    const std::vector<double> parts = numbers(arguments.material, ',', 4, "0.2,0.8,0.3,20");
+    if (!std::ranges::all_of(parts, [](double v) { return v >= 0 && v <= 1e4; }))
+      throw std::invalid_argument(
+          fmt::format("--material {}: give numbers from 0 to 10000", arguments.material));
+    light.ambient.fill(float(parts[0]));
+    light.diffuse.fill(float(parts[1]));
+    light.specular.fill(float(parts[2]));
+    light.shininess = float(parts[3]);
+  }
+  return light;
+}
+
+}  // namespace
+
+void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
+  subcommand
+      .add_option(
+          "--method", arguments.method,
+          "what is classified: each sample (post-classified), the segment between two samples (pre-integrated, "
+          "needs fewer samples), or samples whose distance adapts to the transfer function (adaptive)")
+      ->check(CLI::IsMember({"post-classified", "pre-integrated", "adaptive"}).description(""))
+      ->type_name("post-classified|pre-integrated|adaptive")
+      ->capture_default_str();
+  subcommand
+      .add_option("--cut-at-bricks", arguments.cut_at_bricks,
+                  "with pre-integrated: end segments at the faces of bricks of EDGE voxels (a multiple of 8), "
+                  "for comparison with renderers whose bricks share no more than their faces")
+      ->type_name("EDGE");
+  subcommand.add_option("--tolerance", arguments.tolerance, "of adaptive steps: the error that each may have")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("ERROR")
+      ->capture_default_str();
+  subcommand
+      .add_option("--operator", arguments.op,
+                  "how the samples of a ray become a pixel: composited front to back (over), the largest "
+                  "(max), their sum (add), or the first that is not transparent, shown opaque (first-hit)")
+      ->check(CLI::IsMember({"over", "max", "add", "first-hit"}).description(""))
+      ->type_name("over|max|add|first-hit")
+      ->capture_default_str();
+  subcommand
+      .add_option("--surface", arguments.surfaces,
+                  "an iso-surface: a value, or a place in the range of the volume (40%), with a colour #rrggbb "
+                  "and an opacity; may be given several times")
+      ->type_name("VALUE[,COLOUR[,OPACITY]]")
+      ->allow_extra_args(false);
+  subcommand.add_flag("--no-volume", arguments.no_volume, "show surfaces alone, without the volume");
+  subcommand
+      .add_option("--light", arguments.light,
+                  "Blinn-Phong lighting of the volume and its surfaces (all) or of surfaces alone (surfaces); "
+                  "the light is at the eye unless --light-from is given")
+      ->check(CLI::IsMember({"all", "surfaces"}).description(""))
+      ->type_name("all|surfaces");
+  subcommand
+      .add_option("--light-from", arguments.light_from,
+                  "a fixed light: azimuth and elevation in degrees, as for --camera")
+      ->type_name("A,E");
+  subcommand
+      .add_option("--material", arguments.material,
+                  "ambient, diffuse and specular share, and shininess, of what is lit (default 0.2,0.8,0.3,20)")
+      ->type_name("A,D,S,N");
+}
+
+Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent) {
+  Shading shading;
+  if (arguments.method == "pre-integrated") shading.method = volume::Method::pre_integrated;
+  if (arguments.method == "adaptive") shading.method = volume::Method::adaptive;
+  shading.tolerance = arguments.tolerance;
+  constexpr int block = volume::BrickStore::block_cells;
+  if (arguments.cut_at_bricks < 0 || arguments.cut_at_bricks % block != 0 ||
+      arguments.cut_at_bricks / block > 255)
+    throw std::invalid_argument(fmt::format("--cut-at-bricks {}: give a multiple of {}, up to {}",
+                                            arguments.cut_at_bricks, block, 255 * block));
+  shading.cut_at_bricks = std::uint8_t(arguments.cut_at_bricks / block);
+  if (shading.cut_at_bricks != 0 && shading.method != volume::Method::pre_integrated)
+    throw std::invalid_argument("--cut-at-bricks is for segments; give --method pre-integrated as well");
+  if (arguments.op == "max") shading.op = volume::Operator::max;
+  if (arguments.op == "add") shading.op = volume::Operator::add;
+  if (arguments.op == "first-hit") shading.op = volume::Operator::first_hit;
+  const bool samples_alone = shading.method == volume::Method::post_classified && arguments.surfaces.empty() &&
+                             arguments.light.empty() && arguments.light_from.empty();
+  if (arguments.op != "over" && !samples_alone)
+    throw std::invalid_argument(fmt::format(
+        "--operator {} is for samples alone; leave out --method, --surface and --light", arguments.op));
+  if (shading.method == volume::Method::adaptive &&
+      !(arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty()))
+    throw std::invalid_argument(
+        "--method adaptive knows neither surfaces nor light; give --method pre-integrated, or leave them out");
+  shading.shows_volume = !arguments.no_volume;
+  if (arguments.surfaces.size() > volume::max_surfaces)
+    throw std::invalid_argument(fmt::format("{} surfaces are more than can be drawn; give at most {}",
+                                            arguments.surfaces.size(), volume::max_surfaces));
+  for (const std::string& text : arguments.surfaces) shading.surfaces.push_back(surface_in(text));
+  if (!shading.shows_volume && shading.surfaces.empty())
+    throw std::invalid_argument("--no-volume leaves nothing to be seen; give a --surface as well");
+  if (arguments.light == "surfaces" && shading.surfaces.empty())
+    throw std::invalid_argument("--light surfaces finds none; give a --surface as well, or --light all");
+  if (!arguments.light.empty() || !arguments.light_from.empty())
+    shading.light = light_of(arguments, extent);
+  else if (!arguments.material.empty())
+    throw std::invalid_argument("--material shows under a light only; give --light all as well");
+  return shading;
+}
+
+std::vector<double> surface_values(const Shading& shading, double low, double high) {
+  std::vector<double> values;
+  for (const SurfaceChoice& surface : shading.surfaces) {
+    values.push_back(surface.of_range ? low + surface.at * (high - low) : surface.at);
+    if (!(values.back() > low && values.back() <= high))
+      throw std::invalid_argument(
+          fmt::format("a surface at {:g} shows nothing: the volume's values run from {:g} to {:g}; give one "
+                      "above the first, or a place in the range as in 40%",
+                      values.back(), low, high));
+  }
+  return values;
+}
+
+}  // namespace understudy::launcher

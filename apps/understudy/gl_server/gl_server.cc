@@ -1,0 +1,276 @@
+#include "apps/understudy/gl_server/gl_server.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "apps/understudy/gl_server/frame_changes.h"
+#include "apps/understudy/launch/client_processes.h"
+#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "compositor/service/limits.h"
+#include "compositor/transport/connection.h"
+#include "spu/chain_text.h"
+#include "spu/options.h"
+#include "spu/player/player.h"
+#include "spu/registry/assemble.h"
+#include "spu/remote/gl_server_protocol.h"
+#include "spu/report/counters.h"
+#include "spu/stream/call_answer.h"
+#include "spu/stream/event.h"
+#include "spu/tiles/tile.h"
+#include "spu/tiles/tile_workers.h"
+#include "spu/window_system/shown_image.h"
+
+namespace understudy::launcher {
+namespace {
+
+using compositor::Bytes;
+using compositor::Clock;
+using compositor::Connection;
+using compositor::FileDescriptor;
+using compositor::MalformedMessage;
+using compositor::Message;
+using compositor::MessageType;
+namespace limits = compositor::limits;
+
+constexpr std::chrono::seconds patience_with_start{10};
+/// Different faults of a stream that are said.
+constexpr std::size_t most_faults_told = 20;
+
+/// What the GL server of an application is given: where its chain finds others that draw tiles of its windows.
+spu::Options options_of_application(const std::string& socket) {
+  spu::Options options = spu::options_from_environment();
+  spu::ChainSettings chain =
+      spu::parse_chain(spu::resolved_chain(options.chain, std::filesystem::current_path()));
+  auto tiles = std::find_if(chain.begin(), chain.end(),
+                            [](const spu::UnitSetting& unit) { return unit.name == "tiles"; });
+  if (tiles == chain.end() && options.tiles) {
+    const int parts = std::min(options.nodes, spu::most_tiles);
+    if (parts < 2) {
+      fmt::print(stderr, "understudy: --tiles on: there is one node, which draws all; say -n 2, or more\n");
+      return options;
+    }
+    tiles = chain.insert(chain.end() - 1,
+                         {.name = "tiles", .options = {{"of", std::to_string(parts), {}}}, .where = {}});
+  }
+  if (tiles == chain.end()) return options;
+  tiles->options.push_back({"gl-server", socket, {}});
+  options.chain = spu::chain_text(chain);
+  return options;
+}
+
+/// A tile worker's: what units there are stand before it in the chain of the application's GL server.
+spu::Options options_of_tile_worker(const spu::TilePlace& place) {
+  spu::Options options = spu::options_from_environment();
+  options.chain = fmt::format("tile(part={},of={}) driver", place.part, place.parts);
+  return options;
+}
+
+/// The calls of one application, played as they come; or of an application's GL server, by one of its tile
+/// workers.
+class Performance {
+ public:
+  Performance(Connection& connection, const spu::Options& options, bool paints)
+      : connection_(connection),
+        paints_(paints),
+        windows_(open_offscreen_contexts(options.server_opengl)),
+        player_(*windows_, options, paints ? spu::StreamOrigin::elsewhere : spu::StreamOrigin::linked) {
+    player_.on_frame = [this](const spu::ShownFrame& frame) {
+      if (paints_) return show_tile();
+      show(frame);
+    };
+  }
+
+  /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
+  void run() {
+    const spu::GlServerVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
+    connection_.send(compositor::LauncherMessage::accepted, 0, spu::encode(versions),
+                     Clock::now() + limits::server_patience);
+    for (;;) {
+      std::optional<Message> message;
+      try {
+        message = next();
+      } catch (const compositor::ConnectionLost&) {
+        return;
+      }
+      if (message->type != spu::GlServerMessage::calls) throw MalformedMessage("spoke out of turn");
+      play(spu::decode_calls(message->payload, chunks_));
+    }
+  }
+
+ private:
+  /// An application may be silent for as long as nobody touches it, but not within a message.
+  Message next() {
+    for (;;) {
+      if (std::optional<Message> message = connection_.receive_some()) return std::move(*message);
+      const auto until = connection_.unfinished() ? Clock::now() + limits::stall_patience
+                                                  : Clock::now() + std::chrono::hours(24);
+      if (!compositor::wait_until_ready(connection_.fd(), POLLIN, until) && connection_.unfinished())
+        throw compositor::ConnectionLost("stalled");
+    }
+  }
+
+  void play(const spu::Calls& calls) {
+    shown_.reset();
+    tile_.clear();
+    if (paints_ && calls.head.reply == spu::ServerReply::answer) forget_errors();
+    const std::array<std::uint64_t, 2> thread = {spu::event::thread | std::uint64_t(2) << 32,
+                                                 calls.head.thread};
+    player_.play({spu::event::thread, thread, {}});
+    std::uint64_t& counted = *spu::thread_call_counter();
+    bool played = true;
+    for (std::size_t position = 0; position < calls.records.size();) {
+      const auto record = spu::record_at(calls.records, position, calls.payload);
+      if (!record) throw MalformedMessage("a record is longer than its message");
+      position += record->words.size();
+      const std::string error = player_.play(*record);
+      if (spu::event::name_of(record->id) == nullptr) ++counted;
+      played = error.empty();
+      if (!played) tell(error);
+    }
+    if (calls.head.reply == spu::ServerReply::answer) {
+      const spu::CallAnswer nothing;
+      const spu::CallAnswer answer = !played ? nothing : paints_ ? painted() : player_.call_answer();
+      reply(spu::GlServerMessage::answered, spu::encode(answer), {});
+    } else if (calls.head.reply == spu::ServerReply::image) {
+      const spu::ImageChange change = shown_.value_or(spu::ImageChange{});
+      reply(spu::GlServerMessage::image, spu::encode_head(change), change.pixels);
+    }
+  }
+
+  void reply(MessageType type, const std::vector<std::byte>& head, Bytes pixels) {
+    const std::array<Bytes, 2> parts = {head, pixels};
+    connection_.send(type, 0, parts, limits::server_patience);
+  }
+
+  void show(const spu::ShownFrame& frame) {
+    const spu::Extent2D extent = player_.current().drawable;
+    if (frame.extent.width == 0 || frame.extent.height == 0) return;
+    shown_ = changes_.next(player_.drawable(), extent, player_.shown_image());
+  }
+
+  // Of a tile worker, which is asked for nothing but pixels.
+
+  void show_tile() {
+    const spu::Tile& tile = *spu::Chain::current()->find<spu::Tile>();
+    const spu::Rows rows = tile.rows();
+    tile_ = spu::shown_rows(player_.driver(), tile.extent().width, rows.first, rows.count);
+  }
+
+  void forget_errors() {
+    if (!player_.prepare()) return;
+    // A context that is lost has one for ever.
+    for (int i = 0; i < 16 && player_.driver().GetError() != GL_NO_ERROR; ++i) continue;
+  }
+
+  /// Nothing where OpenGL refuses to read.
+  spu::CallAnswer painted() {
+    spu::CallAnswer answer;
+    const spu::Decoder::ReadImage& read = player_.read_image();
+    if (!tile_.empty()) {
+      const auto bytes = std::as_bytes(std::span(tile_));
+      answer.outputs.push_back({.bytes = {bytes.begin(), bytes.end()}});
+    } else if (!read.pixels.empty() && player_.driver().GetError() == GL_NO_ERROR) {
+      answer.outputs.push_back({.image = read.shape, .bytes = read.pixels});
+    }
+    return answer;
+  }
+
+  void tell(const std::string& fault) {
+    if (told_.size() < most_faults_told && told_.insert(fault).second)
+      fmt::print(stderr, "understudy: GL server: {}; the call is left out\n", fault);
+  }
+
+  Connection& connection_;
+  const bool paints_;
+  const std::unique_ptr<OffscreenContexts> windows_;
+  spu::Player player_;
+  spu::ChunkReceiver chunks_;
+  FrameChanges changes_;
+  std::optional<spu::ImageChange> shown_;
+  std::vector<std::uint8_t> tile_;
+  std::set<std::string> told_;
+};
+
+/// What a process of its own does for one application, or for another GL server's. Returns its exit status.
+int perform(FileDescriptor socket, const std::string& address) {
+  FileDescriptor same(::dup(socket.get()));
+  try {
+    // Nothing long is read from whoever has not said what it is.
+    Connection pending(std::move(socket), spu::gl_server_protocols, limits::max_hello_bytes);
+    const Message hello = pending.receive(Clock::now() + limits::hello_patience);
+    if (hello.type != compositor::LauncherMessage::hello_client)
+      throw MalformedMessage("its first message is no hello");
+    Connection connection(std::move(same), spu::gl_server_protocols, limits::max_gl_server_message_bytes);
+    try {
+      const bool paints = !hello.payload.empty();
+      // The frames that a tile worker has a part in are counted by the GL server of the application.
+      if (paints) ::unsetenv("UNDERSTUDY_RUN_DIR");
+      Performance(connection,
+                  paints ? options_of_tile_worker(spu::decode_tile_place(hello.payload))
+                         : options_of_application(address),
+                  paints)
+          .run();
+    } catch (const compositor::ConnectionLost&) {
+      throw;
+    } catch (const std::exception& error) {
+      connection.send(compositor::LauncherMessage::refused, 0, compositor::encode_text(error.what()),
+                      Connection::now_or_never());
+      throw;
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "understudy: GL server: dropped an application: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
+                                              const std::filesystem::path& socket, Environment environment) {
+  auto server = std::make_unique<ChildProcess>(
+      Command{.arguments = {installation.programs / "understudy", "gl-server", "--socket", socket},
+              .environment = std::move(environment)});
+  const auto until = Clock::now() + patience_with_start;
+  std::error_code unreadable;
+  while (!std::filesystem::is_socket(socket, unreadable)) {
+    if (const auto ending = server->wait_for_ending(5))
+      throw std::runtime_error(fmt::format("the GL server {}", ending->text()));
+    if (Clock::now() > until)
+      throw std::runtime_error(fmt::format("the GL server does not listen at {}", socket.string()));
+  }
+  return server;
+}
+
+void add_gl_server_command(CLI::App& app, std::function<int()>& chosen) {
+  const auto socket = std::make_shared<std::string>();
+  CLI::App* subcommand = app.add_subcommand("gl-server", "makes the calls of viewers, for run --remote");
+  subcommand->group("");
+  subcommand->add_option("--socket", *socket)->required();
+  subcommand->callback([socket, &chosen] {
+    chosen = [socket] {
+      listen_for_clients(*socket, "gl-server",
+                         [&](FileDescriptor client) { return perform(std::move(client), *socket); });
+      return 0;
+    };
+  });
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,158 @@
+#include "apps/understudy/launch/listener.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include "apps/understudy/launch/client_processes.h"
+#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/launch/signal_inbox.h"
+#include "compositor/relay/render_relay.h"
+#include "compositor/service/limits.h"
+#include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/listener.h"
+#include "spu/remote/gl_server_relay.h"
+
+namespace understudy::launcher {
+namespace {
+
+using compositor::AdmissionVerdict;
+using compositor::Clock;
+using compositor::Connection;
+using compositor::ConnectionRequest;
+using compositor::Destination;
+using compositor::FileDescriptor;
+using compositor::Listener;
+using compositor::TcpConnection;
+namespace limits = compositor::limits;
+
+constexpr std::chrono::seconds patience_with_start{10};
+
+void say(const std::string& line) {
+  fmt::print(stderr, "understudy: {}\n", line);
+}
+
+/// The file in which a listener says where it listens.
+std::filesystem::path address_file(const std::filesystem::path& folder) {
+  return folder / "listener.address";
+}
+
+void tell_address(const std::filesystem::path& folder, const std::string& address) {
+  const std::filesystem::path part = address_file(folder).string() + ".part";
+  std::ofstream(part) << address;
+  std::filesystem::rename(part, address_file(folder));
+}
+
+/// What the process of one client does. Returns its exit status.
+int carry(FileDescriptor socket, const ConnectionRequest& connection_request, const ListenerPlan& plan) {
+  const bool to_server = connection_request.to == Destination::gl_server;
+  const compositor::Protocols spoken = to_server ? compositor::Protocols(spu::gl_server_protocols)
+                                                 : compositor::Protocols(compositor::service_protocols);
+  TcpConnection connection(std::move(socket), spoken,
+                           to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes);
+  const std::filesystem::path& path = to_server ? plan.server : plan.nodes;
+  try {
+    Connection here(compositor::connect_to(path.string(), Clock::now() + limits::hello_patience), spoken,
+                    to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes);
+    std::string why;
+    if (to_server)
+      why = spu::GlServerRelay(here, connection, connection_request).run();
+    else
+      why = compositor::NodesRelay(here, connection, connection_request).run();
+    if (!why.empty()) say(fmt::format("dropped a client: {}", why));
+    return why.empty() ? 0 : 1;
+  } catch (const std::exception& error) {
+    const std::vector<std::byte> text = compositor::encode_text(error.what());
+    const compositor::Bytes payload(text);
+    connection.send(compositor::LauncherMessage::refused, 0, {&payload, 1});
+    say(error.what());
+  }
+  return 1;
+}
+
+int listen(const ListenerPlan& plan) {
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
+  const compositor::Secret secret = compositor::read_secret(plan.secret_file);
+  ClientProcesses clients;
+  Listener* open_listener = nullptr;
+  const auto admission = [&](const ConnectionRequest& connection_request) {
+    if (connection_request.to == Destination::gl_server && plan.server.empty())
+      return AdmissionVerdict::not_offered;
+    return clients.count() < limits::max_clients ? AdmissionVerdict::accepted : AdmissionVerdict::too_many;
+  };
+  const auto accept = [&](FileDescriptor socket, const ConnectionRequest& connection_request) {
+    const bool started = clients.start([&] {
+      open_listener->forget();
+      return carry(std::move(socket), connection_request, plan);
+    });
+    if (!started) say("no process can be made for a client; it was sent away");
+  };
+  Listener listener(plan.address, secret, admission, accept, say);
+  open_listener = &listener;
+  tell_address(plan.folder, listener.address().text());
+  while (!asked_to_end(inbox, clients)) {
+    std::vector<pollfd> waiting = {{inbox.descriptor(), POLLIN, 0}};
+    listener.poll_fds(waiting);
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(listener.next_deadline() - Clock::now());
+    ::poll(waiting.data(), waiting.size(), int(std::max<long long>(left.count(), 0)));
+    listener.step();
+  }
+  return 0;
+}
+
+}  // namespace
+
+OpenListener start_listener(const Installation& installation, const ListenerPlan& plan) {
+  std::vector<std::string> words = {installation.programs / "understudy",
+                                    "listener",
+                                    "--listen",
+                                    plan.address.text(),
+                                    "--secret-file",
+                                    plan.secret_file,
+                                    "--nodes",
+                                    plan.nodes,
+                                    "--folder",
+                                    plan.folder};
+  if (!plan.server.empty()) words.insert(words.end(), {"--gl-server", plan.server});
+  OpenListener listener{
+      std::make_unique<ChildProcess>(Command{.arguments = words, .environment = current_environment()}), {}};
+  const auto until = Clock::now() + patience_with_start;
+  while (!std::filesystem::exists(address_file(plan.folder))) {
+    if (const auto ending = listener.process->wait_for_ending(5))
+      throw std::runtime_error(
+          fmt::format("nobody listens at {}: the listener {}", plan.address.text(), ending->text()));
+    if (Clock::now() > until)
+      throw std::runtime_error(fmt::format("nobody listens at {} in time", plan.address.text()));
+  }
+  std::string text;
+  std::ifstream(address_file(plan.folder)) >> text;
+  listener.address = compositor::tcp_address_of(text).value();
+  return listener;
+}
+
+void add_listener(CLI::App& app, std::function<int()>& chosen) {
+  const auto plan = std::make_shared<ListenerPlan>();
+  const auto address = std::make_shared<std::string>();
+  CLI::App* subcommand =
+      app.add_subcommand("listener", "lets clients of other machines in, for serve --listen");
+  subcommand->group("");
+  subcommand->add_option("--listen", *address)->required();
+  subcommand->add_option("--secret-file", plan->secret_file)->required();
+  subcommand->add_option("--nodes", plan->nodes)->required();
+  subcommand->add_option("--gl-server", plan->server);
+  subcommand->add_option("--folder", plan->folder)->required();
+  subcommand->callback([plan, address, &chosen] {
+    chosen = [plan, address] {
+      plan->address = compositor::tcp_address_of(*address).value();
+      return listen(*plan);
+    };
+  });
+}
+
+}  // namespace understudy::launcher

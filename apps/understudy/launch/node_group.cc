@@ -1,0 +1,256 @@
+#include "apps/understudy/launch/node_group.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "apps/understudy/hosts/mpirun_command.h"
+#include "apps/understudy/launch/environment.h"
+#include "compositor/service/backend_line.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr std::chrono::milliseconds housekeeping{
+    1000};  ///< the broker drops silent pending clients at such intervals
+constexpr int patience_with_nodes_ms = 2000;
+constexpr int patience_with_mpirun_ms = 5000;
+constexpr std::chrono::seconds patience_with_lost_group{5};
+constexpr std::uintmax_t max_log_read = 65536;
+constexpr const char* nodes_log = "nodes.log";
+constexpr std::size_t max_backend_choices = 1024;
+
+void say(const std::string& line) {
+  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+}
+
+std::filesystem::path log_of(const NodeGroupPlan& plan) {
+  return plan.folder / nodes_log;
+}
+
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code none_yet;
+  const std::uintmax_t size = std::filesystem::file_size(path, none_yet);
+  return none_yet ? 0 : size;
+}
+
+std::string last_word(const std::string& line) {
+  return line.substr(line.find_last_of(' ') + 1);
+}
+
+/// The one line that tells most: what a node said itself, else mpirun's verdict; empty when there is neither.
+std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
+  constexpr std::string_view from_node = "understudy-node: ";
+  constexpr std::string_view from_mpirun = "mpirun noticed that ";
+  std::ifstream file(log);
+  const std::uintmax_t size = size_of(log);
+  file.seekg(static_cast<std::streamoff>(size > from + max_log_read ? size - max_log_read : from));
+  std::string verdict;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(from_node)) return line.substr(from_node.size());
+    if (line.starts_with(from_mpirun)) verdict = line.substr(from_mpirun.size());
+    if (line.starts_with("  Remote daemon: ")) verdict = "the connection to " + last_word(line) + " was lost";
+    if (line.starts_with("ORTE was unable to reliably start one or more daemons"))
+      verdict =
+          "mpirun could not start Open MPI's daemon on every host: Open MPI must be there under the same path "
+          "as here";
+  }
+  while (verdict.ends_with('.') || verdict.ends_with(' ')) verdict.pop_back();
+  return verdict;
+}
+
+Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan,
+                       const Placement& placement) {
+  Command command;
+  command.arguments = mpirun_words(placement, plan.folder);
+  for (const std::string& word : {installation.node().string(), std::string("--control"), plan.socket.string()})
+    command.arguments.push_back(word);
+  for (const std::string& word : plan.choices.words()) command.arguments.push_back(word);
+  command.environment =
+      mpirun_environment(node_environment(current_environment(), installation), placement, plan.folder);
+  command.output = log_of(plan);
+  command.own_group = true;
+  return command;
+}
+
+/// An image that nobody waits for any longer may take its time, and the ranks do not hang.
+compositor::BrokerPatience patience_with(const NodeChoices& choices) {
+  compositor::BrokerPatience patience;
+  // Below what a rank can tell.
+  constexpr std::chrono::milliseconds most(compositor::limits::max_unwanted_ms - 5000);
+  patience.unwanted = std::min(patience.unwanted + std::chrono::milliseconds(choices.image_ms), most);
+  return patience;
+}
+
+bool is_on_path(const std::string& program) {
+  return program.find('/') != std::string::npos ? std::filesystem::exists(program)
+                                                : program_on_path(program).has_value();
+}
+
+}  // namespace
+
+std::string obstacle_to_nodes(const Installation& installation) {
+  if (!program_on_path("mpirun")) {
+    return "no MPI here (mpirun is not on PATH; apt install openmpi-bin libopenmpi-dev, then ./run build)";
+  }
+  if (!std::filesystem::exists(installation.node())) {
+    return fmt::format("{} was not built (apt install libopenmpi-dev, then ./run build)",
+                       installation.node().string());
+  }
+  return {};
+}
+
+std::vector<std::string> backend_choices(const std::filesystem::path& folder) {
+  const std::string_view begin = compositor::backend_line;
+  std::ifstream file(folder / nodes_log);
+  std::vector<std::string> choices;
+  for (std::string line; choices.size() < max_backend_choices && std::getline(file, line);)
+    if (line.starts_with(begin)) choices.push_back(line.substr(begin.size()));
+  return choices;
+}
+
+NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan)
+    : installation_(installation),
+      plan_(plan),
+      broker_(
+          plan.socket,
+          [this](const std::string& line) {
+            // The loss of the group is told once, with its reason, when mpirun has ended.
+            if (broker_.lost())
+              why_lost_ = line;
+            else
+              say(line);
+          },
+          patience_with(plan.choices)) {
+  start();
+}
+
+NodeGroup::~NodeGroup() {
+  if (!mpirun_) return;
+  // A group whose connection closes ends by itself, and sooner than mpirun ends one that it must signal.
+  const bool ends_by_itself = broker_.node_group_ready();
+  broker_.dismiss_node_group();
+  if (ends_by_itself && mpirun_->wait_for_ending(patience_with_nodes_ms)) return;
+  mpirun_->end(patience_with_mpirun_ms);
+}
+
+void NodeGroup::start() {
+  if (plan_.placement.launch != Launch::remote_shell) return start_on(plan_.placement);
+  const std::vector<Host> others(plan_.placement.hosts.begin() + 1, plan_.placement.hosts.end());
+  const Environment environment = node_environment(current_environment(), installation_);
+  probe_.emplace(others, launch_agent(environment, is_on_path), installation_.node(), environment,
+                 plan_.folder);
+}
+
+void NodeGroup::start_on(const Placement& placement) {
+  if (!placement.hosts.empty()) std::ofstream(own_hostfile(plan_.folder)) << hostfile_text(placement.hosts);
+  // What a group that was killed has left there goes, and not only with the run.
+  std::filesystem::remove_all(shared_memory_folder(plan_.folder));
+  std::filesystem::create_directory(shared_memory_folder(plan_.folder));
+  log_start_ = size_of(log_of(plan_));
+  why_ended_.clear();
+  started_at_ = Clock::now();
+  mpirun_.emplace(mpirun_command(installation_, plan_, placement));
+}
+
+void NodeGroup::try_to(const std::function<void()>& start) {
+  try {
+    start();
+  } catch (const std::exception& error) {
+    broker_.turn_away(error.what());
+    say(fmt::format("{}; the viewer goes on by itself", error.what()));
+  }
+}
+
+void NodeGroup::start_when_due() {
+  if (!next_start_ || Clock::now() < *next_start_) return;
+  next_start_.reset();
+  try_to([this] { start(); });
+}
+
+void NodeGroup::start_on_hosts_that_answer() {
+  if (!probe_ || !probe_->finished()) return;
+  const std::vector<SilentHost> silent = probe_->silent();
+  probe_.reset();
+  std::vector<std::string> gone;
+  std::string what;
+  for (const SilentHost& host : silent) {
+    gone.push_back(host.name);
+    what += fmt::format("{}host {} {}", what.empty() ? "" : ", ", host.name, host.trouble);
+  }
+  const Placement placement = without_hosts(plan_.placement, gone);
+  if (!silent.empty())
+    say(fmt::format("{}: going on with {} {} on {}", what, placement.ranks,
+                    placement.ranks == 1 ? "node" : "nodes", names_of(placement.hosts)));
+  try_to([&] { start_on(placement); });
+}
+
+void NodeGroup::wait_and_serve(int other) {
+  std::vector<pollfd> descriptors{{other, POLLIN, 0}};
+  broker_.poll_fds(descriptors);
+  std::chrono::milliseconds wait = housekeeping;
+  if (next_start_) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(*next_start_ - Clock::now());
+    wait = std::clamp(left, std::chrono::milliseconds(0), wait);
+  }
+  poll(descriptors.data(), descriptors.size(), static_cast<int>(wait.count()));
+  const bool lost_before = broker_.lost();
+  broker_.step(std::chrono::milliseconds(0));
+  if (broker_.lost() && !lost_before) lost_at_ = Clock::now();
+  end_what_hangs();
+  start_on_hosts_that_answer();
+  start_when_due();
+}
+
+void NodeGroup::end_what_hangs() {
+  if (!mpirun_) return;
+  // A group that lost its rank 0 is ended by mpirun, which crashes when it is signalled in the midst of that
+  // (4.1.4): only one that does not get anywhere is ended from here. Its end is seen in look_after_children.
+  // The broker also says lost() of the group before this one, until this one is there.
+  const bool was_there = broker_.lost() && started_at_ < lost_at_;
+  const bool lost = was_there && Clock::now() > lost_at_ + patience_with_lost_group;
+  const bool never_came = plan_.placement.launch != Launch::this_machine && !was_there && !ready() &&
+                          Clock::now() > started_at_ + patience_with_start;
+  if (!lost && !never_came) return;
+  why_ended_ = lost ? why_lost_
+                    : fmt::format(
+                          "they did not find each other within {} s: the hosts' names, and the ports "
+                          "between them, must be open to each other",
+                          patience_with_start.count());
+  mpirun_->end(patience_with_mpirun_ms);
+  look_after_children();
+}
+
+void NodeGroup::look_after_children() {
+  start_on_hosts_that_answer();
+  if (!mpirun_) return;
+  const std::optional<Ending> ending = mpirun_->poll_ending();
+  if (!ending) return;
+  mpirun_.reset();
+  broker_.dismiss_node_group();
+  const std::string words = why_ended_.empty() ? last_words(log_of(plan_), log_start_) : why_ended_;
+  const std::string what =
+      fmt::format("the render nodes are gone ({})", words.empty() ? "mpirun " + ending->text() : words);
+  const auto pause = restarts_.after(Clock::now() - started_at_);
+  if (!pause) {
+    broker_.turn_away(what);
+    say(fmt::format("{}; no more attempts after {} restarts, the viewer goes on by itself", what,
+                    restarts_.count()));
+    return;
+  }
+  next_start_ = Clock::now() + *pause;
+  const std::string where = plan_.placement.launch == Launch::remote_shell
+                                ? "again on the hosts that answer"
+                                : fmt::format("{} again", plan_.placement.ranks);
+  say(fmt::format("{}; starting {} ({} of {}), the viewer draws by itself meanwhile", what, where,
+                  restarts_.count(), max_restarts));
+}
+
+}  // namespace understudy::launcher

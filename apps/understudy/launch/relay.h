@@ -1,0 +1,44 @@
+// Connections to nodes and GL servers on other machines: a process that listens at a Unix socket here, so that
+// viewers meet nodes or a GL server as they do on one machine, and carries what they say over TCP
+// (compositor/transport/tcp).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/launch/installation.h"
+#include "compositor/transport/tcp/handshake.h"
+
+namespace understudy::launcher {
+
+struct ConnectionPlan {
+  std::string address;  ///< host:port
+  std::filesystem::path secret_file;
+  compositor::ConnectionRequest connection_request;
+};
+
+/// Whether both sides prove themselves, now. Throws std::runtime_error: what is wrong, and what to do.
+void try_connection(const ConnectionPlan& plan);
+
+/// Returns once it listens at `socket`. What each of its connections has done, it leaves in `folder`
+/// (connection_figures.h). Throws std::runtime_error.
+std::unique_ptr<ChildProcess> start_relay(const Installation& installation, const ConnectionPlan& plan,
+                                          const std::filesystem::path& socket,
+                                          const std::filesystem::path& folder);
+
+/// Does `job` with a socket behind which are the nodes at `address`; their images are gathered in `pixels`
+/// (compositor::set_layout). Throws what the job throws, and std::runtime_error.
+void with_connection(ConnectionPlan plan, const std::string& address, const std::string& pixels,
+                     const std::function<void(const std::string& socket)>& job);
+
+/// `--secret-file` and `--quality`, for commands with --connect.
+void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan);
+
+/// Adds the subcommand `relay`, which is not shown in the help.
+void add_relay(CLI::App& app, std::function<int()>& chosen);
+
+}  // namespace understudy::launcher

@@ -1,0 +1,425 @@
+#include "apps/understudy/launch/run_viewer.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include "apps/understudy/cli/backend_option.h"
+#include "apps/understudy/gl_server/gl_server.h"
+#include "apps/understudy/hosts/placement.h"
+#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/launch/connection_figures.h"
+#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/launch/node_group.h"
+#include "apps/understudy/launch/relay.h"
+#include "apps/understudy/launch/run_figures.h"
+#include "apps/understudy/launch/run_folder.h"
+#include "apps/understudy/launch/signal_inbox.h"
+#include "compositor/exchange/settings.h"
+#include "compositor/transport/tcp/address.h"
+#include "spu/chain_text.h"
+#include "spu/options.h"
+#include "spu/registry/assemble.h"
+#include "spu/report/keys.h"
+#include "spu/report/report.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr int not_executable = 126;
+constexpr int cannot_start_viewer = 127;
+constexpr int server_patience_ms = 5000;
+/// Of a viewer whose calls a GL server makes: nothing is recognised in its own process. A chain that is to
+/// stand there ends in remote.
+constexpr const char* remote_chain = "pack remote";
+
+bool stands_in_viewer(const std::string& chain) {
+  return spu::parse_chain(chain).back().name == "remote";
+}
+
+void say(const std::string& line) {
+  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+}
+
+/// The options of this run: the environment's, and over them the command line's.
+spu::Options options_of(const RunArguments& arguments) {
+  spu::Options options = spu::options_from_environment();
+  for (const auto& [environment, value] : arguments.settings) spu::set_option(options, environment, value);
+  return options;
+}
+
+/// The viewer may change its folder: paths are told to it absolutely.
+std::string absolute_or_empty(const std::string& path) {
+  return path.empty() ? path : std::filesystem::absolute(path).string();
+}
+
+Environment viewer_environment(const RunArguments& arguments, const spu::Options& options,
+                               const Installation& installation, const RunFolder& folder,
+                               const std::optional<NodeGroupPlan>& nodes) {
+  Environment environment = current_environment();
+  for (const auto& [name, value] : arguments.settings) environment[name] = value;
+  environment["UNDERSTUDY_RUN_DIR"] = folder.path();
+  environment["UNDERSTUDY_CHAIN"] = options.chain;
+  // The report is the launcher's to write, from all processes of the run.
+  environment.erase("UNDERSTUDY_REPORT");
+  if (!options.save_frames.empty())
+    environment["UNDERSTUDY_SAVE_FRAMES"] = absolute_or_empty(options.save_frames);
+  if (nodes) {
+    environment["UNDERSTUDY_NODES"] = std::to_string(nodes->placement.ranks);
+    environment["UNDERSTUDY_CONNECT"] = nodes->socket;
+  } else {
+    environment.erase("UNDERSTUDY_NODES");
+    environment.erase("UNDERSTUDY_CONNECT");
+    if (!options.connect.empty()) environment["UNDERSTUDY_CONNECT"] = absolute_or_empty(options.connect);
+  }
+  if (!arguments.injection) return environment;
+  const InjectionSettings injection = settings_of(*arguments.injection, installation);
+  if (std::filesystem::exists(injection.value)) {
+    put_in_front(environment, injection.variable, injection.value);
+  } else {
+    say(fmt::format("{} is missing, so the viewer runs without Understudy; build it with ./run build",
+                    injection.value.string()));
+  }
+  return environment;
+}
+
+/// The GL server has the options of this run and no injection method; the viewer hands it everything. Returns
+/// what must stay alive.
+std::unique_ptr<ChildProcess> put_on_gl_server(const Installation& installation, Environment& viewer,
+                                               const Environment& without_injection, const RunFolder& folder,
+                                               const std::string& viewer_chain) {
+  const std::filesystem::path socket = folder.path() / "gl_server.sock";
+  auto server = start_gl_server(installation, socket, without_injection);
+  viewer["UNDERSTUDY_REMOTE"] = socket;
+  viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
+  return server;
+}
+
+/// Of a viewer whose calls are made on another machine.
+void put_on_gl_server_elsewhere(Environment& viewer, const std::filesystem::path& socket,
+                                const std::string& viewer_chain) {
+  viewer["UNDERSTUDY_REMOTE"] = socket;
+  viewer["UNDERSTUDY_CHAIN"] = viewer_chain;
+  viewer.erase("UNDERSTUDY_CONNECT");
+}
+
+/// How to get at what --connect names, if that is on another machine. Throws std::runtime_error for an address
+/// that is none, and for one without a secret.
+std::optional<ConnectionPlan> connection_of(const RunArguments& arguments, const spu::Options& options) {
+  if (options.connect.empty() || options.disable) return {};
+  const auto address = compositor::tcp_address_of(options.connect);
+  if (!address) return {};
+  if (arguments.connection.secret_file.empty())
+    throw std::runtime_error(
+        fmt::format("--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, "
+                    "copied to this machine",
+                    options.connect));
+  ConnectionPlan plan = arguments.connection;
+  plan.address = address->text();
+  plan.connection_request.to =
+      arguments.remote ? compositor::Destination::gl_server : compositor::Destination::nodes;
+  compositor::ExchangeSettings settings;
+  compositor::set_layout(settings, options.pixels);
+  plan.connection_request.pixels = settings.layout;
+  return plan;
+}
+
+/// Nodes elsewhere may come, and a wrong secret may be put right, while the viewer draws by itself.
+void tell_whether_connection_is_there(const ConnectionPlan& connection) {
+  try {
+    try_connection(connection);
+  } catch (const std::runtime_error& error) {
+    say(fmt::format("no render nodes at '{}': {}; the viewer draws by itself until then", connection.address,
+                    error.what()));
+  }
+}
+
+/// -n, if it was given: 0 of them is a wish too.
+std::optional<int> wished_nodes(const RunArguments& arguments, const spu::Options& options) {
+  constexpr const char* variable = "UNDERSTUDY_NODES";
+  if (arguments.settings.contains(variable) || std::getenv(variable) != nullptr) return options.nodes;
+  return {};
+}
+
+/// Nodes are a help, never a condition: whatever keeps them from starting, the viewer runs.
+std::unique_ptr<NodeGroup> start_nodes(const Installation& installation, std::optional<NodeGroupPlan>& plan) {
+  if (!plan) return nullptr;
+  std::string obstacle = obstacle_to_nodes(installation);
+  if (obstacle.empty()) {
+    try {
+      return std::make_unique<NodeGroup>(installation, *plan);
+    } catch (const std::exception& error) {
+      obstacle = error.what();
+    }
+  }
+  say(obstacle + "; rendering inside the viewer instead");
+  plan.reset();
+  return nullptr;
+}
+
+/// A group that is not there yet may still come; its user should know that it is not. The socket is only looked
+/// at: a group takes whoever connects for a viewer.
+void tell_whether_nodes_can_answer(const std::string& socket) {
+  std::error_code unreadable;
+  if (std::filesystem::is_socket(socket, unreadable)) return;
+  say(fmt::format(
+      "no render nodes at '{}'; start them with: understudy serve -n N --socket {}; the viewer draws by "
+      "itself until then",
+      socket, socket));
+}
+
+Ending wait_for(ChildProcess& viewer, NodeGroup* nodes, SignalInbox& inbox) {
+  for (;;) {
+    while (const std::optional<ReceivedSignal> received = inbox.next()) {
+      if (received->number == SIGCHLD) {
+        if (nodes != nullptr) nodes->look_after_children();
+      } else if (!received->from_terminal) {
+        viewer.signal(received->number);
+      }
+    }
+    if (const std::optional<Ending> ending = viewer.poll_ending()) return *ending;
+    if (nodes != nullptr) {
+      nodes->wait_and_serve(inbox.descriptor());
+    } else {
+      pollfd waiting{inbox.descriptor(), POLLIN, 0};
+      poll(&waiting, 1, -1);
+    }
+  }
+}
+
+/// The report, with what only the launcher knows: who cast the rays, and what went over TCP.
+std::string with_the_launchers(const std::string& report, const std::vector<std::string>& backends,
+                               const nlohmann::ordered_json& connection) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(report);
+  json[spu::report_key::backends] = backends;
+  json[spu::report_key::connection] = connection;
+  return json.dump(1, ' ') + "\n";
+}
+
+void tell_what_happened(const spu::Options& options, const RunFolder& folder, const RunFigures& figures) {
+  const nlohmann::ordered_json connection = connection_figures(folder.path());
+  const spu::Processes processes = figures.processes();
+  const std::vector<std::string> backends = backend_choices(folder.path());
+  if (options.explain) {
+    std::fputs(spu::explanation_text(processes).c_str(), stderr);
+    for (const std::string& choice : backends) say(choice);
+    if (!connection.is_null()) say(connection_text(connection));
+  }
+  std::fprintf(stderr, "%s\n", figures.summary().c_str());
+  if (options.report.empty()) return;
+  try {
+    spu::replace_file(options.report, with_the_launchers(spu::report_json(processes), backends, connection));
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+}
+
+/// The run cannot begin; the text says why and what to do.
+class CannotRun : public std::runtime_error {
+ public:
+  explicit CannotRun(const std::string& why, int status = usage_error)
+      : std::runtime_error(why), status_(status) {}
+  int status() const { return status_; }
+
+ private:
+  int status_;
+};
+
+/// What is known before anything is started.
+struct RunPlan {
+  spu::Options options;
+  std::string viewer_chain = remote_chain;   ///< of a viewer whose calls a GL server makes
+  std::optional<ConnectionPlan> connection;  ///< to another machine
+  bool may_have_nodes = false;
+  Placement placement;
+};
+
+/// Throws CannotRun for options that exclude each other.
+void check_combination(const RunArguments& arguments, const spu::Options& options) {
+  if (!arguments.remote && arguments.injection && stands_in_viewer(options.chain))
+    throw CannotRun(
+        "a chain that ends in connection is for viewers whose calls are made elsewhere; add --remote");
+  if (arguments.remote && options.disable)
+    throw CannotRun(
+        "--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "
+        "unset one of them");
+  if (options.tiles && !arguments.remote)
+    throw CannotRun("--tiles on is for viewers whose windows are drawn elsewhere; add --remote");
+}
+
+/// Throws CannotRun.
+std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, const spu::Options& options) {
+  std::optional<ConnectionPlan> connection;
+  try {
+    connection = connection_of(arguments, options);
+    // The viewer has no other OpenGL, and is better not started than without any.
+    if (connection && arguments.remote) try_connection(*connection);
+  } catch (const std::runtime_error& error) {
+    throw CannotRun(error.what(), connection ? 1 : usage_error);
+  }
+  if (!connection && !arguments.connection.secret_file.empty())
+    say("--secret-file is for --connect HOST:PORT; nodes and GL servers of this machine need no secret");
+  return connection;
+}
+
+/// Throws CannotRun.
+RunPlan plan_of(const RunArguments& arguments) {
+  RunPlan plan{.options = options_of(arguments)};
+  spu::Options& options = plan.options;
+  try {
+    options.chain = spu::resolved_chain(options.chain, std::filesystem::current_path());
+  } catch (const spu::ChainError& error) {
+    throw CannotRun(error.what());
+  }
+  if (arguments.remote && stands_in_viewer(options.chain))
+    plan.viewer_chain = std::exchange(options.chain, spu::Options().chain);
+  check_combination(arguments, options);
+  plan.connection = checked_connection(arguments, options);
+  plan.may_have_nodes = options.connect.empty() && !options.disable;
+  try {
+    if (plan.may_have_nodes || !arguments.hostfile.empty())
+      plan.placement =
+          placement_of({wished_nodes(arguments, options), arguments.hostfile}, current_environment());
+  } catch (const std::runtime_error& error) {
+    throw CannotRun(error.what());
+  }
+  return plan;
+}
+
+/// The nodes of this run, if it is to have any.
+std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPlan& plan,
+                                      const RunFolder& folder) {
+  if (plan.placement.ranks == 0 || !plan.may_have_nodes) return {};
+  const spu::Options& options = plan.options;
+  return NodeGroupPlan{plan.placement,
+                       folder.path() / "nodes.sock",
+                       folder.path(),
+                       {.exchange = options.exchange,
+                        .pixels = options.pixels,
+                        .gather = options.gather,
+                        .overlap = options.overlap,
+                        .backend = arguments.backend,
+                        .gpu_memory = arguments.gpu_memory,
+                        .balance = arguments.balance}};
+}
+
+/// Says which options change nothing in this run.
+void tell_options_without_effect(const RunArguments& arguments, const RunPlan& plan, bool has_nodes) {
+  if (!has_nodes && arguments.backend != "cpu")
+    say(fmt::format(
+        "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
+        "the CPU, as the viewer's own process has OpenGL to itself",
+        arguments.backend));
+  if (!has_nodes && arguments.balance != "off")
+    say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
+                    arguments.balance));
+  if (!has_nodes && !arguments.hostfile.empty())
+    say(fmt::format("--hostfile {} is for nodes of this run, or give it to understudy serve",
+                    arguments.hostfile.string()));
+  const bool plays_here = arguments.remote ? !plan.connection : !arguments.injection;
+  if (!plays_here && arguments.settings.contains("UNDERSTUDY_SERVER_OPENGL"))
+    say(fmt::format(
+        "--server-opengl {} is for a GL server of this run (--remote); for one elsewhere give it to "
+        "understudy serve --gl-server",
+        plan.options.server_opengl));
+  if (plan.connection && plan.options.tiles)
+    say("--tiles is for a GL server of this run; for one elsewhere give it to understudy serve --gl-server");
+}
+
+/// The relay to another machine, if there is one; the viewer connects to its socket then.
+std::unique_ptr<ChildProcess> start_connection(const RunArguments& arguments, RunPlan& plan,
+                                               const Installation& installation, const RunFolder& folder,
+                                               const std::filesystem::path& socket) {
+  if (plan.connection) {
+    if (!arguments.remote) tell_whether_connection_is_there(*plan.connection);
+    auto relay = start_relay(installation, *plan.connection, socket, folder.path());
+    plan.options.connect = socket;
+    return relay;
+  }
+  if (!plan.options.connect.empty() && !plan.options.disable)
+    tell_whether_nodes_can_answer(plan.options.connect);
+  return nullptr;
+}
+
+/// The GL server of this run, if it has one. Throws CannotRun where it cannot be started.
+std::unique_ptr<ChildProcess> start_server(const RunArguments& arguments, const RunPlan& plan,
+                                           const Installation& installation, const RunFolder& folder,
+                                           const std::optional<NodeGroupPlan>& nodes,
+                                           const std::filesystem::path& relay_socket, Environment& viewer) {
+  if (!arguments.remote) return nullptr;
+  if (plan.connection) {
+    put_on_gl_server_elsewhere(viewer, relay_socket, plan.viewer_chain);
+    return nullptr;
+  }
+  RunArguments without_injection = arguments;
+  without_injection.injection.reset();
+  try {
+    return put_on_gl_server(installation, viewer,
+                            viewer_environment(without_injection, plan.options, installation, folder, nodes),
+                            folder, plan.viewer_chain);
+  } catch (const std::exception& error) {
+    throw CannotRun(fmt::format("{}; the viewer has no OpenGL without it, so it is not started", error.what()),
+                    1);
+  }
+}
+
+/// Throws CannotRun.
+ChildProcess start_viewer(const std::vector<std::string>& command, Environment environment) {
+  try {
+    return ChildProcess(Command{.arguments = command, .environment = std::move(environment)});
+  } catch (const std::system_error& error) {
+    throw CannotRun(error.what(),
+                    error.code() == std::errc::permission_denied ? not_executable : cannot_start_viewer);
+  }
+}
+
+int run_planned(const RunArguments& arguments, const std::vector<std::string>& command, RunPlan& plan) {
+  if (!plan.options.save_frames.empty()) std::filesystem::create_directories(plan.options.save_frames);
+  const Installation installation = this_installation();
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
+  const RunFolder folder;
+  std::optional<NodeGroupPlan> nodes_plan = nodes_of(arguments, plan, folder);
+  tell_options_without_effect(arguments, plan, nodes_plan.has_value());
+  std::unique_ptr<NodeGroup> nodes = start_nodes(installation, nodes_plan);
+  const std::filesystem::path relay_socket = folder.path() / "link.sock";
+  const std::unique_ptr<ChildProcess> relay =
+      start_connection(arguments, plan, installation, folder, relay_socket);
+  Environment environment = viewer_environment(arguments, plan.options, installation, folder, nodes_plan);
+  const std::unique_ptr<ChildProcess> server =
+      start_server(arguments, plan, installation, folder, nodes_plan, relay_socket, environment);
+  ChildProcess viewer = start_viewer(command, std::move(environment));
+  const Ending ending = wait_for(viewer, nodes.get(), inbox);
+  if (server) server->end(server_patience_ms);
+  if (relay) relay->end(server_patience_ms);
+  nodes.reset();
+  const RunFigures figures(folder.path());
+  tell_what_happened(plan.options, folder, figures);
+  return arguments.required ? figures.required_status(ending.exit_status()) : ending.exit_status();
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments, const std::vector<std::string>& command) {
+  try {
+    RunPlan plan = plan_of(arguments);
+    return run_planned(arguments, command, plan);
+  } catch (const CannotRun& error) {
+    say(error.what());
+    return error.status();
+  }
+}
+
+}  // namespace understudy::launcher

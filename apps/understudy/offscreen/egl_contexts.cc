@@ -1,0 +1,225 @@
+#include "apps/understudy/offscreen/egl_contexts.h"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "dispatch/call_id.h"
+
+namespace understudy::launcher {
+namespace {
+
+/// EGL 1.5's entry points that are used here.
+struct EglFunctions {
+  decltype(&eglGetProcAddress) GetProcAddress;
+  decltype(&eglGetPlatformDisplay) GetPlatformDisplay;
+  decltype(&eglGetDisplay) GetDisplay;
+  decltype(&eglInitialize) Initialize;
+  decltype(&eglTerminate) Terminate;
+  decltype(&eglBindAPI) BindAPI;
+  decltype(&eglGetConfigs) GetConfigs;
+  decltype(&eglGetConfigAttrib) GetConfigAttrib;
+  decltype(&eglCreateContext) CreateContext;
+  decltype(&eglDestroyContext) DestroyContext;
+  decltype(&eglCreatePbufferSurface) CreatePbufferSurface;
+  decltype(&eglDestroySurface) DestroySurface;
+  decltype(&eglMakeCurrent) MakeCurrent;
+  decltype(&eglGetError) GetError;
+};
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  if (function == nullptr)
+    throw std::runtime_error(fmt::format("libEGL.so.1 has no {}; install libegl1 of EGL 1.5 or later", name));
+}
+
+EglFunctions open_egl() {
+  void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr)
+    throw std::runtime_error(fmt::format("{}; install libegl1 and libegl-mesa0", dlerror()));
+  EglFunctions egl{};
+  find(library, "eglGetProcAddress", egl.GetProcAddress);
+  find(library, "eglGetPlatformDisplay", egl.GetPlatformDisplay);
+  find(library, "eglGetDisplay", egl.GetDisplay);
+  find(library, "eglInitialize", egl.Initialize);
+  find(library, "eglTerminate", egl.Terminate);
+  find(library, "eglBindAPI", egl.BindAPI);
+  find(library, "eglGetConfigs", egl.GetConfigs);
+  find(library, "eglGetConfigAttrib", egl.GetConfigAttrib);
+  find(library, "eglCreateContext", egl.CreateContext);
+  find(library, "eglDestroyContext", egl.DestroyContext);
+  find(library, "eglCreatePbufferSurface", egl.CreatePbufferSurface);
+  find(library, "eglDestroySurface", egl.DestroySurface);
+  find(library, "eglMakeCurrent", egl.MakeCurrent);
+  find(library, "eglGetError", egl.GetError);
+  return egl;
+}
+
+/// The platform that EGL_PLATFORM names where it works without a window system; else the first one that does.
+EGLDisplay open_display(const EglFunctions& egl) {
+  const char* named = std::getenv("EGL_PLATFORM");
+  const bool device_first = named != nullptr && std::string(named) == "device";
+  std::array<EGLenum, 2> platforms = {EGL_PLATFORM_SURFACELESS_MESA, EGL_PLATFORM_DEVICE_EXT};
+  if (device_first) std::swap(platforms[0], platforms[1]);
+  for (const EGLenum platform : platforms) {
+    const EGLDisplay display = egl.GetPlatformDisplay(platform, EGL_DEFAULT_DISPLAY, nullptr);
+    if (display != EGL_NO_DISPLAY && egl.Initialize(display, nullptr, nullptr)) return display;
+  }
+  throw std::runtime_error(
+      "EGL has no display without a window system; install libegl-mesa0 and libgl1-mesa-dri, or a driver with "
+      "EGL_EXT_platform_device");
+}
+
+}  // namespace
+
+struct EglContexts::Egl : EglFunctions {
+  EGLDisplay display = EGL_NO_DISPLAY;
+
+  Egl() : EglFunctions(open_egl()), display(open_display(*this)) {
+    if (!BindAPI(EGL_OPENGL_API))
+      throw std::runtime_error("EGL's driver has no desktop OpenGL; install libgl1-mesa-dri");
+  }
+
+  EGLint attribute(EGLConfig config, EGLint name) const {
+    EGLint value = 0;
+    GetConfigAttrib(display, config, name, &value);
+    return value;
+  }
+
+  /// The configuration that differs least: what is missing weighs more than what is too much.
+  EGLConfig config_for(const spu::RecordedContext& wanted) const {
+    EGLint count = 0;
+    GetConfigs(display, nullptr, 0, &count);
+    std::vector<EGLConfig> configs(std::size_t(count), nullptr);
+    GetConfigs(display, configs.data(), count, &count);
+    const std::array<std::pair<EGLint, int>, 7> sizes = {{{EGL_RED_SIZE, wanted.red},
+                                                          {EGL_GREEN_SIZE, wanted.green},
+                                                          {EGL_BLUE_SIZE, wanted.blue},
+                                                          {EGL_ALPHA_SIZE, wanted.alpha},
+                                                          {EGL_DEPTH_SIZE, wanted.depth},
+                                                          {EGL_STENCIL_SIZE, wanted.stencil},
+                                                          {EGL_SAMPLES, wanted.samples}}};
+    EGLConfig best = nullptr;
+    int least = 0;
+    for (EGLConfig config : configs) {
+      if ((attribute(config, EGL_SURFACE_TYPE) & EGL_PBUFFER_BIT) == 0 ||
+          (attribute(config, EGL_RENDERABLE_TYPE) & EGL_OPENGL_BIT) == 0) {
+        continue;
+      }
+      int distance = 0;
+      for (const auto& [name, size] : sizes) {
+        const int more = attribute(config, name) - size;
+        distance += more < 0 ? -100 * more : more;
+      }
+      if (best != nullptr && distance >= least) continue;
+      best = config;
+      least = distance;
+    }
+    return best;
+  }
+
+  EGLContext context_for(const spu::RecordedContext& wanted, int version, EGLConfig config,
+                         EGLContext share) const {
+    std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, version / 100, EGL_CONTEXT_MINOR_VERSION,
+                                      version / 10 % 10};
+    if (version >= 320) {
+      attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                           is_core(wanted) ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
+                                                           : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT});
+    }
+    attributes.push_back(EGL_NONE);
+    return CreateContext(display, config, share, attributes.data());
+  }
+};
+
+struct EglContexts::Surface {
+  EGLSurface surface = EGL_NO_SURFACE;
+  spu::Extent2D extent;
+};
+
+struct EglContexts::Context {
+  EGLConfig config = nullptr;
+  EGLContext context = EGL_NO_CONTEXT;
+  Surface own;
+};
+
+EglContexts::EglContexts() : egl_(std::make_unique<Egl>()) {
+  for (std::size_t i = 0; i < spu::call_count; ++i) {
+    set_slot(driver_, spu::CallId(i), spu::AnyFunction(egl_->GetProcAddress(spu::call_name(spu::CallId(i)))));
+  }
+}
+
+EglContexts::~EglContexts() {
+  release_current();
+  while (!contexts_.empty()) destroy(contexts_.begin()->first);
+  for (const auto& [key, drawable] : surfaces_) egl_->DestroySurface(egl_->display, drawable.surface);
+}
+
+void* EglContexts::make_context(const spu::RecordedContext& wanted, int version) const {
+  const auto share = contexts_.find(wanted.shares_with);
+  return egl_->context_for(wanted, version, egl_->config_for(wanted),
+                           share == contexts_.end() ? EGL_NO_CONTEXT : share->second.context);
+}
+
+void EglContexts::end_context(void* context) const {
+  egl_->DestroyContext(egl_->display, context);
+}
+
+void EglContexts::create(const spu::RecordedContext& wanted) {
+  contexts_[wanted.number] = {.config = egl_->config_for(wanted), .context = context_for(wanted), .own = {}};
+}
+
+/// What a new drawable holds is undefined; here it is the same every time. The recorded context's state is not
+/// touched: another context does it.
+void EglContexts::clear(void* config, void* surface) {
+  const EGLContext cleaner = egl_->CreateContext(egl_->display, config, EGL_NO_CONTEXT, nullptr);
+  if (cleaner == EGL_NO_CONTEXT) return;
+  if (egl_->MakeCurrent(egl_->display, surface, surface, cleaner))
+    driver_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  release_current();
+  egl_->DestroyContext(egl_->display, cleaner);
+}
+
+void EglContexts::make_current(std::uint64_t number, std::uint64_t drawable, spu::Extent2D extent) {
+  Context& context = contexts_.at(number);
+  Surface& place = drawable == 0 ? context.own : surfaces_[{context.config, drawable}];
+  const EGLSurface old = place.surface;
+  if (old == EGL_NO_SURFACE || place.extent != extent) {
+    const EGLint sides[] = {EGL_WIDTH, extent.width, EGL_HEIGHT, extent.height, EGL_NONE};
+    place.surface = egl_->CreatePbufferSurface(egl_->display, context.config, sides);
+    place.extent = extent;
+  }
+  if (place.surface != old) clear(context.config, place.surface);
+  if (place.surface == EGL_NO_SURFACE ||
+      !egl_->MakeCurrent(egl_->display, place.surface, place.surface, context.context)) {
+    throw std::runtime_error(
+        fmt::format("no drawable of {} x {} pixels could be made current (EGL error {:#x})", extent.width,
+                    extent.height, egl_->GetError()));
+  }
+  if (old != EGL_NO_SURFACE && old != place.surface) egl_->DestroySurface(egl_->display, old);
+}
+
+void EglContexts::release_current() {
+  egl_->MakeCurrent(egl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+void EglContexts::destroy(std::uint64_t number) {
+  const auto found = contexts_.find(number);
+  if (found == contexts_.end()) return;
+  const EGLSurface own = found->second.own.surface;
+  if (own != EGL_NO_SURFACE) egl_->DestroySurface(egl_->display, own);
+  egl_->DestroyContext(egl_->display, found->second.context);
+  contexts_.erase(found);
+}
+
+}  // namespace understudy::launcher

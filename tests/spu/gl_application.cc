@@ -114,7 +114,8 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared
   application->session_ = std::move(session);
   application->group_ = companion != nullptr ? companion->group_ : std::make_shared<ShareGroup>();
   application->chain_ = std::make_unique<Chain>(real_driver(), application->group_, &install);
-  if (assemble(*application->chain_, "track volume driver", application->session_)) return nullptr;
+  if (assemble(*application->chain_, application->session_->options().chain, application->session_))
+    return nullptr;
   application->chain_->make_current();
   application->substituted_before_ = application->substituted();
   application->left_before_ = application->left();

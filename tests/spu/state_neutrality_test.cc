@@ -202,8 +202,20 @@ void mark(const DispatchTable& gl, bool core) {
 
 class NeutralState : public ::testing::TestWithParam<std::size_t> {};
 
+/// The usual ways of slicing, and the less usual ones.
+std::vector<SliceScene> scenes() {
+  std::vector<SliceScene> all = all_slice_scenes();
+  for (const bool along_rays : {false, true}) all.push_back(pre_integrated_slices(along_rays));
+  for (const GLenum mode : {GL_LINEAR, GL_EXP, GL_EXP2}) all.push_back(fixed_function_fog(mode));
+  all.push_back(texture_stack_program(Profile::compatibility, GL_R8));
+  all.push_back(texture_stack_program(Profile::core, GL_R16));
+  all.push_back(view_space_slices());
+  all.push_back(degenerate_strip());
+  return all;
+}
+
 TEST_P(NeutralState, AfterASubstitutedDrawIsThatAfterTheApplicationsOwn) {
-  const SliceScene scene = all_slice_scenes()[GetParam()];
+  const SliceScene scene = scenes()[GetParam()];
   auto app = GlApplication::start(scene.profile);
   if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
   scene.set_up(*app);
@@ -229,7 +241,7 @@ TEST_P(NeutralState, AfterASubstitutedDrawIsThatAfterTheApplicationsOwn) {
   EXPECT_GT(bare.size(), 400U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, NeutralState, ::testing::Range<std::size_t>(0, 8));
+INSTANTIATE_TEST_SUITE_P(Scenes, NeutralState, ::testing::Range<std::size_t>(0, scenes().size()));
 
 }  // namespace
 }  // namespace understudy::spu::testing

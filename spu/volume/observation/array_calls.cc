@@ -1,5 +1,8 @@
 #include "spu/volume/observation/array_calls.h"
 
+#include <algorithm>
+#include <array>
+
 #include "spu/volume/observation/draw_observer.h"
 
 namespace understudy::spu {
@@ -12,38 +15,39 @@ const DispatchTable& before_change() {
   return observer.next();
 }
 
-/// The table below, with the run closed unless the answer is about arrays: nothing in a run changes those.
+/// Names of states of arrays that stand alone.
+constexpr std::array<GLenum, 17> of_arrays{GL_ARRAY_BUFFER_BINDING,
+                                           GL_ELEMENT_ARRAY_BUFFER_BINDING,
+                                           GL_DRAW_INDIRECT_BUFFER_BINDING,
+                                           GL_CLIENT_ACTIVE_TEXTURE,
+                                           GL_PIXEL_UNPACK_BUFFER_BINDING,
+                                           GL_PIXEL_PACK_BUFFER_BINDING,
+                                           GL_MAJOR_VERSION,
+                                           GL_MINOR_VERSION,
+                                           GL_CONTEXT_PROFILE_MASK,
+                                           GL_MAX_TEXTURE_COORDS,
+                                           GL_MAX_VERTEX_ATTRIBS,
+                                           GL_PRIMITIVE_RESTART,
+                                           GL_PRIMITIVE_RESTART_FIXED_INDEX,
+                                           GL_PRIMITIVE_RESTART_INDEX,
+                                           GL_FOG_COORD_ARRAY_BUFFER_BINDING,
+                                           GL_FOG_COORD_ARRAY,
+                                           GL_SECONDARY_COLOR_ARRAY};
+
+/// Whether nothing in a run changes what this state answers.
+bool is_about_arrays(GLenum name) {
+  // The enumerants of the fixed arrays stand together: enables, sizes, types, strides, pointers; bindings.
+  return std::ranges::find(of_arrays, name) != of_arrays.end() ||
+         (name >= GL_VERTEX_ARRAY && name <= GL_EDGE_FLAG_ARRAY_POINTER) ||
+         (name >= GL_FOG_COORD_ARRAY_TYPE && name <= GL_FOG_COORD_ARRAY) ||
+         (name >= GL_SECONDARY_COLOR_ARRAY_SIZE && name <= GL_SECONDARY_COLOR_ARRAY) ||
+         (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
+}
+
+/// The table below, with the run closed unless the answer is about arrays.
 const DispatchTable& before_question(GLenum name) {
   DrawObserver& observer = *Chain::current()->find<DrawObserver>();
-  bool about_arrays = false;
-  switch (name) {
-    case GL_ARRAY_BUFFER_BINDING:
-    case GL_ELEMENT_ARRAY_BUFFER_BINDING:
-    case GL_DRAW_INDIRECT_BUFFER_BINDING:
-    case GL_CLIENT_ACTIVE_TEXTURE:
-    case GL_PIXEL_UNPACK_BUFFER_BINDING:
-    case GL_PIXEL_PACK_BUFFER_BINDING:
-    case GL_MAJOR_VERSION:
-    case GL_MINOR_VERSION:
-    case GL_CONTEXT_PROFILE_MASK:
-    case GL_MAX_TEXTURE_COORDS:
-    case GL_MAX_VERTEX_ATTRIBS:
-    case GL_PRIMITIVE_RESTART:
-    case GL_PRIMITIVE_RESTART_FIXED_INDEX:
-    case GL_PRIMITIVE_RESTART_INDEX:
-    case GL_FOG_COORD_ARRAY_BUFFER_BINDING:
-    case GL_FOG_COORD_ARRAY:
-    case GL_SECONDARY_COLOR_ARRAY:
-      about_arrays = true;
-      break;
-    default:
-      // The enumerants of the fixed arrays stand together: enables, sizes, types, strides, pointers; bindings.
-      about_arrays = (name >= GL_VERTEX_ARRAY && name <= GL_EDGE_FLAG_ARRAY_POINTER) ||
-                     (name >= GL_FOG_COORD_ARRAY_TYPE && name <= GL_FOG_COORD_ARRAY) ||
-                     (name >= GL_SECONDARY_COLOR_ARRAY_SIZE && name <= GL_SECONDARY_COLOR_ARRAY) ||
-                     (name >= GL_VERTEX_ARRAY_BUFFER_BINDING && name <= GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING);
-  }
-  if (observer.run_open() && (!about_arrays || observer.run().inside_begin)) observer.close_run();
+  if (observer.run_open() && (!is_about_arrays(name) || observer.run().inside_begin)) observer.close_run();
   return observer.next();
 }
 

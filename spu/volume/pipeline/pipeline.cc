@@ -245,6 +245,39 @@ std::optional<std::string> read_sample_operations(const GlContext& context, cons
   return std::nullopt;
 }
 
+/// What of polygons' own state changes which pixels slices cover.
+std::optional<std::string> read_rasterisation(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  std::array<GLint, 2> mode{};
+  gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
+  if (mode[0] != GL_FILL) return "polygons are not filled";
+  if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
+  if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
+  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
+                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
+    return "clip control turns or moves the view volume";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pipeline) {
+  pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
+  if (!pipeline.depth_test) return std::nullopt;
+  const GLint compare = integer(gl, GL_DEPTH_FUNC);
+  GLboolean write = GL_FALSE;
+  gl.GetBooleanv(GL_DEPTH_WRITEMASK, &write);
+  pipeline.depth_write = write;
+  if (compare == GL_ALWAYS && !write) {
+    pipeline.depth_test = false;
+  } else if (compare != GL_LESS && compare != GL_LEQUAL) {
+    return "the depth function is neither LESS nor LEQUAL";
+  }
+  pipeline.depth_or_equal = compare == GL_LEQUAL;
+  if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
+    return "slices drawn front to back write depth, and so hide each other";
+  return std::nullopt;
+}
+
 /// What around the fragments keeps us from standing in.
 std::optional<std::string> read_surroundings(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
@@ -256,30 +289,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
   if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
   if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
-  std::array<GLint, 2> mode{};
-  gl.GetIntegerv(GL_POLYGON_MODE, mode.data());
-  if (mode[0] != GL_FILL) return "polygons are not filled";
-  if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
-  if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
-  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
-                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
-    return "clip control turns or moves the view volume";
-  }
-  pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
-  if (pipeline.depth_test) {
-    const GLint compare = integer(gl, GL_DEPTH_FUNC);
-    GLboolean write = GL_FALSE;
-    gl.GetBooleanv(GL_DEPTH_WRITEMASK, &write);
-    pipeline.depth_write = write;
-    if (compare == GL_ALWAYS && !write) {
-      pipeline.depth_test = false;
-    } else if (compare != GL_LESS && compare != GL_LEQUAL) {
-      return "the depth function is neither LESS nor LEQUAL";
-    }
-    pipeline.depth_or_equal = compare == GL_LEQUAL;
-    if (pipeline.depth_write && pipeline.blending.front_to_back != FrontToBack::no)
-      return "slices drawn front to back write depth, and so hide each other";
-  }
+  if (auto reason = read_rasterisation(context)) return reason;
+  if (auto reason = read_depth_test(gl, pipeline)) return reason;
   if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
     return "the application is in feedback or select mode";
   if (auto reason = read_queries(context)) return reason;

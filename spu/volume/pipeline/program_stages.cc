@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -20,54 +21,44 @@ struct UniformShape {
   enum class Kind { real, integer, natural, matrix } kind = Kind::real;
 };
 
+struct TypedShape {
+  GLenum type;
+  UniformShape shape;
+};
+using Kind = UniformShape::Kind;
+constexpr std::array<TypedShape, 26> uniform_shapes{{
+    {GL_FLOAT, {1, Kind::real}},
+    {GL_FLOAT_VEC2, {2, Kind::real}},
+    {GL_FLOAT_VEC3, {3, Kind::real}},
+    {GL_FLOAT_VEC4, {4, Kind::real}},
+    {GL_FLOAT_MAT2, {4, Kind::matrix}},
+    {GL_FLOAT_MAT3, {9, Kind::matrix}},
+    {GL_FLOAT_MAT4, {16, Kind::matrix}},
+    {GL_UNSIGNED_INT, {1, Kind::natural}},
+    {GL_UNSIGNED_INT_VEC2, {2, Kind::natural}},
+    {GL_UNSIGNED_INT_VEC3, {3, Kind::natural}},
+    {GL_UNSIGNED_INT_VEC4, {4, Kind::natural}},
+    {GL_INT_VEC2, {2, Kind::integer}},
+    {GL_BOOL_VEC2, {2, Kind::integer}},
+    {GL_INT_VEC3, {3, Kind::integer}},
+    {GL_BOOL_VEC3, {3, Kind::integer}},
+    {GL_INT_VEC4, {4, Kind::integer}},
+    {GL_BOOL_VEC4, {4, Kind::integer}},
+    {GL_INT, {1, Kind::integer}},
+    {GL_BOOL, {1, Kind::integer}},
+    {GL_SAMPLER_1D, {1, Kind::integer}},
+    {GL_SAMPLER_2D, {1, Kind::integer}},
+    {GL_SAMPLER_3D, {1, Kind::integer}},
+    {GL_SAMPLER_CUBE, {1, Kind::integer}},
+    {GL_SAMPLER_2D_RECT, {1, Kind::integer}},
+    {GL_SAMPLER_1D_SHADOW, {1, Kind::integer}},
+    {GL_SAMPLER_2D_SHADOW, {1, Kind::integer}},
+}};
+
 /// How a uniform type is read and written; components 0 for types that no volume shader met so far uses.
 UniformShape shape_of(GLenum type) {
-  using Kind = UniformShape::Kind;
-  switch (type) {
-    case GL_FLOAT:
-      return {1, Kind::real};
-    case GL_FLOAT_VEC2:
-      return {2, Kind::real};
-    case GL_FLOAT_VEC3:
-      return {3, Kind::real};
-    case GL_FLOAT_VEC4:
-      return {4, Kind::real};
-    case GL_FLOAT_MAT2:
-      return {4, Kind::matrix};
-    case GL_FLOAT_MAT3:
-      return {9, Kind::matrix};
-    case GL_FLOAT_MAT4:
-      return {16, Kind::matrix};
-    case GL_UNSIGNED_INT:
-      return {1, Kind::natural};
-    case GL_UNSIGNED_INT_VEC2:
-      return {2, Kind::natural};
-    case GL_UNSIGNED_INT_VEC3:
-      return {3, Kind::natural};
-    case GL_UNSIGNED_INT_VEC4:
-      return {4, Kind::natural};
-    case GL_INT_VEC2:
-    case GL_BOOL_VEC2:
-      return {2, Kind::integer};
-    case GL_INT_VEC3:
-    case GL_BOOL_VEC3:
-      return {3, Kind::integer};
-    case GL_INT_VEC4:
-    case GL_BOOL_VEC4:
-      return {4, Kind::integer};
-    case GL_INT:
-    case GL_BOOL:
-    case GL_SAMPLER_1D:
-    case GL_SAMPLER_2D:
-    case GL_SAMPLER_3D:
-    case GL_SAMPLER_CUBE:
-    case GL_SAMPLER_2D_RECT:
-    case GL_SAMPLER_1D_SHADOW:
-    case GL_SAMPLER_2D_SHADOW:
-      return {1, Kind::integer};
-    default:
-      return {};
-  }
+  const auto found = std::ranges::find(uniform_shapes, type, &TypedShape::type);
+  return found == uniform_shapes.end() ? UniformShape{} : found->shape;
 }
 
 bool is_sampler(GLenum type) {
@@ -95,7 +86,6 @@ void for_each_uniform(const DispatchTable& gl, GLuint program, Visit visit) {
 }
 
 void copy_uniform(const DispatchTable& gl, GLuint from, GLint source, GLuint to, GLint target, GLenum type) {
-  using Kind = UniformShape::Kind;
   const UniformShape shape = shape_of(type);
   std::array<GLfloat, 16> real{};
   std::array<GLint, 4> integer{};

@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "interceptor/log_line.h"
 #include "interceptor/open_core.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/remote.h"
@@ -39,9 +40,8 @@ void report_missing(const char* name) {
   if (is_remote()) return;
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  dprintf(STDERR_FILENO,
-          "understudy: the application calls %s, which this OpenGL driver lacks; such calls do nothing\n",
-          name);
+  log_line(logging::Level::warn,
+           "the application calls %s, which this OpenGL driver lacks; such calls do nothing", name);
 }
 
 }  // namespace understudy::interceptor

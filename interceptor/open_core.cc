@@ -12,6 +12,7 @@
 
 #include "interceptor/context_ledger.h"
 #include "interceptor/entry_thread.h"
+#include "interceptor/log_line.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/remote.h"
 
@@ -79,18 +80,17 @@ const CoreServices* load_core() {
   const InsideCore inside;
   void* library = real_dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    dprintf(STDERR_FILENO, "understudy: its core cannot be opened, so the application draws by itself: %s\n",
-            dlerror());
+    log_line(logging::Level::error, "its core cannot be opened, so the application draws by itself: %s",
+             dlerror());
     return nullptr;
   }
   const auto open = reinterpret_cast<OpenCore>(dlsym(library, open_core_symbol));
   const CoreServices* services = open != nullptr ? open(&entry) : nullptr;
   if (services == nullptr || !complete(*services)) {
-    dprintf(STDERR_FILENO,
-            "understudy: %s declined or is of another version (this entry library speaks version %u), so the "
-            "application draws "
-            "by itself\n",
-            path, core_abi);
+    log_line(logging::Level::error,
+             "%s declined or is of another version (this entry library speaks version %u), so the application "
+             "draws by itself",
+             path, core_abi);
     return nullptr;
   }
   return services;

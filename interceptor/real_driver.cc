@@ -14,6 +14,7 @@
 #include "dispatch/call_id.h"
 #include "interceptor/entry_thread.h"
 #include "interceptor/gl_names.h"
+#include "interceptor/log_line.h"
 #include "interceptor/osmesa.h"
 #include "interceptor/remote/remote.h"
 
@@ -102,6 +103,8 @@ bool open_from(const char* folder, DriverLibrary& library) {
     opengl_handle = classic ? handle : open_in(folder, "libOpenGL.so.0");
   }
   library.handle.store(handle, std::memory_order_release);
+  log_line(logging::Level::debug, "OpenGL driver: %s/%s", folder,
+           classic ? library.file_without_glvnd : library.file);
   return true;
 }
 
@@ -150,11 +153,10 @@ bool open_driver(DriverLibrary& library, Failure failure) {
     if (open_from(folder, library)) return true;
     // A folder for a driver of GLX or EGL need not have an OSMesa too.
     if (library.system != WindowSystem::osmesa) {
-      dprintf(
-          STDERR_FILENO,
-          "understudy: UNDERSTUDY_DRIVER_DIR=%s holds no %s%s that can be opened and is not Understudy's own; "
-          "looking in the system's folders\n",
-          folder, library.file, or_classic);
+      log_line(logging::Level::warn,
+               "UNDERSTUDY_DRIVER_DIR=%s holds no %s%s that can be opened and is not Understudy's own; looking "
+               "in the system's folders",
+               folder, library.file, or_classic);
     }
   }
   if (open_from_search_path(library)) return true;
@@ -164,11 +166,10 @@ bool open_driver(DriverLibrary& library, Failure failure) {
     if (open_from(usual, library)) return true;
   }
   if (failure == Failure::said) {
-    dprintf(
-        STDERR_FILENO,
-        "understudy: no OpenGL driver found: no %s%s in UNDERSTUDY_DRIVER_DIR, LD_LIBRARY_PATH or the system's "
-        "library folders; set UNDERSTUDY_DRIVER_DIR to the folder that holds it\n",
-        library.file, or_classic);
+    log_line(logging::Level::error,
+             "no OpenGL driver found: no %s%s in UNDERSTUDY_DRIVER_DIR, LD_LIBRARY_PATH or the system's "
+             "library folders; set UNDERSTUDY_DRIVER_DIR to the folder that holds it",
+             library.file, or_classic);
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "compositor/exchange/settings.h"
+#include "logging/log.h"
 #include "spu/former_names.h"
 
 namespace understudy::spu {
@@ -202,7 +203,7 @@ Options options_from_environment() {
   for (const Row& row : rows) {
     const std::optional<std::string> text = environment_value(row.text.environment);
     if (!text || row.set(options, *text)) continue;
-    std::fprintf(stderr, "understudy: %s=%s is not a value this option takes (%s); using %s\n",
+    logging::log(logging::Level::warn, "{}={} is not a value this option takes ({}); using {}",
                  row.text.environment, text->c_str(), row.text.help,
                  *row.text.fallback == '\0' ? "none" : row.text.fallback);
   }

@@ -15,6 +15,7 @@
 #include "compositor/exchange/mpi_communicator.h"
 #include "compositor/node/node.h"
 #include "compositor/service/backend_line.h"
+#include "logging/log.h"
 #include "volume/glsl/backend.h"
 #include "volume/glsl/brick_size.h"
 
@@ -35,6 +36,7 @@ std::size_t available_memory() {
 int main(int argc, char** argv) {
   using namespace understudy;
   using namespace compositor;
+  logging::set_program("understudy-node");
   CLI::App app(
       "One rank of Understudy's node group; `understudy serve` starts it as mpirun -n N understudy-node ...");
   std::string control;

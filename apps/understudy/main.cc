@@ -21,6 +21,7 @@
 #include "apps/understudy/launch/listener.h"
 #include "apps/understudy/launch/relay.h"
 #include "apps/understudy/study/study.h"
+#include "logging/log.h"
 #include "spu/former_names.h"
 
 namespace launcher = understudy::launcher;
@@ -56,6 +57,6 @@ int main(int argc, char** argv) try {
   }
   return chosen();
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "understudy: %s\n", error.what());
+  understudy::logging::log(understudy::logging::Level::error, "{}", error.what());
   return 1;
 }

@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "logging/log.h"
+
 namespace understudy::compositor {
 
 namespace {
@@ -344,7 +346,7 @@ ControlMessage MpiCommunicator::wait_for_control_message() {
 }
 
 void MpiCommunicator::abandon(const std::string& why) {
-  std::fprintf(stderr, "understudy-node: rank %d ends the group: %s\n", rank_, why.c_str());
+  logging::log(logging::Level::error, "rank {} ends the group: {}", rank_, why);
   MPI_Abort(MPI_COMM_WORLD, 1);
   std::abort();
 }

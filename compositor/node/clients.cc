@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compositor/service/service_protocols.h"
+#include "logging/log.h"
 
 namespace understudy::compositor {
 
@@ -167,7 +168,7 @@ void Clients::reply(const Request& request, MessageType type, Bytes payload) {
 }
 
 void Clients::drop(std::uint64_t number, const std::string& why) {
-  if (!why.empty()) fmt::print(stderr, "understudy-node: dropped application {}: {}\n", number, why);
+  if (!why.empty()) logging::log(logging::Level::warn, "dropped application {}: {}", number, why);
   heartbeat_->end();
   clients_.erase(number);
   turns_.forget(number);

@@ -9,6 +9,7 @@
 
 #include "compositor/service.h"
 #include "compositor/service/request_message.h"
+#include "logging/log.h"
 
 namespace understudy::compositor {
 
@@ -27,7 +28,7 @@ bool RankLoop::lead(const std::string& control_path, std::chrono::milliseconds s
   try {
     clients.emplace(control_path, communicator_.size(), stall_patience);
   } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "understudy-node: no launcher: {}\n", error.what());
+    logging::log(logging::Level::error, "no launcher: {}", error.what());
   }
   while (clients) {
     Clients::Event event = clients->next();

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "compositor/service/service_protocols.h"
+#include "logging/log.h"
 
 namespace understudy::compositor {
 
@@ -30,7 +31,7 @@ bool stirs(const Connection& connection) {
 
 Broker::Broker(std::string path, Say say, const BrokerPatience& patience)
     : say_(std::move(say)), patience_(patience), listener_(listen_at(path)), file_(std::move(path)) {
-  if (!say_) say_ = [](const std::string& line) { fmt::print(stderr, "understudy: {}\n", line); };
+  if (!say_) say_ = [](const std::string& line) { logging::log(logging::Level::info, "{}", line); };
 }
 
 void Broker::poll_fds(std::vector<pollfd>& fds) const {

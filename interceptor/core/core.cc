@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "interceptor/core/redraw_request.h"
+#include "logging/log.h"
 #include "spu/chain.h"
 #include "spu/options.h"
 #include "spu/registry/assemble.h"
@@ -155,7 +156,7 @@ class Core {
                                                                    : std::make_shared<spu::ShareGroup>();
       member.reset(new Member{group, spu::Chain(driver, group, &install, {context, share, server_.get()})});
       if (const auto trouble = spu::assemble(member->chain, options_.chain, session_)) {
-        fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", *trouble);
+        logging::log(logging::Level::error, "{}; calls go straight to the driver", *trouble);
       }
     }
     return *member;
@@ -200,7 +201,7 @@ void guarded(Action action) noexcept {
   try {
     action();
   } catch (const std::exception& error) {
-    fmt::print(stderr, "understudy: {}; calls go straight to the driver\n", error.what());
+    logging::log(logging::Level::error, "{}; calls go straight to the driver", error.what());
     if (core != nullptr) {
       ThreadState& thread = *core->entry().thread_state();
       thread.table = thread.driver;
@@ -283,8 +284,8 @@ extern "C" [[gnu::visibility("default")]] const understudy::interceptor::CoreSer
   } catch (const std::exception& error) {
     const char* remote = ::secure_getenv("UNDERSTUDY_REMOTE");
     const bool has_driver = remote == nullptr || *remote == '\0';
-    fmt::print(stderr, "understudy: {}{}\n", error.what(),
-               has_driver ? "; calls go straight to the driver" : "");
+    understudy::logging::log(understudy::logging::Level::error, "{}{}", error.what(),
+                             has_driver ? "; calls go straight to the driver" : "");
     return nullptr;
   }
   services = {core_abi,         context_current, context_leaving, context_destroyed,

@@ -8,6 +8,7 @@
 #include <atomic>
 
 #include "interceptor/entry_thread.h"
+#include "interceptor/log_line.h"
 #include "interceptor/remote/remote.h"
 
 namespace understudy::interceptor {
@@ -58,10 +59,9 @@ RemoteContext* new_remote_context(const RemoteConfig& config, const RemoteContex
 void say_no_opengl_es() {
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  dprintf(
-      STDERR_FILENO,
-      "understudy: the viewer asks for OpenGL ES, which run --remote does not offer; let it use OpenGL, or run "
-      "it without --remote\n");
+  log_line(logging::Level::warn,
+           "the viewer asks for OpenGL ES, which run --remote does not offer; let it use OpenGL, or run it "
+           "without --remote");
 }
 
 void destroy_remote_context(RemoteContext* context) {

@@ -11,6 +11,7 @@
 #include <atomic>
 
 #include "interceptor/entry_thread.h"
+#include "interceptor/log_line.h"
 #include "interceptor/remote/configs.h"
 #include "interceptor/remote/context.h"
 #include "interceptor/remote/named_function.h"
@@ -296,10 +297,9 @@ GLXContext CreateContextAttribsARB(Display*, GLXFBConfig config, GLXContext shar
 void CopyContext(Display*, GLXContext, GLXContext, unsigned long) {
   static constinit std::atomic_flag said{};
   if (said.test_and_set()) return;
-  dprintf(STDERR_FILENO,
-          "understudy: the viewer calls glXCopyContext, which run --remote does not offer; the state of its "
-          "second context stays as it is, so what it draws there may look different: run it without "
-          "--remote\n");
+  log_line(logging::Level::warn,
+           "the viewer calls glXCopyContext, which run --remote does not offer; the state of its second "
+           "context stays as it is, so what it draws there may look different: run it without --remote");
 }
 
 void DestroyContext(Display*, GLXContext context) {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 #include <xcb/xcb.h>
 
+#include "interceptor/log_line.h"
 #include "interceptor/real_driver.h"
 #include "interceptor/remote/library_function.h"
 #include "interceptor/remote/x_shared_memory.h"
@@ -56,8 +57,7 @@ class Locked {
 void* open_library(const char* name) {
   void* library = real_dlopen(name, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
-    dprintf(STDERR_FILENO, "understudy: %s cannot be opened, so no window can be drawn into: %s\n", name,
-            dlerror());
+    log_line(logging::Level::error, "%s cannot be opened, so no window can be drawn into: %s", name, dlerror());
   return library;
 }
 
@@ -98,8 +98,8 @@ Server* server_of(Display* display) {
   if (server == nullptr) return nullptr;
   xcb_connection_t* connection = xcb_functions.connect(DisplayString(display), nullptr);
   if (xcb_functions.has_error(connection) != 0) {
-    dprintf(STDERR_FILENO, "understudy: the X server at %s takes no second connection; nothing is shown\n",
-            DisplayString(display));
+    log_line(logging::Level::error, "the X server at %s takes no second connection; nothing is shown",
+             DisplayString(display));
     connection = nullptr;
   }
   *server = {display, connection, {}, servers};

@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 
+#include "logging/log.h"
 #include "spu/report/report.h"
 
 namespace understudy::spu {
@@ -51,7 +52,7 @@ void PerfFile::write_locked() {
   try {
     replace_file(name_, name_.ends_with(".json") ? figures_json(*sum) : figures_text(*sum));
   } catch (const std::exception& error) {
-    if (!failure_told_) fmt::print(stderr, "understudy: perf: {}; name another file\n", error.what());
+    if (!failure_told_) logging::log(logging::Level::warn, "perf: {}; name another file", error.what());
     failure_told_ = true;
   }
 }

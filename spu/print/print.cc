@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "dispatch/call_words.h"
+#include "logging/log.h"
 #include "spu/print/call_text.h"
 #include "spu/shared_by_file.h"
 
@@ -14,8 +15,8 @@ namespace understudy::spu {
 
 PrintFile::PrintFile(const std::string& name) : file_(name.empty() ? stderr : std::fopen(name.c_str(), "we")) {
   if (file_ != nullptr) return;
-  fmt::print(stderr, "understudy: print: cannot write {}: {}; printing here instead\n", name,
-             std::strerror(errno));
+  logging::log(logging::Level::warn, "print: cannot write {}: {}; printing here instead", name,
+               std::strerror(errno));
   file_ = stderr;
 }
 

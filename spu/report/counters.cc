@@ -16,6 +16,8 @@
 #include <new>
 #include <utility>
 
+#include "logging/log.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -31,7 +33,7 @@ ProcessCounters& counters_in_memory() {
 }
 
 void say_that_figures_are_lost(const char* path, int reason) {
-  std::fprintf(stderr, "understudy: the figures of this process cannot be kept in %s: %s\n", path,
+  logging::log(logging::Level::error, "the figures of this process cannot be kept in {}: {}", path,
                std::strerror(reason));
 }
 

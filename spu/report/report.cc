@@ -22,6 +22,7 @@
 #include <system_error>
 #include <vector>
 
+#include "logging/log.h"
 #include "spu/report/keys.h"
 #include "spu/report/skipped_work.h"
 #include "volume/frame_counts.h"
@@ -558,7 +559,7 @@ bool write_report_now(const std::string& path) noexcept {
     replace_file(path, report_json(Processes(&self, 1)));
     return true;
   } catch (const std::exception& error) {
-    if (!complained.exchange(true)) std::fprintf(stderr, "understudy: %s\n", error.what());
+    if (!complained.exchange(true)) logging::log(logging::Level::error, "{}", error.what());
     return false;
   }
 }

@@ -10,6 +10,7 @@
 
 #include "compositor/service/limits.h"
 #include "compositor/transport/socket.h"
+#include "logging/log.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/report/counters.h"
 
@@ -65,8 +66,8 @@ void TileWorkers::gather(int parts) {
     process_counters().tiles.count = std::uint32_t(parts);
   } catch (const std::exception& error) {
     workers_.clear();
-    fmt::print(stderr, "understudy: GL server: windows are drawn by one process: no tile worker: {}\n",
-               error.what());
+    logging::log(logging::Level::warn, "GL server: windows are drawn by one process: no tile worker: {}",
+                 error.what());
     give_up("a tile worker could not be had");
   }
 }
@@ -85,8 +86,8 @@ void TileWorkers::send(TileWorker& worker, const Records& records, bool wants_an
 
 void TileWorkers::lose(const char* what) {
   workers_.clear();
-  fmt::print(stderr, "understudy: GL server: windows are drawn by one process from here on: a tile worker {}\n",
-             what);
+  logging::log(logging::Level::warn,
+               "GL server: windows are drawn by one process from here on: a tile worker {}", what);
   give_up("a tile worker was lost");
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "logging/log.h"
 #include "spu/stream/event.h"
 
 namespace understudy::spu {
@@ -31,7 +32,7 @@ std::string claim(const std::string& file) {
   }
   const std::string other = fmt::format("{}.{}", file, ::getpid());
   if (errno == EEXIST)
-    fmt::print(stderr, "understudy: {} exists, this process is recorded in {}\n", file, other);
+    logging::log(logging::Level::info, "{} exists, this process is recorded in {}", file, other);
   return errno == EEXIST ? other : file;
 }
 
@@ -70,8 +71,8 @@ void Recording::write() {
     if (!failed_) writer_->write(records_, frames_in_block_);
   } catch (const std::system_error& error) {
     failed_ = true;
-    fmt::print(stderr, "understudy: {}; recording ends here, give trace(file=…) a place with room\n",
-               error.what());
+    logging::log(logging::Level::error, "{}; recording ends here, give trace(file=…) a place with room",
+                 error.what());
   }
   records_.clear();
   frames_in_block_ = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "logging/log.h"
 #include "spu/pack/pack.h"
 #include "spu/stream/encode.h"
 
@@ -49,13 +50,13 @@ std::uint64_t Unpack::take(const Records& records, const PackedCall* /*last*/) {
   for (std::size_t at = 0; at < records.words().size();) {
     const auto record = record_at(records.words(), at, records.payload());
     if (!record) {
-      fmt::print(stderr, "understudy: unpack: the stream is damaged at word {}; please report this\n", at);
+      logging::log(logging::Level::error, "unpack: the stream is damaged at word {}; please report this", at);
       return 0;
     }
     // A call may change the phase, and with it the table behind us.
     Decoded decoded = decoder_.decode(*record, chain_.below(*this));
     if (!decoded.error.empty() && decoded.error != last_error_) {
-      fmt::print(stderr, "understudy: unpack: {}; the call is left out, please report this\n", decoded.error);
+      logging::log(logging::Level::warn, "unpack: {}; the call is left out, please report this", decoded.error);
       last_error_ = std::move(decoded.error);
     }
     result = decoded.result;

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 
 /// Lowest first: a module may use itself and those before it.
-constexpr std::array<std::string_view, 6> modules{"volume",      "compositor", "spu",
-                                                  "interceptor", "apps",       "tests"};
+constexpr std::array<std::string_view, 7> modules{"logging",     "volume", "compositor", "spu",
+                                                  "interceptor", "apps",   "tests"};
 
 /// Folders of spu/, lowest first: a folder may include itself and those before it, so that there are no cycles.
 constexpr auto spu_folders = std::to_array<std::string_view>({

@@ -11,6 +11,7 @@
 
 #include "apps/understudy/images/read_image.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "logging/log.h"
 #include "spu/player/player.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
@@ -71,13 +72,14 @@ class Playing {
       play(*block);
     }
     if (reader_.cut_off())
-      fmt::print(stderr, "understudy: {} was cut off; it was played to its last whole block\n",
-                 plan_.trace.string());
+      logging::log(logging::Level::warn, "{} was cut off; it was played to its last whole block",
+                   plan_.trace.string());
     if (frame_ <= plan_.frames.first && plan_.frames.first > 1) {
       spu::forget_counted_frames();
-      fmt::print(stderr, "understudy: {} has only {} frames\n", plan_.trace.string(), frame_ - 1);
+      logging::log(logging::Level::info, "{} has only {} frames", plan_.trace.string(), frame_ - 1);
     }
-    if (played_.errors > 0) fmt::print(stderr, "understudy: {} records could not be played\n", played_.errors);
+    if (played_.errors > 0)
+      logging::log(logging::Level::warn, "{} records could not be played", played_.errors);
     return played_;
   }
 
@@ -101,7 +103,7 @@ class Playing {
   void tell(const std::string& fault, const std::string& kind) {
     ++played_.errors;
     if (told_.size() < most_faults_told && told_.insert(kind).second)
-      fmt::print(stderr, "understudy: {}: {}\n", plan_.trace.string(), fault);
+      logging::log(logging::Level::warn, "{}: {}", plan_.trace.string(), fault);
   }
 
   void frame_shown(const spu::ShownFrame& shown) {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "apps/understudy/cli/play.h"
+#include "logging/log.h"
 #include "spu/print/record_text.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
@@ -59,8 +60,8 @@ int print(const PrintArguments& arguments) {
   // A reader that has seen enough, as head has, is no error.
   std::fflush(stdout);
   if (reader.cut_off())
-    fmt::print(stderr, "understudy: {} was cut off; this is up to its last whole block\n",
-               arguments.trace.string());
+    logging::log(logging::Level::warn, "{} was cut off; this is up to its last whole block",
+                 arguments.trace.string());
   return 0;
 }
 

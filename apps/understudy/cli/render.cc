@@ -16,6 +16,7 @@
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
+#include "logging/log.h"
 #include "volume/image.h"
 
 namespace understudy::launcher {
@@ -114,7 +115,7 @@ int render(const RenderArguments& arguments) {
         fmt::format("no image was made: render again, or in this process, without nodes ({})", lost.what()));
   }
   figures.backends = backends;
-  for (const std::string& choice : backends) fmt::print(stderr, "understudy: {}\n", choice);
+  for (const std::string& choice : backends) logging::log(logging::Level::info, "{}", choice);
   if (!arguments.report.empty()) write_render_report(arguments.report, figures);
   std::fputs(summary_text(figures).c_str(), stdout);
   return 0;

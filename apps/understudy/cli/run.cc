@@ -11,6 +11,7 @@
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/trace_option.h"
+#include "logging/log.h"
 #include "spu/former_names.h"
 #include "spu/options.h"
 
@@ -18,7 +19,7 @@ namespace understudy::launcher {
 namespace {
 
 void say(const std::string& line) {
-  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+  logging::log(logging::Level::info, "{}", line);
 }
 
 int run_viewer(RunArguments arguments, const std::vector<std::string>& command) {

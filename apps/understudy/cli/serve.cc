@@ -25,6 +25,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/transport/runtime_folder.h"
 #include "compositor/transport/tcp/secret.h"
+#include "logging/log.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {
@@ -104,7 +105,7 @@ void look_after(Frontends& frontends) {
     if (!process) return;
     const std::optional<Ending> ending = process->poll_ending();
     if (!ending) return;
-    fmt::print(stderr, "understudy: {} {}; start serve again\n", what, ending->text());
+    logging::log(logging::Level::error, "{} {}; start serve again", what, ending->text());
     process.reset();
   };
   ended(frontends.server, "the GL server, which draws for viewers of other machines,");
@@ -120,7 +121,7 @@ int serve(const ServeArguments& arguments) {
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGCHLD});
   const RunFolder folder = arguments.folder.empty() ? RunFolder() : RunFolder(arguments.folder);
   if (const std::string obstacle = obstacle_to_nodes(installation); !obstacle.empty()) {
-    fmt::print(stderr, "understudy: {}\n", obstacle);
+    logging::log(logging::Level::error, "{}", obstacle);
     return 1;
   }
   const std::filesystem::path socket = arguments.socket.empty() || !arguments.folder.empty()

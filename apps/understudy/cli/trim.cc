@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "logging/log.h"
 #include "spu/player/player.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"
@@ -100,7 +101,7 @@ class Faults {
   explicit Faults(const std::filesystem::path& trace) : trace_(trace) {}
   void tell(const std::string& fault) {
     if (fault.empty() || told_.size() >= most_faults_told || !told_.insert(fault).second) return;
-    fmt::print(stderr, "understudy: {}: {}; the record is kept as it is\n", trace_.string(), fault);
+    logging::log(logging::Level::warn, "{}: {}; the record is kept as it is", trace_.string(), fault);
   }
 
  private:
@@ -187,9 +188,9 @@ void add_trim(CLI::App& app, std::function<int()>& chosen) {
       return play_guarded(plan->trace, [&](PlayedRecord& played) {
         plan->played = &played;
         trim(*plan);
-        fmt::print(stderr, "understudy: {}: {:.1f} MB of {:.1f} MB\n", plan->out.string(),
-                   double(std::filesystem::file_size(plan->out)) / 1e6,
-                   double(std::filesystem::file_size(plan->trace)) / 1e6);
+        logging::log(logging::Level::info, "{}: {:.1f} MB of {:.1f} MB", plan->out.string(),
+                     double(std::filesystem::file_size(plan->out)) / 1e6,
+                     double(std::filesystem::file_size(plan->trace)) / 1e6);
         return 0;
       });
     };

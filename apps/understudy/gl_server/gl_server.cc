@@ -25,6 +25,7 @@
 #include "apps/understudy/offscreen/offscreen_contexts.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/connection.h"
+#include "logging/log.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/player/player.h"
@@ -63,7 +64,7 @@ spu::Options options_of_application(const std::string& socket) {
   if (tiles == chain.end() && options.tiles) {
     const int parts = std::min(options.nodes, spu::most_tiles);
     if (parts < 2) {
-      fmt::print(stderr, "understudy: --tiles on: there is one node, which draws all; say -n 2, or more\n");
+      logging::log(logging::Level::warn, "--tiles on: there is one node, which draws all; say -n 2, or more");
       return options;
     }
     tiles = chain.insert(chain.end() - 1,
@@ -194,7 +195,7 @@ class Performance {
 
   void tell(const std::string& fault) {
     if (told_.size() < most_faults_told && told_.insert(fault).second)
-      fmt::print(stderr, "understudy: GL server: {}; the call is left out\n", fault);
+      logging::log(logging::Level::warn, "GL server: {}; the call is left out", fault);
   }
 
   Connection& connection_;
@@ -235,7 +236,7 @@ int perform(FileDescriptor socket, const std::string& address) {
       throw;
     }
   } catch (const std::exception& error) {
-    fmt::print(stderr, "understudy: GL server: dropped an application: {}\n", error.what());
+    logging::log(logging::Level::warn, "GL server: dropped an application: {}", error.what());
     return 1;
   }
   return 0;

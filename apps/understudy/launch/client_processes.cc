@@ -18,6 +18,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/transport/socket.h"
 #include "compositor/transport/socket_file.h"
+#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {
@@ -42,7 +43,7 @@ bool ClientProcesses::start(const std::function<int()>& work) {
   try {
     status = work();
   } catch (const std::exception& error) {
-    fmt::print(stderr, "understudy: {}\n", error.what());
+    logging::log(logging::Level::warn, "{}", error.what());
   }
   std::fflush(nullptr);
   ::_exit(status);
@@ -79,8 +80,8 @@ void listen_for_clients(const std::string& socket, const std::string& who,
     compositor::FileDescriptor client = compositor::accept_from(listener);
     if (!client) continue;
     if (clients.count() >= compositor::limits::max_clients) {
-      fmt::print(stderr, "understudy: {}: {} applications are here already; sent one more away\n", who,
-                 clients.count());
+      logging::log(logging::Level::warn, "{}: {} applications are here already; sent one more away", who,
+                   clients.count());
       continue;
     }
     clients.start([&] {

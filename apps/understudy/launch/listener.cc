@@ -17,6 +17,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
 #include "compositor/transport/tcp/listener.h"
+#include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {
@@ -35,7 +36,7 @@ namespace limits = compositor::limits;
 constexpr std::chrono::seconds patience_with_start{10};
 
 void say(const std::string& line) {
-  fmt::print(stderr, "understudy: {}\n", line);
+  logging::log(logging::Level::info, "{}", line);
 }
 
 /// The file in which a listener says where it listens.

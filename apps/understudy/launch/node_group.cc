@@ -14,6 +14,7 @@
 #include "apps/understudy/hosts/mpirun_command.h"
 #include "apps/understudy/launch/environment.h"
 #include "compositor/service/backend_line.h"
+#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {
@@ -28,7 +29,7 @@ constexpr const char* nodes_log = "nodes.log";
 constexpr std::size_t max_backend_choices = 1024;
 
 void say(const std::string& line) {
-  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+  logging::log(logging::Level::info, "{}", line);
 }
 
 std::filesystem::path log_of(const NodeGroupPlan& plan) {

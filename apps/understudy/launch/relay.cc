@@ -22,6 +22,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
 #include "compositor/transport/tcp/tcp_connection.h"
+#include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {
@@ -82,7 +83,7 @@ int carry(FileDescriptor application, const ConnectionPlan& plan, const std::fil
     else
       why = compositor::ApplicationRelay(here, connection).run();
     write_connection_figures(figures, plan.address, connection);
-    if (!why.empty()) fmt::print(stderr, "understudy: the connection to {}: {}\n", plan.address, why);
+    if (!why.empty()) logging::log(logging::Level::warn, "the connection to {}: {}", plan.address, why);
     return why.empty() ? 0 : 1;
   } catch (const std::exception& error) {
     // The application says it where it says such things.

@@ -30,6 +30,7 @@
 #include "apps/understudy/launch/signal_inbox.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/transport/tcp/address.h"
+#include "logging/log.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/registry/assemble.h"
@@ -51,7 +52,7 @@ bool stands_in_viewer(const std::string& chain) {
 }
 
 void say(const std::string& line) {
-  std::fprintf(stderr, "understudy: %s\n", line.c_str());
+  logging::log(logging::Level::info, "{}", line);
 }
 
 /// The options of this run: the environment's, and over them the command line's.

@@ -9,6 +9,7 @@
 
 #include "apps/understudy/offscreen/egl_contexts.h"
 #include "apps/understudy/offscreen/osmesa_contexts.h"
+#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {
@@ -28,8 +29,8 @@ void* OffscreenContexts::context_for(const spu::RecordedContext& wanted) const {
     if (version >= wanted.version && wanted.version != 0) continue;
     void* made = make_context(wanted, version);
     if (made == nullptr) continue;
-    fmt::print(stderr, "understudy: the trace wants OpenGL {}.{}, the driver here has {}.{}\n",
-               wanted.version / 100, wanted.version / 10 % 10, version / 100, version / 10 % 10);
+    logging::log(logging::Level::warn, "the trace wants OpenGL {}.{}, the driver here has {}.{}",
+                 wanted.version / 100, wanted.version / 10 % 10, version / 100, version / 10 % 10);
     return made;
   }
   throw std::runtime_error(
@@ -69,7 +70,7 @@ std::unique_ptr<OffscreenContexts> open_offscreen_contexts(std::string_view libr
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}; nor is there OSMesa: {}", obstacle, error.what()));
   }
-  fmt::print(stderr, "understudy: drawing on OSMesa, as {}\n", obstacle);
+  logging::log(logging::Level::info, "drawing on OSMesa, as {}", obstacle);
   return contexts;
 }
 

@@ -6,6 +6,7 @@
 
 #include "apps/understudy/cli/run.h"
 #include "apps/understudy/view/view.h"
+#include "logging/log.h"
 
 namespace launcher = understudy::launcher;
 
@@ -21,6 +22,6 @@ int main(int argc, char** argv) try {
   }
   return chosen();
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "understudy: %s\n", error.what());
+  understudy::logging::log(understudy::logging::Level::error, "{}", error.what());
   return 1;
 }

@@ -16,6 +16,7 @@
 #include "apps/understudy/view/shown_volume.h"
 #include "apps/understudy/view/view_message.h"
 #include "apps/understudy/view/web_server.h"
+#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {
@@ -147,8 +148,7 @@ class WebView {
     while (!stop_.stop_requested()) {
       // What follows is meant for applications, which can draw by themselves.
       reason = reason.substr(0, reason.find(';'));
-      std::fprintf(stderr, "understudy: the render nodes are gone (%s); the volume is read again\n",
-                   reason.c_str());
+      logging::log(logging::Level::warn, "the render nodes are gone ({}); the volume is read again", reason);
       say(Readiness::lost,
           fmt::format("The render nodes are gone ({}); the volume is read again as soon as there are others.",
                       reason),

@@ -16,6 +16,7 @@
 #include "apps/understudy/view/image_encoding.h"
 #include "apps/understudy/view/shown_volume.h"
 #include "apps/understudy/view/view_state.h"
+#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {
@@ -97,8 +98,7 @@ class Window {
   void recover(const std::string& why) {
     std::string reason = why;
     while (!over_ && !stop_.stop_requested()) {
-      std::fprintf(stderr, "understudy: the render nodes are gone (%s); the volume is read again\n",
-                   reason.c_str());
+      logging::log(logging::Level::warn, "the render nodes are gone ({}); the volume is read again", reason);
       say("the render nodes are gone; the volume is read again");
       hear(1000);
       try {

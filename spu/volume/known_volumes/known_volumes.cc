@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "logging/log.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -55,10 +57,10 @@ void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& 
   count_reason(*volume.counters, refusal.reason);
   const bool new_reason = std::exchange(volume.refusals.last_reason, refusal.reason) != refusal.reason;
   if (!new_reason || !say) return;
-  fmt::print(stderr, "understudy: volume {} not substituted: {}\n", texture, refusal.reason);
+  logging::log(logging::Level::info, "volume {} not substituted: {}", texture, refusal.reason);
   if (!session_->options().explain) return;
-  if (!refusal.evidence.empty()) fmt::print(stderr, "understudy:   seen: {}\n", refusal.evidence);
-  if (!refusal.advice.empty()) fmt::print(stderr, "understudy:   what helps: {}\n", refusal.advice);
+  if (!refusal.evidence.empty()) logging::log(logging::Level::info, "  seen: {}", refusal.evidence);
+  if (!refusal.advice.empty()) logging::log(logging::Level::info, "  what helps: {}", refusal.advice);
 }
 
 void KnownVolumes::refuse_in_this_frame(GLuint texture, const Refusal& refusal, FrameAccount& account) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "logging/log.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/depth/depth.h"
 #include "spu/volume/merging/merged_geometry.h"
@@ -205,8 +206,8 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
   } catch (const std::exception& error) {
     volume.refusals.handed_back = error.what();
   }
-  fmt::print(stderr, "understudy: {} textures of one volume are shown one by one: {}\n", merged.textures.size(),
-             volume.refusals.handed_back);
+  logging::log(logging::Level::warn, "{} textures of one volume are shown one by one: {}",
+               merged.textures.size(), volume.refusals.handed_back);
   return false;
 }
 

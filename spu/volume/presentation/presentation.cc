@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "logging/log.h"
 #include "spu/volume/presentation/save_frames.h"
 #include "volume/raycast/ray_caster.h"
 
@@ -61,7 +62,7 @@ volume::FrameCounts Presentation::show(compositor::RenderService& service, const
 void Presentation::save(const ImageToShow& what, const volume::ImageView& shown) {
   const std::string trouble = save_frame(session_.options().save_frames, saved_++, what.image.request.viewport,
                                          shown, volume::neutral_value(what.pipeline.blending.op));
-  if (!trouble.empty()) fmt::print(stderr, "understudy: {}\n", trouble);
+  if (!trouble.empty()) logging::log(logging::Level::warn, "{}", trouble);
 }
 
 void Presentation::present(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image) {

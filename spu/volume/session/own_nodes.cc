@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "compositor/transport/runtime_folder.h"
+#include "logging/log.h"
 
 namespace understudy::spu {
 namespace {
@@ -95,7 +96,7 @@ bool socket_appears(const std::filesystem::path& socket) {
 std::string start_own_nodes(int nodes) {
   std::string folder = compositor::runtime_folder() / "understudy-run-XXXXXX";
   if (mkdtemp(folder.data()) == nullptr) {
-    fmt::print(stderr, "understudy: no render nodes: cannot make {}: {}\n", folder, std::strerror(errno));
+    logging::log(logging::Level::warn, "no render nodes: cannot make {}: {}", folder, std::strerror(errno));
     return {};
   }
   const std::filesystem::path launcher = launcher_beside_this_library();
@@ -103,8 +104,8 @@ std::string start_own_nodes(int nodes) {
                                  "--while", std::to_string(getpid())});
   const std::filesystem::path socket = std::filesystem::path(folder) / "nodes.sock";
   if (error == 0 && socket_appears(socket)) return socket;
-  fmt::print(stderr, "understudy: no render nodes ({} does not serve); rendering inside the viewer instead\n",
-             launcher.string());
+  logging::log(logging::Level::warn, "no render nodes ({} does not serve); rendering inside the viewer instead",
+               launcher.string());
   std::error_code already_gone;
   std::filesystem::remove_all(folder, already_gone);
   return {};

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "logging/log.h"
 #include "spu/report/counters.h"
 #include "spu/volume/session/last_image.h"
 #include "spu/volume/session/own_nodes.h"
@@ -40,7 +41,7 @@ compositor::RenderService& RenderSession::service() {
     }
   } catch (const compositor::ServiceLost& unreachable) {
     if (!connected_once_ && !launcher_tells()) {
-      fmt::print(stderr, "understudy: {}; the viewer draws by itself\n", unreachable.what());
+      logging::log(logging::Level::warn, "{}; the viewer draws by itself", unreachable.what());
     }
     why_lost_ = unreachable.reason();
     not_before_ = std::chrono::steady_clock::now() + retry_after;
@@ -94,7 +95,7 @@ void RenderSession::lost(const compositor::ServiceLost& loss) {
   // Every frame that finds no service says so; the next attempt must not move away before it.
   if (!service_) return;
   if (!launcher_tells()) {
-    fmt::print(stderr, "understudy: {}; the viewer draws by itself until the nodes are back\n", loss.what());
+    logging::log(logging::Level::warn, "{}; the viewer draws by itself until the nodes are back", loss.what());
   }
   pipeline_ = nullptr;
   service_.reset();

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "logging/log.h"
 #include "spu/report/skipped_work.h"
 
 namespace understudy::spu {
@@ -11,8 +12,8 @@ namespace understudy::spu {
 void report_frame(const FrameRecord& frame, bool explain) {
   count_frame(frame);
   if (explain && frame.substituted > 0)
-    fmt::print(stderr, "understudy: frame {}: {:.4g} ms; left out: {}\n", process_counters().frames.load(),
-               frame.time_ms, sentence_of(frame));
+    logging::log(logging::Level::info, "frame {}: {:.4g} ms; left out: {}", process_counters().frames.load(),
+                 frame.time_ms, sentence_of(frame));
 }
 
 }  // namespace understudy::spu

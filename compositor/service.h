@@ -42,12 +42,15 @@ class RequestRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The answer to a request.
 struct Rendered {
   volume::ImageView image;  ///< over its footprint only; valid until the next call but integrals()
   volume::FrameCounts counts;
   bool repeated = false;  ///< nothing was cast: it is an image that was there already
 };
 
+/// All functions but nodes() may throw ServiceLost and RequestRefused. Requests are answered one after the
+/// other; not for two threads at once.
 class RenderService {
  public:
   virtual ~RenderService() = default;
@@ -66,8 +69,10 @@ class RenderService {
                           std::span<const std::byte> texels) = 0;
   /// Nothing more follows; the volume is complete.
   virtual void end_volume(volume::VolumeId id) = 0;
+  /// Frees its texels on all ranks. An id that is not known is ignored.
   virtual void forget_volume(volume::VolumeId id) = 0;
 
+  /// The image of one request. Its volume must be complete, and have the version that the request names.
   virtual Rendered render(const volume::RenderRequest& request) = 0;
 
   /// What pixels of the request would show if its samples were taken ever more densely

@@ -11,6 +11,7 @@
 
 namespace understudy::interceptor {
 
+/// A context as the application names it.
 struct ContextKey {
   WindowSystem system;
   std::uintptr_t display;
@@ -50,6 +51,7 @@ void note_not_current(std::uintptr_t context);
 /// ledger.
 std::uintptr_t next_gone();
 
+/// In a child: makes the lock anew, which another thread of the parent may have held.
 void reset_ledger_after_fork();
 
 }  // namespace understudy::interceptor

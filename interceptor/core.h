@@ -22,8 +22,10 @@ struct ThreadState {
   const spu::DispatchTable* driver = nullptr;
 };
 
+/// Who made a context.
 enum class WindowSystem : std::int32_t { glx, egl, osmesa };
 
+/// Which call ends or publishes a frame.
 enum class FrameEnd : std::int32_t {
   swap,
   finish,  ///< the image is complete, and all buffers keep their contents: OSMesa, which has no swap
@@ -45,6 +47,7 @@ struct RemoteContextFormat {
   std::int32_t double_buffered = 1;
 };
 
+/// A window or an off-screen surface of the application, whose pixels a GL server has.
 struct RemoteDrawable {
   std::uint64_t number = 0;  ///< 0: there is none
   std::int32_t width = 0;

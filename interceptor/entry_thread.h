@@ -24,6 +24,7 @@ struct CurrentContext {
   bool operator==(const CurrentContext&) const = default;
 };
 
+/// One for each thread, initialised at compile time.
 struct EntryThread {
   ThreadState state;                     ///< `table` set means `calls` set
   std::uint64_t spare_calls = 0;         ///< counts where the core has given no counter

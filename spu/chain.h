@@ -36,6 +36,8 @@ enum class FrameEnd { swap, finish, wait, make_current, destroy };
 
 class Chain;
 
+/// One element of a chain. It may change, replace, discard or add calls; whatever it leaves alone costs
+/// nothing. Functions are called on the thread that has the context current, but process_ends().
 class Unit {
  public:
   virtual ~Unit() = default;
@@ -75,6 +77,8 @@ struct Surroundings {
   ServerConnection* server = nullptr;  ///< where its calls are made; null: here
 };
 
+/// The units of one context, from the application to the driver. One thread at a time has it current; tables
+/// are built when a phase is first entered, and stay where they are.
 class Chain {
  public:
   /// `switch_table` installs a table as the calling thread's; the entry library provides it.
@@ -99,9 +103,12 @@ class Chain {
 
   /// The chain whose context is current on this thread; null when none is.
   static Chain* current() { return current_; }
+  /// Its context is current on this thread now: units are told, and the table of the present phase is
+  /// installed.
   void make_current();
   static void release_current();
 
+  /// One store: the thread's entry points read the table of that phase from now on.
   void set_phase(Phase phase);
   Phase phase() const { return phase_; }
   /// The table above which `unit` stands, in the current phase and in a given one.
@@ -132,6 +139,7 @@ class Chain {
   /// are.
   void refill();
 
+  /// The following four are handed to every unit, the one nearest to the application first; see Unit.
   void settle();
   void frame_ended(FrameEnd kind);
   void abandon();

@@ -27,18 +27,21 @@ class ChainError : public std::runtime_error {
   ChainError(const std::string& where, const std::string& what) : std::runtime_error(where + ": " + what) {}
 };
 
+/// An option as the text has it, not checked.
 struct OptionSetting {
   std::string name;
   std::string value;
   std::string where;  ///< "chain, character 7"
 };
 
+/// A unit as the text has it, with its options in their order, not checked.
 struct UnitSetting {
   std::string name;
   std::vector<OptionSetting> options;
   std::string where;
 };
 
+/// The unit nearest to the application first.
 using ChainSettings = std::vector<UnitSetting>;
 
 /// Throws ChainError.

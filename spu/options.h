@@ -12,6 +12,7 @@ namespace understudy::spu {
 
 constexpr int max_nodes = 256;  ///< ranks of one node group
 
+/// The options of one process. Values are checked when they are set (set_option()).
 struct Options {
   int nodes = 0;  ///< 0: embedded
   std::string
@@ -41,6 +42,7 @@ struct Options {
   bool has_budget() const { return error > 0 || time_ms > 0; }
 };
 
+/// How help and messages name an option.
 struct OptionText {
   const char* flag;         ///< "--verify"; "-n,--nodes" where a short form exists; empty: environment only
   const char* environment;  ///< "UNDERSTUDY_VERIFY"
@@ -49,6 +51,7 @@ struct OptionText {
   const char* help;
 };
 
+/// Every option, in the order of the help.
 std::span<const OptionText> option_table();
 
 /// Sets the option that `environment` names. False, with `options` unchanged, when there is no such option or

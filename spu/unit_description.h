@@ -18,12 +18,14 @@ struct UnitPlace {
   std::shared_ptr<RenderSession> session;  ///< of the process
 };
 
+/// Where in a chain a unit may stand.
 enum class UnitPosition {
   once,        ///< it finds itself by its type, so a chain can hold one
   repeatable,  ///< any number of times
   last,        ///< the end of every chain
 };
 
+/// A constant with static storage; spu/registry/assemble.cc lists them all.
 struct UnitDescription {
   const char* name;
   const char* help;  ///< one line

@@ -13,6 +13,7 @@
 
 namespace understudy::spu {
 
+/// What text an option takes.
 enum class OptionType {
   on_off,   ///< on, yes, true, 1; off, no, false, 0; the name alone is "on"
   integer,  ///< within low and high
@@ -23,6 +24,7 @@ enum class OptionType {
   range,   ///< "3", "3-10" or "3-": whole numbers from 0
 };
 
+/// One option of a unit, as `understudy units` lists it.
 struct UnitOption {
   const char* name;
   OptionType type;
@@ -33,6 +35,7 @@ struct UnitOption {
   const char* help;
 };
 
+/// Whole numbers from `first` to `last`.
 struct IntegerRange {
   std::int64_t first = 0;
   std::int64_t last = 0;  ///< belongs to the range

@@ -11,6 +11,7 @@
 
 namespace understudy::volume {
 
+/// Values of cubes that tile the lattice; sums over boxes of them are CostSums.
 class BlockCosts {
  public:
   /// Of the cells `lattice`, in cubes of `edge` cells, a multiple of a block's (those at the upper rim may be

@@ -12,6 +12,8 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
+/// Bricks begin at `origin` and follow each other without gaps; the last of an axis may reach beyond the
+/// volume.
 struct BrickGrid {
   std::array<int, 3> origin{};  ///< the cell at which the first brick begins
   std::array<int, 3> counts{};  ///< of bricks

@@ -49,6 +49,7 @@ struct PreIntegrationTable {
   bool operator==(const PreIntegrationTable&) const = default;
 };
 
+/// What turns samples into colours: of scalars, of colours, or of segments of scalars.
 using Classification = std::variant<TransferFunction, LinearMap, PreIntegrationTable>;
 
 }  // namespace understudy::volume

@@ -13,6 +13,7 @@
 
 namespace understudy::volume {
 
+/// `normal` and `offset` make u of a point of texture space; see above.
 struct Fog {
   std::array<double, 3> normal{};
   double offset = 0;

@@ -31,6 +31,7 @@ struct Image {
   ImageView view() const { return {rect, rgba}; }
 };
 
+/// An image of its own with the same pixels.
 inline Image copy_of(const ImageView& view) {
   Image image;
   image.rect = view.rect;

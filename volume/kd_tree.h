@@ -15,6 +15,7 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
+/// A partition with the boxes that it makes, and their visibility order for a request.
 class KdTree {
  public:
   /// Throws std::invalid_argument when `partition` does not divide the cell lattice of `volume`.

@@ -16,6 +16,7 @@
 
 namespace understudy::volume {
 
+/// The default is understudy render's --material.
 struct Light {
   /// Row-major; texture space to the space in which directions are meant and angles are measured.
   std::array<double, 9> space{1, 0, 0, 0, 1, 0, 0, 0, 1};

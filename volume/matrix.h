@@ -8,15 +8,19 @@
 
 namespace understudy::volume {
 
+/// A homogeneous point, or the coefficients of a plane.
 using Vec4 = std::array<double, 4>;
 
+/// Leaves every point where it is.
 constexpr Matrix4 identity() {
   return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 }
 
+/// a . b.
 constexpr double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/// a x b, right-handed.
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -29,11 +33,13 @@ constexpr Vec3 subtract(const Vec3& a, const Vec3& b) {
 constexpr Vec3 scale(const Vec3& a, double s) {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
+/// Euclidean.
 double length(const Vec3& a);
 
 /// The product that applies `b` first, then `a`.
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);
 
+/// The product m v, not divided by its last component.
 Vec4 transform(const Matrix4& m, const Vec4& v);
 
 /// The homogeneous image of the point `p`.

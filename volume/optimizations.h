@@ -5,6 +5,7 @@
 
 namespace understudy::volume {
 
+/// True: the work is skipped.
 struct Optimizations {
   /// Samples in blocks of which the classification shows nothing. The image is the same bit for bit, but for
   /// where rays end that become opaque.

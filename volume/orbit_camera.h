@@ -5,6 +5,7 @@
 
 namespace understudy::volume {
 
+/// Where the eye is, seen from the volume's middle.
 struct OrbitCamera {
   double azimuth = 30;    ///< degrees; 0 looks along +y, 90 along -x
   double elevation = 20;  ///< degrees above the plane of x and y

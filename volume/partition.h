@@ -14,6 +14,7 @@ namespace understudy::volume {
 /// Most ranks that are believed.
 constexpr int max_ranks = 65536;
 
+/// A value: equal partitions cut a volume alike on every rank.
 struct Partition {
   struct Split {
     int axis = 0;

@@ -13,6 +13,7 @@ struct Pixel {
   bool operator==(const Pixel&) const = default;
 };
 
+/// Pixels x to x + width - 1 and y to y + height - 1.
 struct Rect {
   int x = 0;
   int y = 0;
@@ -24,6 +25,7 @@ struct Rect {
   bool operator==(const Rect&) const = default;
 };
 
+/// Empty, at (0, 0), where they share no pixel.
 inline Rect intersection(const Rect& a, const Rect& b) {
   const int x0 = std::max(a.x, b.x), x1 = std::min(a.x + a.width, b.x + b.width);
   const int y0 = std::max(a.y, b.y), y1 = std::min(a.y + a.height, b.y + b.height);

@@ -23,6 +23,8 @@
 
 namespace understudy::volume {
 
+/// One image of one volume. The same request gives the same image for any number of ranks, bricks and threads,
+/// to within 1e-5 (rounding of float, and `termination`).
 struct RenderRequest {
   VolumeId volume = 0;
   std::uint64_t version = 0;

@@ -5,6 +5,7 @@
 
 namespace understudy::volume {
 
+/// Red, green, blue, opacity; 1 is full intensity.
 using Rgba = std::array<float, 4>;
 
 }  // namespace understudy::volume

@@ -14,6 +14,7 @@ struct TexelBox {
   bool operator==(const TexelBox&) const = default;
 };
 
+/// Whether no texel lies in it: on some axis `high` is not above `low`.
 bool is_empty(const TexelBox& box);
 /// Whether `inner` lies in `outer`.
 bool contains(const TexelBox& outer, const TexelBox& inner);

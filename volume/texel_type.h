@@ -6,7 +6,9 @@
 
 namespace understudy::volume {
 
+/// One number a texel, normalised when sampled (u8: v / 255, u16: v / 65535, f32: as it is), or four bytes.
 enum class TexelType : std::uint8_t { u8, u16, f32, rgba8 };
+/// 1, 2 or 4.
 constexpr std::size_t bytes_per_texel(TexelType type) {
   return type == TexelType::u8 ? 1 : type == TexelType::u16 ? 2 : 4;
 }

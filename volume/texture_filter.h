@@ -5,6 +5,7 @@
 
 namespace understudy::volume {
 
+/// Of GL_NEAREST and GL_LINEAR (OpenGL 4.6, section 8.14); no mip-mapping.
 enum class Filter : std::uint8_t { nearest, linear };
 
 /// What the linear filter reads beyond the outermost texels.

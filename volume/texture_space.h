@@ -8,9 +8,11 @@
 
 namespace understudy::volume {
 
+/// A point or a direction.
 using Vec3 = std::array<double, 3>;
 using Matrix4 = std::array<double, 16>;  ///< row-major: m[4 * row + column], acting on column vectors
 
+/// Closed box; the default is the whole volume.
 struct Box {
   Vec3 low{0, 0, 0};
   Vec3 high{1, 1, 1};

@@ -8,6 +8,7 @@
 
 namespace understudy::volume {
 
+/// Constant beyond the first and the last control point. docs/render.md says how files look.
 struct TransferControlPoints {
   struct ControlPoint {
     double at = 0;
@@ -24,6 +25,7 @@ void check(const TransferControlPoints& control_points);
 
 /// A built-in one. Throws std::invalid_argument, with the names that there are.
 TransferControlPoints control_points_named(const std::string& name);
+/// Names that control_points_named() knows.
 std::vector<std::string> built_in_control_points_names();
 /// "grey, engine, ..."
 std::string built_in_control_points();

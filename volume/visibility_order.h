@@ -8,6 +8,8 @@ namespace understudy::volume {
 
 struct RenderRequest;
 
+/// The order of two half-spaces along the rays of one camera (Fuchs, Kedem, Naylor 1980). Applied to every
+/// plane of a kd-tree it is the visibility order of its boxes.
 class VisibilityOrder {
  public:
   /// Nearest (smallest depth) first. Perspective, parallel, mirrored; eye inside or outside. Throws

@@ -15,6 +15,7 @@
 
 namespace understudy::spu {
 
+/// Descriptions that a chain's text may name.
 using UnitTable = std::span<const UnitDescription* const>;
 
 /// All units there are, by name.

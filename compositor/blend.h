@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blending two runs of premultiplied float RGBA pixels, one operator each. The arithmetic is the framebuffer's
 // (glBlendFunc, glBlendEquation) carried out in float, so that any grouping of neighbours gives the same
 // image to within rounding (at most 1e-6 for any tree of partial images).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Only what shows need travel: the smallest rectangle that holds every pixel a sample has reached.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The render service as its client sees it: volumes go down, images come up. Two services keep this contract:
 // the embedded one renders in this process, the linked one talks to a group of MPI nodes.
 #pragma once

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs a viewer bare and under Understudy, and says what was substituted and what a frame took.
 #
 #   before-and-after.sh FOLDER viewer args…

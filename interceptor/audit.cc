@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The auditor, for LD_AUDIT: the loader asks this library where to look for each library it is about to load.
 //
 // It lives in a link namespace with a C library of its own, so it is kept to a few lines of C.

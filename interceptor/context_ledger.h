@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The contexts that the application has made, and which of them share objects.
 //
 // Handles are addresses that the driver uses again; the core gets numbers instead, each used once in a process.

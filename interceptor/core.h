@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The line between the entry library and the core.
 //
 // libunderstudy.so, the entry library, is what applications load: exported entry points, real-driver lookup,

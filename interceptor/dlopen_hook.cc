@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LD_PRELOAD's second half: applications that open OpenGL by name get the stub instead.
 //
 // glibc looks at who called dlopen (the caller's RUNPATH, its namespace), so every request that is not ours is

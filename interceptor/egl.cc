@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The EGL functions that say which context is current, end a frame, or hand out addresses. The others are
 // generated.
 #include <EGL/egl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every exported gl* function does before it forwards (the functions themselves are generated).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the entry library keeps for each thread, and the two guards that say on whose behalf the thread is
 // running.
 //

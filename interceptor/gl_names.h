@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names under which applications ask for OpenGL, and who may have the real libraries: known to the dlopen
 // hook and to the auditor, which cannot share a library.
 #pragma once

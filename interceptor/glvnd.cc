@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What glvnd's libGL.so.1 wants of libGLX.so.0 beside GLX itself. An application that opens the real libGL.so.1
 // by its absolute path, past the folder, gets our libGLX.so.0 as that library's dependency: it
 // must find these two. The order of the functions is glvnd's (src/GLX/libglxgl.h there); a test compares it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLX functions that say which context is current, end a frame, hand out addresses, or make calls of
 // OpenGL. The others are generated.
 #include <GL/glx.h>

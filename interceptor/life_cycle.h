@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What GLX, EGL and OSMesa have in common: a context becomes current, a frame ends. Tells the core, around the
 // real calls.
 #pragma once

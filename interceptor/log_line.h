@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines on stderr as logging/log.h writes them, without a C++ library.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/open_core.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the core when the first context becomes current, and knows whether there is one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/osmesa.h"
 
 #include <GL/osmesa.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OSMesa: Mesa's library for drawing into an array of the application's, without a window system. It holds a
 // whole OpenGL of its own, and has no swap: an image is complete when the application says glFinish or
 // glFlush.

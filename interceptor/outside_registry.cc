@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names that glvnd's libGL.so.1 exports although no registry knows them, from drivers and drafts long gone.
 // A program linked with one of them must still start, and reach the real function where a driver has it.
 //

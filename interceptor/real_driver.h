@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real OpenGL: found, opened and looked up without ever asking the loader for a name that is ours.
 //
 // glvnd's libGLX.so.0 and libEGL.so.1 are enough: GL functions come from libOpenGL.so.0 beside them, or from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One function of the real GLX or EGL, looked up when it is first called.
 #pragma once
 

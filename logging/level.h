@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much of what Understudy has to say is said: the environment's UNDERSTUDY_LOG. Needs no C++ library, for
 // the entry library has none.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one way in which Understudy's libraries and programs write about what they do: lines on stderr,
 // "understudy: what, where, what to do". A program's own output (what `print` prints, a summary, a progress
 // bar) does not go through here.

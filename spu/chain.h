@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The chain of stream processing units that one OpenGL context's calls run through (Humphreys et al. 2002).
 //
 // A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a

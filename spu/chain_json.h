@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A chain as a JSON file: {"chain": ["track", {"unit": "trace", "file": "a.ust", "level": 3}, "driver"]}.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A chain as its user writes it: unit names in order, each with its options in parentheses.
 //
 //   chain  = { unit }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names that options, their values, environment variables and units had before they took the field's words.
 // They are accepted for one release, and stand here alone.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every option of Understudy, once: `understudy run` shows this table as its help and hands the values on as
 // environment variables; a process started with plain LD_PRELOAD reads the same variables.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What all contexts of a process that write into one file share, since a process has one such file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a unit says about itself, so that chains can be made from text (Chromium's units did the same).
 #pragma once
 

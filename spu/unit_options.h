@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options a unit says it has, and the values a chain gives them.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fails when a test was skipped that tests/skips.txt does not list: check_skips.py LIST RESULTS.xml"""
 
 import fnmatch

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A table of what phases took. Reads lines "NAME|SECONDS|USER SYSTEM": how far the clock and the processors' time were when
 each began, the last one ending the one before. USER and SYSTEM are bash's, as in 12m3.456s."""
 

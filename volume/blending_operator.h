@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the samples of a ray become the colour of its pixel.
 #pragma once
 

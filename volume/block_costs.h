@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the parts of a volume cost, in any unit that adds up (samples, milliseconds, blocks that show
 // something): one number for each cube of so many cells.
 #pragma once

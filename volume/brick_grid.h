@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Equal bricks of cells in a row along every axis, and the order in which they cover each other.
 #pragma once
 

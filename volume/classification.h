@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a sample of the field to colour and opacity.
 #pragma once
 

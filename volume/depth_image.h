@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depth of the opaque geometry that the application has drawn before its volume.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is known of a volume before its texels: size, type, and which of them travel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fog, or depth cueing: what the way from the eye does to the colour of a sample, without a word about its
 // opacity. A sample of colour c and opacity a, premultiplied, shows
 //

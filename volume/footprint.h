@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pixels that a box of texture space can touch.
 #pragma once
 

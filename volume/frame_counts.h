@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What rendering one frame took, and what was skipped, as counted by the nodes.
 #pragma once
 

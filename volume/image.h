@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images as they travel: premultiplied float RGBA over a rectangle of the framebuffer.
 #pragma once
 

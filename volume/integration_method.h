@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the way between two samples of a ray counts.
 #pragma once
 

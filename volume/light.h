@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A directional light, after Blinn and Phong. A point of premultiplied colour c and opacity a shows
 //
 //     (ambient + diffuse |n . l|) c + specular |n . h|^shininess a,   h = (l + e) / |l + e|

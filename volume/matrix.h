@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The little double-precision algebra that the modules share: row-major 4x4 matrices on column vectors, and
 // vectors of three. Planes are kept as in texture_space.h (HalfSpace: normal . p + offset >= 0).
 #pragma once

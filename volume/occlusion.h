@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What ranks nearer to the eye have drawn already, tile by tile, while an image is still being drawn: tiles in
 // which all their pixels are opaque hide what lies behind them, so that others need neither draw it nor send
 // it.

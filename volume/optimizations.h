@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the rendering of an image leaves out because it cannot change the image. Each can be done nevertheless,
 // to see what it would cost and that the image stays what it is; the fourth of its kind, samples behind what is
 // opaque, is RenderRequest::termination.

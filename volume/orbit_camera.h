@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera on a sphere around the volume that looks at its middle, z up unless it rolls.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a volume is cut, one convex box for each rank: a binary tree of split planes. kd_tree.h makes boxes and
 // a visibility order of it. Planes lie on block faces wherever one lies inside the box that is cut.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pixels and rectangles of pixels, in window coordinates.
 #pragma once
 

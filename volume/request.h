@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the application's side asks of the render nodes. A request needs nothing but the volume it names: it can
 // be saved, sent, replayed and tested alone.
 #pragma once

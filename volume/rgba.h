@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Red, green, blue and opacity. Whether colour is premultiplied stands where it is used.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the samples of a ray lie: on the planes of slices, or on constant steps along the ray.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Iso-surfaces: the points at which the field has a certain value.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes of texels, and what lies in them: tightly packed, x fastest.
 #pragma once
 

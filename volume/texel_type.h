@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In which numbers a volume's texels are kept and travel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the field between texels, and beyond the outermost, is made of the texels: as by OpenGL's samplers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points, maps, boxes and half-spaces of texture space, in double precision.
 //
 // Texture space is OpenGL's: the volume fills [0,1]^3, texel i of N is centred on (i + 1/2) / N, and the outer

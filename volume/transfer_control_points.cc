@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/transfer_control_points.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transfer functions as people write them: colour and opacity at a few values, linear in between.
 #pragma once
 

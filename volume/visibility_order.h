@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of two neighbours a request's rays meet first.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-balance: one scene under no balancing, Mueller's twice and the predicting one. Prints one
 // JSON object a line: for each balancer its sums, and its images.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Four ranks that are balanced, image by image: not at all, after Mueller et al. 2006, and by prediction.
 
 Every image is really cast, on every rank's own box; a rank's time is its samples times 2 ns times its relative cost, with 5 %

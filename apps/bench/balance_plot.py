@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """balance_plot.py TITLE PNG: the runs of one scene, which come as JSON, as a plot. (balance.py calls it.)"""
 
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run of images on several ranks under a balancer, played on one machine: the images are really cast,
 // rank by rank, and the samples that each rank takes are counted. A rank's time is its samples times its
 // relative cost, and scatters by seeded noise; so a trace is the same on every machine, however loaded.

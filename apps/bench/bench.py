@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """./run bench [NAME…]: runs benchmarks, prints their rows, writes out/bench/NAME.json.
 
 A row: name, value and unit, always; ratio_to (another row's name), ratio = value / its value and difference = value -

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-messages: what messages, bytes and pixels cost between the ranks of this MPI job, as one
 // JSON object. mpirun starts it.
 #include <fmt/format.h>

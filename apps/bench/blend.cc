@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-blend: how fast one core blends pixels, in the caches and from memory, beside copying as
 // many bytes. All ways take turns in every round; time is processor time, so that other work beside it counts
 // for little. Prints one JSON object a line.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How fast one core blends pixels, beside how fast it copies them, in turn.
 
 Rows are PLACE/WAY (1e9 pixels a second) and PLACE/WAY/bytes (GB a second that are read and written, with the ratio to

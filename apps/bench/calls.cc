@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What single OpenGL calls cost, measured from the application's side. calls.py runs this program bare and
 // under Understudy; it knows nothing of either.
 #define GL_GLEXT_PROTOTYPES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a call costs more under Understudy: bare, through the entry library alone, with track, with units that
 pass, and with track answering queries itself.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-exchange: partial images become one image on rank 0, by each of our exchanges and, where
 // it was found when this was built, by IceT. One rank of an MPI job. All ways get the same images in turn; time
 // is that of the slowest rank, from a barrier until it is done. Rank 0 prints one JSON object a line.

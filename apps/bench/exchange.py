@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exchanges of partial images on 2, 4 and 8 MPI ranks of this machine, beside IceT's on the same images in turn.
 
 Rows are RANKS/SCENE/WAY/time (ms, the slowest rank's, median over rounds), /bytes (MB that all ranks send, counted in MPI

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frame time of the bundled viewer: bare, with Understudy inside it, and with 2 and 4 ranks.
 
 256^3 voxels on 512^2 pixels, the three modes of the viewer. The ways are alternated within each round; a value is the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one image asks of each rank: which pixels its box of the volume reaches, with how many samples. Cast
 // as a node would cast it, or told from the rays alone.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long an image takes on many ranks, from what it asks of each (frame_parts.h) and what that costs.
 //
 // Messages follow LogGP (Alexandrov, Ionescu, Schauser, Scheiman 1995): a rank is busy for `overhead` with each

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // IceT 2.2 (Moreland, Kendall, Peterka, Huang 2011), as ParaView has it, on the images that our exchanges get:
 // one tile, premultiplied float RGBA without depth, blended in a given order.
 #pragma once

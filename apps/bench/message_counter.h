@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a process sends through MPI, whoever asks for it: counted in MPI's own profiling interface, below the
 // libraries that are compared.
 #pragma once

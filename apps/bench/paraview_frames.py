@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A volume on two ranks: a frame of `understudy render -n 2` beside one of ParaView's pvbatch, in turn.
 
 256^3 bytes on 512^2 pixels, one sample a voxel, the same camera and table; milliseconds of wall time, medians over rounds.

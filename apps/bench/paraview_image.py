@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The images of `ranks.py` and `paraview_frames.py` by ParaView: run by Debian's pvbatch, on one rank or under mpirun.
 
 Where the scene asks for frames, prints the milliseconds of each, in which the camera turns by a degree.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the ranks of a node group hold before an exchange: partial images of one volume, rendered by the rank's
 // own ray caster from its own box, or noise.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The same scene on one rank and on four: how far the two images are apart, in units of 1/255 (RMS over pixels and
 colours of the 8-bit images), under a transfer function narrower than a sample and under a smooth one.
 

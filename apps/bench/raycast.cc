@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-raycast: ray casting alone, without window, OpenGL or network. One image is rendered again
 // and again; its time is processor time for each sample that the image has, left out or not, and beside it
 // stands its error. Prints one JSON object.

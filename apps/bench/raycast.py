@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ray casting alone, in processor time for each full sample: one inside the volume, whether it was left out or not.
 
 With --sizes 256,512,1024 cubes so large instead (multiples of 256; 1024 takes 2.7 GiB), by one ray a voxel, of real

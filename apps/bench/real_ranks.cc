@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-real-ranks: images of real node groups on this machine, beside what the model
 // (frame_parts.h, frame_time.h) said of them: bytes and messages, to be equal, and times. Prints one JSON
 // object a line. The costs of messages, bytes and blending are those that understudy-bench-messages printed;

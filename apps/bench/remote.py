@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Viewers whose nodes, or whose OpenGL, are at the other end of a line: milliseconds and bytes a frame.
 
 Lines: none (one machine, Unix sockets), TCP on this machine, and two hosts that are network namespaces of this machine,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-bench-scaling: what an image would cost on 1 to 1,024 ranks. Partition, rays, footprints and the
 // bytes of every message are those of the nodes (frame_parts.h); time alone is modelled (frame_time.h). Prints
 // one JSON object a line.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Images on 1 to 1,024 ranks, on paper, and on 1 to 8 real ranks of this machine beside what the paper says of them.
 
 On paper partition, rays and the bytes of every message are the nodes' own and time is modelled (frame_time.h): a node samples

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """scaling_plot.py FOLDER: the runs of scaling.py, which come as JSON, as strong.png, weak.png and sparse.png."""
 
 import json

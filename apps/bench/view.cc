@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer without eyes that turns a volume: what lies between the hand and the image. JSON lines for
 // view.py.
 #include <fmt/format.h>

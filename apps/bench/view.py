@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a turn of the camera to the image of it, through `understudy view --web`, on the CT of an engine at 512^2.
 
 A small client speaks WebSocket as the page does, one request at a time, and does not unpack images. Rows are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The bundled viewer's slices on Mesa's llvmpipe: what a program that is not helped pays for the image of `raycast.py`."""
 
 import json

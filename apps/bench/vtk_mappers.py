@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scene by one of VTK's two volume mappers, for comparison: run by /usr/bin/python3, which knows Debian's python3-vtk9.
 Writes an image of floats and prints how long a frame took. `raycast.py` and `understudy study` call it.
 

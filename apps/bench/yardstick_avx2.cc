@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The prototype of a ray caster (the folder that raycast.py names), on a processor without AVX-512. Its own
 // program begins with its AVX-512 kernels; this one includes it as it is and times its kernel for AVX2 alone,
 // the same way and in the same words. Built by raycast.py, outside of this project's build.

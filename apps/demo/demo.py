@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """./run demo: a CT of an engine through two viewers, with and without render nodes under them.
 
 Writes out/demo/: images, difference maps, report.json and index.html. Prints the same figures as a table.

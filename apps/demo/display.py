@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A private X server without a screen (Xvfb), for viewers that open a window."""
 
 import os

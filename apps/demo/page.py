@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's page: one file with its images inside, so that it can be sent and kept."""
 
 import base64

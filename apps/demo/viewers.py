@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the demo and the benchmarks run a viewer: bare, or under `understudy run`."""
 
 import json

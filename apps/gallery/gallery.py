@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """./run gallery [FOLDER]: volumes in files as `understudy render` shows them, in four kinds.
 
 The engine comes from Debian; FOLDER (../shared/data beside the checkout, where there is one) may hold others. Writes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-node: one rank of a node group, started by mpirun on behalf of the launcher.
 #include <fmt/format.h>
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy: runs viewers with render nodes under them, and the tools around that.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that turns around the volume.
 //
 // Object space: the volume's box is centred at the origin, its diagonal is 1 long, z is up.

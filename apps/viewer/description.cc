@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/viewer/description.h"
 
 #include <GL/glew.h>

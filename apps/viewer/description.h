@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes down a frame so that somebody else can recompute its image, in another program and in double
 // precision.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the viewer says, and how it exits, when it cannot go on.
 #pragma once
 

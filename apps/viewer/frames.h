@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws frame after frame: orbit, times, screenshots and the description of the last frame.
 // The window and the off-screen loop both draw through this.
 #pragma once

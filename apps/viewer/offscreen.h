@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A context without a window: EGL on a device or surfaceless platform, no display server needed.
 //
 // Frames are drawn into a pbuffer surface and ended by eglSwapBuffers where the platform offers pbuffers,

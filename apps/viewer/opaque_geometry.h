@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is drawn before the volume, solid and with depth test: the box's frame and three axis arrows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How slices go on top of each other in the framebuffer.
 //
 //   over   back to front, SRC_ALPHA, 1 - SRC_ALPHA

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A transfer function of the user's own, in a file:
 //   {"knots": [{"at": 0.2, "colour": [1, 0.5, 0.2], "opacity": 0}, ...]}
 // with `at` a texel value in [0,1]; what a preset says, a control point says (see transfer_function.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume and everything around it, drawn into the current framebuffer of the current context.
 #pragma once
 

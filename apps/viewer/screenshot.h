@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images out of the framebuffer and into PNG files.
 #pragma once
 

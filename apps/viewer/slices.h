@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // View-aligned slices: planes across the line of sight, cut with the volume's box (Cabral, Cam and Foran 1994;
 // the polygons are found edge by edge as in Rezk-Salama and Kolb 2005).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Voxel values as a texture takes them: normalised to [0,1].
 //
 // u8 stays as it is (value/255). Other integers become 16-bit, the value range of the volume mapped to [0,1].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transfer functions: what colour and opacity a voxel value stands for.
 //
 // A preset is a piecewise linear function of the texel value in [0,1]. Its opacity is meant per reference

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three- and four-dimensional linear algebra that a viewer needs, in double precision.
 // Matrices are column-major as in OpenGL: element (row r, column c) is m[4*c + r].
 #pragma once

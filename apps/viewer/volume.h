@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scalar volume as it stands in a file.
 #pragma once
 

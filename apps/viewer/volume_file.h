@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a volume from a file, whatever its format.
 //
 // NRRD is known by its first bytes, NIfTI by its name (.nii .nii.gz .hdr .img); everything else is raw voxels,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A freeglut window with mouse and keys.
 #pragma once
 

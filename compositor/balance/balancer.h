@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves the split planes of a volume's partition, such that all ranks draw equally long. A decision is a pure
 // function of what is handed in and of the decisions before: ranks that are told the same decide the same, bit
 // for bit (there is no call of the mathematical library in it but square roots).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks that a rank gave away, as they travel: when one comes back, it need not be sent. The least recently
 // given ones go when there are too many bytes.
 #pragma once

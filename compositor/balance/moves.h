@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What changes hands when the planes of a partition move.
 #pragma once
 

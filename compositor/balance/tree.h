@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the balancers ask of a partition's tree.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the ranks of a node group reach each other. The exchanges and the node loop are written against this
 // interface and never say MPI; mpi_communicator.cc alone does, and thread_communicator.cc lets threads of one
 // process play the ranks.

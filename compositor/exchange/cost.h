@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an exchange will cost, counted from its schedule before anything is sent; and which one costs least.
 #pragma once
 

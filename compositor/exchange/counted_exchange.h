@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an exchange sends to the byte, message by message, told from which pixels each rank has to show: nothing
 // is cast, blended or sent. (cost.h counts the same from footprints alone, as if all of their pixels
 // travelled. Of packed pixels it counts what they are before they are packed.)

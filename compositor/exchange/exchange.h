@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sort-last compositing: the images of the ranks go in, one image comes out on rank 0. Plays a schedule
 // (which see): whatever the algorithm, this is all that moves and blends pixels.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/exchange/measure_message_cost.h"
 
 #include <algorithm>

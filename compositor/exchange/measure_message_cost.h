@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What messages, bytes and blending cost between these ranks, now.
 #pragma once
 

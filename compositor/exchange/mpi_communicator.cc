@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/exchange/mpi_communicator.h"
 
 #include <fcntl.h>

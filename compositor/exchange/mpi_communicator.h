@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ranks of an MPI job. The source of this header is the one file that says MPI.
 #pragma once
 

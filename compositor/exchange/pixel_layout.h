@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the pixels of a rectangle travel between ranks: which numbers, and which pixels at all.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbers of pixels as they travel: floats, half floats or bytes; one after the other, or packed.
 //
 // Neighbours on a row are alike. So what travels of packed pixels is by how much each number, its bits read as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who sends what to whom, round by round: every exchange is one of these lists, made by all ranks alike from
 // the footprints alone. One executor (exchange.h) plays any of them, and what it will cost is counted from the
 // list before anything is sent (cost.h).

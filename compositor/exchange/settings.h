@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which exchange a node group uses, and the names that users give it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages that stay where they are: memory of each rank that all ranks of the machine see, so that what one
 // has written for another is read in place (Marchesin et al. 2008 composite in memory that a machine's
 // processes share).

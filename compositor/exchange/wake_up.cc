@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/exchange/wake_up.h"
 
 #include <linux/futex.h>

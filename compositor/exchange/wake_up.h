@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How ranks of one machine wake each other. MPI only polls: a rank that waits for long would take the processor
 // from those that work, or sleep for a while and be late for what it waits for. So each rank sleeps at a
 // slot of memory that all of them share, and whoever has sent it something notifies it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rank 0's side of the communicator to the applications: the connection to the launcher, which hands over
 // applications, and one connection per application. One thread, one poll; an application that is slow, silent
 // in the middle of a message, or talks nonsense is dropped with one line and never keeps the others waiting.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the images of all ranks become one image in the application's memory: which exchange is chosen for it,
 // what travels, and what would have without footprints.
 #pragma once

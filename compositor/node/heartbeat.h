@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rank 0's word to the launcher, once a second, that it lives, and for how long it has been at a request whose
 // application has gone: what rank 0 waits for then may never come, as from a rank that was stopped or a host
 // that was cut off, and it cannot tell itself. The launcher ends such a group (compositor/service/broker.h).

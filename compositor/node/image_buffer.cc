@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/node/image_buffer.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory that an application's images go to, as every rank of the group sees it: ranks on rank 0's
 // machine map it too, and put their regions there themselves; the others send theirs to rank 0.
 #pragma once

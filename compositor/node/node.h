@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The life of a render node: rank 0 listens to the applications and tells all ranks what to do; every rank
 // keeps and draws its share; the images are composited (exchange/) and rank 0 leaves the image in the
 // application's memory.

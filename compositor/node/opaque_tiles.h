@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ranks nearer to the eye tell those behind them, while all of them draw, which tiles of the image are
 // already opaque: what lies there behind them is neither drawn nor sent. Nobody waits for a control message
 // while drawing, so one that comes late saves less; but what has been drawn in vain is cleared before images

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compositing while drawing: an image is drawn in bands of rows, and each band is composited while the next
 // one is drawn, so that a slow network costs little more than its last band. Nearer ranks do not tell farther
 // ones of opaque tiles meanwhile: all draw the same band at the same time, and control messages would come too

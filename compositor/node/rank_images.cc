@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a rank draws its part of an image, and how the parts become one.
 #include <algorithm>
 #include <exception>

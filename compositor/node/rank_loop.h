@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One rank of a node group: rank 0 hears applications (clients.h) and orders, the others follow; all perform
 // the same requests, in the same order. Which file to read: rank_loop.cc orders and replies, rank_volumes.cc
 // takes in texels, rank_images.cc draws and composites.

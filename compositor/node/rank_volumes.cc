@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a rank takes in the texels of volumes.
 #include <exception>
 #include <new>

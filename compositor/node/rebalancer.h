@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the ranks of a node group equally busy: before an image all ranks decide, each for itself and all
 // alike, where the planes of its volume go, and send each other the blocks that change hands.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fair turns: after a request that took long a client rests, so that others who ask for images have as much
 // of the nodes' time as it has.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images as JPEG (libjpeg-turbo), for views that move over slow lines.
 #pragma once
 

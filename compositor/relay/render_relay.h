@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Relays between applications and node groups. The memory in which an image is left has one half at each end:
 // the application's own, and one that the server's relay makes for the nodes. An image travels as numbers
 // (packed as between nodes where that is faster, or narrower: ConnectionRequest::pixels), or as a JPEG image

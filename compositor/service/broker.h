@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The launcher's side of the render service: the one socket at which a node group and the applications meet.
 //
 // It outlives node groups, because MPI ends a whole job when one rank dies. Applications that come while no

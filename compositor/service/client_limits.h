@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the clients of a group of nodes may ask of each of its ranks, so that one of them does not stop the
 // others.
 #pragma once

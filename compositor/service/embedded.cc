@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The render service inside the application: one rank, all cores, no socket.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One rank in this process that reads its files itself.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory in which a node group leaves its image for the application: an anonymous file that the
 // application makes and passes along its connection. It is sealed against shrinking, so that neither side can
 // pull it away under the other (which would end in SIGBUS); a larger image needs a new one.

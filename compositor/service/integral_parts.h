@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integrals of pixels on their way from the ranks, each of which knows its own cells, to the application; and
 // the messages they travel in.
 #pragma once

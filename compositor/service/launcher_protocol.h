@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What applications and node groups say to the launcher, which hands applications over to the nodes, and how an
 // application is accepted or refused, there and by GL servers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every bound of the render service: what a message may promise before it is believed, and how long anybody
 // waits. Those of connections, whatever they carry: compositor/transport/limits.h.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages by which nodes are told to read a volume from a file, and what they answer. Their place in a
 // connection: node_protocol.h.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A render service whose ranks read volumes themselves: each opens the file and reads its own bricks, so a
 // volume passes through no process that does not show it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/loads.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volumes that one rank reads from files: its own box of each, a part at a time, so that a rank that loads
 // can be asked in between how far it is.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages between an application and a node group, and those of their protocol.
 //
 // An application sends a request and waits for its one reply before the next request. Images do not travel in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/rank_renderer.h"
 
 #include <fmt/format.h>

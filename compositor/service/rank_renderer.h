@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one rank keeps of its clients' volumes, and what it draws of them: the bricks of its own box of each
 // volume's kd-tree. The embedded service is the only rank of one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The application's end of the connection to a node group, with its patience open to tests; service.h has the
 // usual one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A request for an image as a message, and the pre-integration tables that requests name by their place.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/sent_pre_integration_tables.h"
 
 #include <algorithm>

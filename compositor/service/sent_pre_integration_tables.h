@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which pre-integration tables the nodes have: these are megabytes, and requests name them instead of bringing
 // them along.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The protocols that applications, the launcher and nodes speak on one connection.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/time_limit.h"
 
 #include <tbb/task_group.h>

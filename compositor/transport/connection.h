@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages over one Unix socket. Never raises SIGPIPE, never waits longer than it was told to, never reads
 // beyond the message it returns (so that the socket can be handed to another process afterwards).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every bound of connections, whatever they carry: what a message may promise before it is believed, and how
 // long anybody waits. What the render service adds: compositor/service/limits.h.
 #pragma once

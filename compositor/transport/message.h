@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The header that every message begins with, of whatever protocol.
 //
 // A protocol is an enum of messages (numbered from 1), a number of its own and a version, in a header of its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/transport/peer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who is at the other end of a Unix socket. A path in a folder that others may write into says nothing about
 // who listens there, so both ends ask the kernel (SO_PEERCRED).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How wide the numbers are in which the pixels of an image travel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where sockets and private folders of runs lie.
 #pragma once
 

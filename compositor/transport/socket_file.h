@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file by which others find a socket that this process listens at.
 #pragma once
 

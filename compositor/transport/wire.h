@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fields of a message as bytes: every scalar takes eight bytes, every run of bytes is padded to a multiple of
 // eight, numbers are in the machine's own order (the peers share one machine or one kind of machine,
 // little-endian).

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws the diagrams of docs/architecture as SVG, beside this file or into a folder that is named.
 
     python3 docs/diagrams/draw.py [FOLDER]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes docs/images/before-after.png from what `./run demo` has left in out/demo: images and times of one run.
 
     ./run demo && python3 docs/images/before_after.py

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The core: one SPU chain for every desktop OpenGL context of the application.
 #include "interceptor/core.h"
 

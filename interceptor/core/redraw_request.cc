@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/core/redraw_request.h"
 
 #include <dlfcn.h>

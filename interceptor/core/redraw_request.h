@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Asks a window to draw itself again: what X sends a window that has been uncovered (Expose), after which its
 // program must draw it. For windows whose latest image is one frame late (spu/volume/session/frame_latency.h),
 // if no other frame follows by itself.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The framebuffer configurations that remote GLX and EGL offer: for each kind of window that the X server has
 // and that images can be put into, with and without alpha, a second buffer, depth and samples. What is drawn
 // lies on the GL server, which can have all of these.

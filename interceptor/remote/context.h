@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contexts of remote GLX and EGL: what was asked for, and which thread has which. What they draw with is the
 // GL server's.
 #pragma once

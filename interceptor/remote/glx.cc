@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <GL/glx.h>
 #include <GL/glxext.h>
 #include <X11/Xlib.h>

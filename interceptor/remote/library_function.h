@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions and data of libraries that are opened when first needed, by name.
 #pragma once
 

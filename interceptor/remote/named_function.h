@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions by the names under which applications ask for them.
 #pragma once
 

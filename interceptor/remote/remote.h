@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GLX and EGL without a driver, for processes whose calls are made by a GL server (UNDERSTUDY_REMOTE).
 //
 // What is not offered is missing, as it would be in a small driver, and the extension string does not

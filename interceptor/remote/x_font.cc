@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/remote/x_font.h"
 
 #include <X11/Xutil.h>

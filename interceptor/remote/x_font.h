@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glXUseXFont without a driver: display lists made of the glyphs of an X server's font.
 #pragma once
 

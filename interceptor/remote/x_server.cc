@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/remote/x_server.h"
 
 #include <dlfcn.h>

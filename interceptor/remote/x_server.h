@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The X server, by a connection of our own beside the application's: its errors come back as events that nobody
 // need handle (a window may be gone at any moment), and images may be shown whatever the application's
 // threads do with theirs.

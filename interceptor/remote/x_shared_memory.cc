@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "interceptor/remote/x_shared_memory.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory that an X server of this machine shares with us (MIT-SHM): images are copied there once, where they
 // would otherwise go through a socket in pieces. 1.4 ms of an image of 512 x 512 become 0.3.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the C++ that follows from the Khronos registry: the dispatch table, and all that has one piece a command.
 
     generate.py --gl gl.xml --glx glx.xml --egl egl.h --out DIRECTORY

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the Khronos registry, and arguments.txt beside this file, into plain values."""
 
 import re

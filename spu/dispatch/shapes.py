@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes what is known of each command at run time: its shape, its names, and the way between arguments and words."""
 
 from registry import OBJECT_KINDS, VALUE_TYPES

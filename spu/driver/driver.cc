@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/driver/driver.h"
 
 namespace understudy::spu {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The end of every chain: the real OpenGL. It is no unit of its own, its slots are the driver's pointers.
 #pragma once
 

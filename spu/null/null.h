@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The null unit: discards every call. What the application's own half of the work costs is what is left.
 #pragma once
 

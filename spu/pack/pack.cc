@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/pack/pack.h"
 
 #include "dispatch/call_words.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pack unit: turns calls into records and hands them on in blocks (Humphreys et al. 2002), to unpack or to
 // link.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who takes what pack has packed: unpack in the same chain, or link, whose calls are made elsewhere.
 #pragma once
 

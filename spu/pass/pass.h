@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pass unit: leaves every slot the next one's. It shows that a unit that does nothing costs nothing.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is counted of calls and of frames, and how it is told.
 #pragma once
 

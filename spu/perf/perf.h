@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The perf unit: counts every call, its time and its bytes, per call and per frame.
 #pragma once
 

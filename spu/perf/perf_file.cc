@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/perf/perf_file.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the figures of a process's contexts come together and are told: nobody promises that a viewer ends in
 // order, so a file is written again and again.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver whose window has one colour buffer, a front buffer, made to look as if there were the back buffer of
 // the recorded application's window.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays a recorded stream: contexts appear, become current and go as they did, every record becomes its call
 // again, and each context's calls run through a chain of units.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A call as a person would write it:
 //
 //   glTexImage2D(target = GL_TEXTURE_2D, level = 0, ..., pixels = 4096 bytes)

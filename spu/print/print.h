@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The print unit: a line for every call, for people.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of a stream as a person would write them, one line each:
 //
 //   glGenTextures(n = 2, textures = {3, 4})

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains from text, as Chromium's configurations made them: "track volume driver". A text that begins with "@"
 // or is the name of a .json file stands for the chain in that file. chain_text.h has the grammar, chain_json.h
 // the file's form.

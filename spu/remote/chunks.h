@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an application does frame after frame is mostly the same: words that were sent before are named, not
 // sent again. Both ends keep the last chunks that travelled, in slots that the sender chooses, so that they
 // always agree without a word.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What OpenGL keeps for the client's side of it: pixel store, buffer bindings, vertex arrays. It follows from
 // the calls alone, and is what the encoder asks about all the time, so no question of it need travel.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether an application has drawn into its window's front buffer, which shows what is in it without a swap. It
 // follows from the calls alone (glDrawBuffer, framebuffer objects, attributes that are pushed, display lists),
 // so applications that draw into the back buffer are neither asked nor slowed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The window system where the application is, as far as the link needs it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an application and a GL server say to each other: hello_client and acceptance as at the launcher
 // (compositor/service/launcher_protocol.h), then calls, to which the GL server replies where it says so.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/remote/gl_server_relay.h"
 
 #include <algorithm>

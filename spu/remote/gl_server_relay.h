@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Relays between viewers and GL servers (compositor/transport/tcp/relay.h). What they add is JPEG: with a
 // quality in the client's request, images travel as JPEG while frames follow each other, and what was lost of
 // them comes as it is once the view rests: with a frame that changes nothing, or when there was none for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The remote unit: what pack has packed is made by a GL server, in another process and perhaps on another
 // machine, and what it answers comes back (Humphreys et al. 2002; Chromium's pack and network units).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The process's one connection to the GL server that makes its OpenGL calls. All threads use it, one at a time;
 // what comes back is received by a thread of the connection's own, so that images are shown as they come.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A GL server's image on its way over TCP: how its pixels are written, and then the message as the GL server
 // made it, its pixels perhaps as a JPEG image.
 #pragma once

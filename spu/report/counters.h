@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a process under Understudy counts, kept in memory that outlives it.
 //
 // The structure is mapped from a file (RUN_DIR/PID.counters, the folder belongs to the launcher), so a viewer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The names in the JSON report, once. They are a promise to whoever reads reports: keys are added, never
 // renamed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is left out of frames because it cannot change the image, by name: the report counts each, and
 // `--disable-optimization` has each done nevertheless, to see what it is worth and that the image stays.
 #pragma once

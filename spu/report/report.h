@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one run did, read from the counters of its processes: the JSON report, the summary line, the
 // explanation.
 //

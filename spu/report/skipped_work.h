@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What frames left out and what they did beside it, in figures and in words.
 #pragma once
 

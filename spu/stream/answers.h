@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which calls answer something that later calls of a stream refer to.
 #pragma once
 

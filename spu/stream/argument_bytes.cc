@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/stream/argument_bytes.h"
 
 #include "dispatch/call_shape.h"

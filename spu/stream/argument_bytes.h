@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many bytes the pointer arguments of a call stand for, images included.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/stream/begin_and_end.h"
 
 namespace understudy::spu {

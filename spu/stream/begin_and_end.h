@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a stream is between glBegin and glEnd, where OpenGL answers no questions. Display lists may begin
 // what others end, so what each leaves behind is kept.
 #pragma once

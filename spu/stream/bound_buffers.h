@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The buffer objects that pointer arguments are offsets into while they are bound.
 #pragma once
 

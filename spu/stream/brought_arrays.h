@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vertex arrays that came with a stream: copies of the elements that the next draw reads, at which OpenGL's
 // arrays point between the events `arrays` and `arrays_end` (client_arrays.h).
 //

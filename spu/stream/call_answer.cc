@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/stream/call_answer.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a call has answered, on its way back to a sender that waits for it: the result, and everything that the
 // call wrote through its pointers.
 #pragma once

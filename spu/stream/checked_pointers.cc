@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The decoder's part that decides about pointers of a stream from elsewhere.
 #include "spu/stream/checked_pointers.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a pointer argument may be in a stream from elsewhere.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vertex arrays in the application's memory: what a draw reads of them must travel with the draw, because the
 // application may change it as soon as the call has returned.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From records back to calls.
 //
 // A stream of this process (pack and unpack in one chain) may hold addresses of this process; one from a file

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A record's call while the decoder is at it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From calls to records.
 //
 // Everything that OpenGL would read through a pointer while the call runs is copied into the record, so the

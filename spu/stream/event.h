@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events: records of a stream that are no OpenGL calls. Their ids are made from names as those of calls are.
 #pragma once
 

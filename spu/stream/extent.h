@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many bytes stand behind a pointer argument, as far as the call alone tells: the rules of
 // spu/dispatch/arguments.txt. Images in client memory depend on the pixel store and are pixels.h's business.
 #pragma once

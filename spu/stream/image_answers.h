@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How large the pixels are that a command is going to write.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The decoder's part for linked streams: calls that ask are made, and what they answer is kept.
 #include <algorithm>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What objects of a stream are called here: a driver is free to give other names, locations and addresses than
 // it did when the stream was recorded.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How images lie in the application's memory (OpenGL 4.6, section 8.4.4), and the one way they lie in a
 // stream.
 //

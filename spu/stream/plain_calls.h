@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plain calls (dispatch/call_shape.h) to records and back: the short way for streams that never leave the
 // process.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The decoder's part that gives calls of a stream from elsewhere memory of ours for their answers.
 #include <fmt/format.h>
 

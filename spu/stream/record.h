@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A record: one OpenGL call, or one event of the stream, as 8-byte words.
 //
 //     word 0        stable id of the call (low half), number of words of the record with this one (high half)

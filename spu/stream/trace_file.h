@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams kept in files.
 //
 //     file header    32 bytes: "UNDERSTUDY-TRACE", version, 12 bytes zero

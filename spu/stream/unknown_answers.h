@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory for answers whose extent the registry does not tell.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tile unit, of a tile worker: its process draws one tile of each window, and is played the stream by the
 // one that has the application (tiles.h).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps what is drawn into a window within a tile of its rows, by the scissor test, which nobody sees changed:
 // it is set before a draw and put back after it.
 //

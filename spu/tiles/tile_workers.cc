@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/tiles/tile_workers.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The processes that draw the other tiles: GL servers (apps/understudy/gl_server/gl_server.h) which are played
 // the same stream by the one that has the application. All contexts of the process use them.
 #pragma once

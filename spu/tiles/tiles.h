@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tiles unit, of the process that has the application: every call that reaches it, from the application
 // and from the units above, is also played by tile workers (tile_workers.h), and of a window each process draws
 // the rows of its tile alone (Humphreys et al. 2002, section 5: sort-first with a tile for each server).

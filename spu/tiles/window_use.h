@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a call does with the pixels of a window, by its name in the registry.
 #pragma once
 

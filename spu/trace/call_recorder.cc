@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/trace/call_recorder.h"
 
 #include "spu/stream/answers.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One context's calls as the records of a stream that somebody else plays (StreamOrigin::elsewhere): each with
 // what it reads, what it answered, and what the application wrote into mapped buffers before it counts.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an application writes into mapped buffers: no call tells of it, so it is looked for when it begins to
 // count.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file that all contexts of a process record into.
 #pragma once
 

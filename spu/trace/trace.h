@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The trace unit: keeps every call of a context in the process's recording, with what it reads and what it
 // answers.
 #pragma once

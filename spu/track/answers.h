@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers of the driver that are given again until a call could have changed them (Buck, Humphreys and Hanrahan
 // 2000 answer queries from tracked state, so that no query waits for a remote renderer).
 //

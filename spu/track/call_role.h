@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a call is to somebody who wants to know the state behind it, and not the images before.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a command means to those who watch the stream, decided by its name in the registry.
 #pragma once
 

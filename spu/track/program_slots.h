@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The slots of the dispatch table through which shaders and programs are made.
 #pragma once
 

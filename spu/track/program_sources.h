@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sources that programs were linked from, kept as the calls say them: once shaders are detached and deleted
 // no query gives them back, and asking at every link would show in the driver's calls.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What contexts that share objects have in common, and the driver cannot tell afterwards.
 //
 // The driver is the truth for everything it can be asked: bindings, uniforms, matrices, even texels are read

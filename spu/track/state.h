@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of a context as a value, and the calls that make one state into another (Buck, Humphreys and
 // Hanrahan 2000, "Tracking graphics state for networked rendering").
 #pragma once

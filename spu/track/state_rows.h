@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of an OpenGL context as a table: what there is, which query answers it, and which call sets it.
 #pragma once
 

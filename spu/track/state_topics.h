@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What parts of a context's state a command may change, and on what parts the answer to a query depends.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The track unit: keeps what the driver cannot be asked for later (see share_group.h) and starts the watch for
 // volumes when the first 3-D texture appears. It asks the driver nothing: under it alone, an application's
 // calls reach the driver as they are. Where the driver is far away it can answer queries itself (answers.h).

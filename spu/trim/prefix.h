@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of a trace before the cut: it is played, and every record gets a action. What defines stays, what
 // draws goes, and what was drawn where later frames may look is restored (restoration.h).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Brings back, behind the cut, what OpenGL had drawn into objects before it: their contents are read here, and
 // become uploads in the stream.
 #pragma once

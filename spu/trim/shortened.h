@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shorter trace as it is written: records of the prefix by their actions, then the frames behind the cut.
 #pragma once
 

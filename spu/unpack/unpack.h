@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The unpack unit: makes the calls of records on the units behind it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/description.h"
 
 #include "spu/volume/volume_unit.h"

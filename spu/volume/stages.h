@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages of the volume unit, wired: each is handed the stages below it that it works with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume unit: recognises volumes in the application's drawing, and lets the render nodes draw them.
 //
 //   observe        draws are kept as a Run while they may be a volume                 observation/

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default framebuffer as bytes, and back, without a trace in the context that shows it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What plays the part of the recorded application's window system: whoever plays a stream says how contexts
 // come to be here.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every scenario bare, bare in floats, and under Understudy: is what it shows right, and is it substituted or
 // left as its file says?
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // adversary_calibrate FOLDER
 //
 // Where the bound lies between right images and wrong ones. FOLDER holds what ADVERSARY_KEEP_IMAGES=1

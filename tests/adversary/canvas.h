@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scenario draws on: a window, or, for the exact reference, a framebuffer of 32-bit floats in its place.
 #pragma once
 

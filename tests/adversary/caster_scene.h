@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer that casts rays in GLSL 3.30, from the front faces of the volume's box. Volume on unit 0, table on
 // unit 1.
 #pragma once

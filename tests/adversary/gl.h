@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The OpenGL functions that the scenarios call, found as a viewer without a loader library finds them.
 #pragma once
 

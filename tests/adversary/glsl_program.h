@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs in GLSL, with uniforms by name.
 #pragma once
 

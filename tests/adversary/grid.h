@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Procedural volumes. They have structure everywhere, and no two of their octants are alike.
 #pragma once
 

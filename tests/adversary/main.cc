@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // adversary list
 // adversary run NAME FOLDER [--frames N] [--edge N] [--exact]
 // adversary show random_SEED

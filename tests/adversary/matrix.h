@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors of three, matrices of four columns, and the cameras that the scenarios look through.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables of 256 colours that do not lie in a 1-D or 2-D texture.
 #pragma once
 

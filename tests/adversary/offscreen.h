@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A framebuffer object of the canvas's size, and its way into the window.
 #pragma once
 

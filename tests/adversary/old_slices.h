@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer of the days of OpenGL 2: slices in immediate mode, matrices of fixed function, programs in GLSL 1.x
 // or none.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs by chance: where one is substituted, is every frame right? And is one whose colours depend on the
 // sample alone substituted?
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenarios by chance: a viewer of slices or rays whose shading was made by random_shading.h.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GLSL that turns a sample into a colour, by chance: what viewers write between the fetch of a texel and its
 // blending.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One small program that draws a volume, and what is expected of Understudy under it, said before it is run.
 #pragma once
 

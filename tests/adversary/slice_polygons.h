@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where planes cut the box [0,1]^3.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer that draws slices through a texture with GLSL 3.30 and vertex buffers. Volume on unit 0, table on
 // unit 1.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a shown image is right, tile by tile.
 //
 // Two bare runs say what the image may be: the viewer's own, which blends in 8 bits and filters with the

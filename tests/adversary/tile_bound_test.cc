@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bound itself: what passes, and what does not.
 #include "tests/adversary/tile_bound.h"
 

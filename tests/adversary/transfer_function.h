@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables of 256 colours, not premultiplied.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions in a vertex buffer, filled anew before every draw, as attribute 0.
 #pragma once
 

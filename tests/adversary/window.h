@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A window as far as OpenGL is concerned: a pbuffer with its context, which ends frames by eglSwapBuffers.
 #pragma once
 

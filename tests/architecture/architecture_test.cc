@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of the architecture, read from the source files: who may include whom, and what may lie in the
 // folders.
 #include <gmock/gmock.h>
@@ -200,6 +201,19 @@ TEST(Architecture, HoldsNoGeneratedFile) {
     if (!is_code(file)) continue;
     const std::string head = file.text.substr(0, 400);
     EXPECT_FALSE(std::regex_search(head, mark)) << file.path;
+  }
+}
+
+TEST(Architecture, EveryFileNamesItsLicence) {
+  constexpr std::array endings{".h", ".cc", ".py", ".js", ".css", ".html", ".sh", ".cmake", "/CMakeLists.txt"};
+  for (const SourceFile& file : project_files()) {
+    const std::string path = "/" + file.path;
+    const bool needs_one =
+        path == "/run" ||
+        std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return path.ends_with(ending); });
+    if (!needs_one) continue;
+    EXPECT_NE(file.text.substr(0, 300).find("SPDX-License-Identifier: Apache-2.0"), std::string::npos)
+        << file.path << ": tests/architecture/license_lines.py adds it";
   }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Words that the glossary (docs/glossary.md) has replaced: they must not come back, in code, documents or help.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many objects are compiled again when a header is touched: header_users.py BUILD_FOLDER [--check]
 
 Reads what ninja has learnt about the last build. Prints the headers that most objects read; with --check, exits with 1

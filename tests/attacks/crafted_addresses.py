@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Traces whose calls name addresses of their own choosing: replay, trim and print refuse, and name the call.
 
     crafted_addresses.py UNDERSTUDY TRACE

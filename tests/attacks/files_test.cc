@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clients with the secret who ask for files of the server's user: they get those of the folders that it named,
 // by whatever name they ask, and nothing else.
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A group of nodes whose mpirun is killed: the memory that its ranks shared goes with the run, and at the
 // latest when the next group starts.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The client's end of a TCP link: handshake and messages (compositor/transport/tcp/handshake.h, tcp_message_reader.h; 127.0.0.1 only)."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mutated traces through replay, trim and print: no crash of ours, no hang.
 
     mutated_traces.py UNDERSTUDY COUNT SEED TRACE...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another user of this machine, for tests that run as root.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Other users of this machine: who listens where nodes are expected gets nothing, who connects is not served,
 // and what others could change is not believed.
 #include <fcntl.h>

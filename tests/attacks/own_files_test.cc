@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No file is removed that was not made here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program with more rights than its user takes no driver from its user's environment.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy serve` with one node, or as many as are asked for, at a socket in the test's folder.
 #pragma once
 

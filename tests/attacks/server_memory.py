@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client with the secret names addresses in its stream: nothing of the OpenGL server's memory comes back.
 
     server_memory.py UNDERSTUDY

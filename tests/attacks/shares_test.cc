@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One client that asks for all: more samples than anybody needs, images without end, volumes until memory is
 // full, groups of nodes that die again and again. The others have their share, and the service goes on.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bundled viewer on a volume that is quickly drawn.
 #pragma once
 

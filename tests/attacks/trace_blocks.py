@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Traces as lists of blocks: taken apart, changed, and packed again with right checksums (spu/stream/trace_file.h)."""
 
 import ctypes

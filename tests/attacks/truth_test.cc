@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run says at its end when something went wrong on its way: half chains, figures that could not be kept,
 // a GL server that is gone.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The image is right: nearer to the slices that the viewer meant than the viewer's own, the same on any
 // number of ranks, and where opaque geometry stands before the volume.
 #include <fmt/format.h>

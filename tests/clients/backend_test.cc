@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same images from nodes that cast rays on the CPU, by OpenGL, or by whichever is faster, and a report
 // that says which it was and why.
 #include <gmock/gmock.h>

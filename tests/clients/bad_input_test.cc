@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that are damaged, machines that lack something: a clear message, the viewer's own status, nothing left
 // behind.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer under `understudy run --error E`: what it shows keeps the error, judged by a program of the tests
 // that knows the viewer's description and the volume's file alone.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/clients/child.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One program, run as a user would run it, with a time limit and its outputs kept.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a test of whole programs stands on: a folder of its own, the viewers' commands, the engine's CT, and a
 // look at what is left when all is over.
 #pragma once

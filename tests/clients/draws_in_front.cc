@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws rectangles into a window's front buffer, or into its back buffer in the midst of a frame, says "drawn"
 // and rests.
 //

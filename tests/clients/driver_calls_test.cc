@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No slice reaches the driver to be drawn: a recording of the calls below Understudy, by apitrace.
 //
 // What Understudy asks of the driver itself stays in the recording: it has the slices' vertices computed by the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // error_of_frame DESCRIPTION.json FRAME.pfm VOLUME [EVERY]: how far a float frame that was saved lies from the
 // integral of what the viewer meant, as JSON. Knows nothing of what drew the frame: the viewer's own
 // description tells camera, slices and table, the volume's file its values, and the integral is made of these

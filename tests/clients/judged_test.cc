@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every operator, opaque geometry and two volumes against the slices in double precision: the viewer alone,
 // with the ray caster in its process, and on two ranks; the composited float frames and the images of 8 bits.
 // Every channel of every pixel has its own bound, which follows from the precisions below

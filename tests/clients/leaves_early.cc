@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Preloaded into a viewer, ends it at the end of its third frame, before the frame is shown, with status 5: by
 // _exit(), or by exit() when LEAVE_BY=exit. Nothing is closed: no context, no window, no volume.
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does what run --remote leaves out, and draws on: copies a context's state, and has its messages told by
 // debug callbacks. Prints what it was told. Exit status 0 when it has lived through it.
 #define GL_GLEXT_PROTOTYPES

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is left out, item by item: a viewer with it and without it shows the same images, to the item's
 // tolerance, and the report tells what it saved.
 #include <fmt/format.h>

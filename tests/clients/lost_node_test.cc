@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rank is killed in the midst of a viewer's frames: nobody who looks at the frames can tell.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps a buffer of more than a gibibyte, writes a little of it at its ends and in the middle, and asks OpenGL
 // for what it has written. Exit status 1 when something else comes back.
 #define GL_GLEXT_PROTOTYPES

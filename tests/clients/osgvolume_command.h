@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How osgvolume is started on the engine.
 #pragma once
 

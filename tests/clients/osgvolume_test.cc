@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer that nobody here wrote: OpenSceneGraph's osgvolume with its fixed-function technique (display list,
 // texgen, clip planes, alpha test), in a window.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewers whose nodes, or whose OpenGL, are behind a TCP connection: images are those of one machine, and
 // whoever has not the secret is told so and leaves nothing behind.
 #include <fmt/format.h>

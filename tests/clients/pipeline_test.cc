@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images one frame late while the camera moves, and the right one once it rests.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // apitrace's recording of the OpenGL calls that reach a driver, by frame, and what a recorded draw could do to
 // an image.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A GL server on which apitrace records a viewer's calls: bare, and at the driver's side of Understudy.
 //
 // apitrace is made to be the first library that a program calls; here it has to be the second. Three settings

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewers whose OpenGL is elsewhere and that show what they draw without a swap, write with the X server's
 // fonts, or call what is left out.
 #include <fmt/format.h>

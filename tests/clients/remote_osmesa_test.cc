@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stages without EGL: they draw on OSMesa, and the viewer gets the images that it gets of EGL.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewers without OpenGL: their calls are made by a GL server, and what is gathered is the image of a viewer
 // that runs where OpenGL is.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewers on an X server of the test's own, which need no OpenGL of theirs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // With nothing recognised, a viewer's calls reach the driver as they are: the same calls in the same order,
 // with the same arguments, and none in between. Recorded by apitrace without Understudy, and below its chain of
 // the track unit alone.

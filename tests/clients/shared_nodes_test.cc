@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two viewers at once on the nodes of one `understudy serve`.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Real viewers, recorded and played: native replays show what pack and unpack show, bit for bit, and what the viewer
 # itself showed; and where a live run on two ranks substitutes, a replay on two ranks does.
 #   traces.sh BUILD/bin VIEWER_SCRIPT [NAME...]      NAME: osgvolume pyqtgraph pymol vtk

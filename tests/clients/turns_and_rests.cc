@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer that draws only when there is something new: turns a volume for some frames, then rests, and draws
 // again when its window is exposed. Writes what its window shows just after the last turn to FILE.turning, and
 // what it shows at last to FILE: rows of RGB bytes, top down.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Viewers that end without closing what they opened: their status is passed on, and no node, socket or folder
 // stays.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bundled viewer's ways of drawing: substituted where the nodes can render the volume, and otherwise the
 // viewer's own image, bit for bit, with the reason.
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """./run viewers [NAME…] [--install]: real viewers, bare and under Understudy, as a table.
 
 Every viewer that the script at UNDERSTUDY_VIEWERS (../shared/clients/viewer beside the checkout, if the variable is not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes with the glyphs of an X server's font, as display lists, and with some that the font lacks; says how
 // far the first one moves the raster position, then "drawn", and rests.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A window with an OpenGL context, by GLX, for programs that tests run.
 #pragma once
 

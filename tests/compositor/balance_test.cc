@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the balancers decide, for costs and speeds that are known.
 #include <gmock/gmock.h>
 

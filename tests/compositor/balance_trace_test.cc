@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole runs under each balancer, their samples really cast and counted: what the benchmark shows on volumes
 // from files, on fields that need none.
 #include "apps/bench/balance_trace.h"

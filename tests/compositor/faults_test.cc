@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes wrong with real nodes, and what becomes of it: the right image or none, one line, and nothing
 // left.
 #include <gmock/gmock.h>

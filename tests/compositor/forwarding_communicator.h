@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Communicator with another one behind it: tests change single functions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether images on paper are those of the ray caster, and time follows what its header says.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a process and those that it starts may leave behind: counted before and after.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume and its requests, for tests that compare services, and a launcher that steps its broker on a thread.
 #pragma once
 

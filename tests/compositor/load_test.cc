@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nodes that read volumes themselves: ranks are threads, sockets and files are real.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // mpirun and the real node, as the launcher starts them.
 #pragma once
 

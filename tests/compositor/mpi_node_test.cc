@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real thing: mpirun, understudy-node processes, and what happens when one of them is killed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A whole node group in one process, for tests: ranks are threads, sockets are real.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What travels between the ranks of whole node groups.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole node groups in one process: ranks are threads, sockets are real.
 #include "tests/compositor/node_group.h"
 

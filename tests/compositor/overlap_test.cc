@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images that are composited while they are drawn.
 #include "compositor/node/overlap.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Node groups whose blocks travel while images are drawn: the images stay the same.
 #include "compositor/node/rebalancer.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder that goes away with the test, and the other things around processes that tests ask for.
 #pragma once
 

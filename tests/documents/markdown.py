@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The project's documents, taken apart: text, table cells, fenced code, links and headings.
 
 No Markdown library: the pages use a small part of Markdown, and the tests must not need a package."""

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What every page must keep: lengths of pages, sentences and cells; links, anchors, images and named paths that exist."""
 
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the reference of the headers with Doxygen (docs/Doxyfile) and expects no warning.
 
     reference_test.py FOLDER      pages go there; UNDERSTUDY_VERSION is their version"""

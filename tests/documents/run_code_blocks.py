@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the bash and console blocks of one page in order, in one shell, in a folder that looks like the checkout.
 
     run_code_blocks.py BUILD PAGE [--slow]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the C++ blocks of a page as files, so that what is printed is what is compiled.
 
     write_code_files.py PAGE FOLDER

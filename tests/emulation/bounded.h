@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A number that ought to be, and the interval in which that of an honest renderer may lie: the errors that its
 // arithmetic is allowed are carried through every operation, so that the last interval is the bound of a test.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How exactly Understudy and the driver beneath it calculate. The bounds of all tests that judge images come
 // from here, and each number from the arithmetic that it names.
 #pragma once

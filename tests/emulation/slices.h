@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices through volumes, drawn once more in double precision, by the words of the OpenGL specification and
 // without anything of ours: trilinear samples clamped to the edge, a table, a blend function, solid triangles
 // that hide by their depth.

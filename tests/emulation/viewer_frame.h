@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame that a viewer's --describe tells of, to be drawn without OpenGL: nothing is known but the
 // description and the volume file.
 #pragma once

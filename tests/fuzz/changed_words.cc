@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the fuzzers of streams change an input: by words, since a stream is words, and by bytes as ever.
 #include <array>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What neither an application nor a GL server would say: nothing may crash, hang or take memory without
 // measure.
 #include "tests/fuzz/remote_input.h"

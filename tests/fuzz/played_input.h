@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the bytes of a fuzzer, or a file of its corpus, are played: once as a trace file, once as bare records,
 // and both as what was recorded and as what waits for answers.
 #pragma once

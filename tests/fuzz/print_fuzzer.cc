@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams that nobody wrote, as text.
 #include <memory>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that nobody wrote: they are refused, or what is found of them is consistent. The first byte chooses
 // the GL server.
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that nobody sent, over TCP: nothing may crash, hang or take memory without measure.
 #include "tests/fuzz/remote_input.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the bytes of a fuzzer, or a file of its corpus, come over a link: to both sides of the handshake, as
 // messages over TCP with the images in them, and as what an application and a GL server say to each other.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs for fuzzers to begin with: what two ends of a link say to each other, and an application and a GL
 // server, as this version says it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams to begin with, in which what makes a pointer of an argument changes: buffers, arrays, mappings,
 // feedback.
 #pragma once

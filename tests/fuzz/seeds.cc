@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a corpus to begin with: records of all commands, a few to a file, and scenes.
 //
 //     seeds FOLDER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams that nobody wrote, above a driver that reads and writes every argument to its extent: whatever the
 // bytes say, nothing may be read or written that is not there, hang, or take memory without measure.
 #include "tests/fuzz/played_input.h"

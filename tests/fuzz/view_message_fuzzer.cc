@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What pages ask of `understudy view`, written by nobody: it is refused, or what it asks for is a camera and a
 // table that can be drawn with.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // write_remote_seeds FOLDER_OF_LINKS FOLDER_OF_STAGES
 #include <filesystem>
 #include <fstream>

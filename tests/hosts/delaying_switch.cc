@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // delaying_switch MICROSECONDS INTERFACE…: an Ethernet switch between these interfaces that hands every frame
 // on only after that time, as a network of machines would; the kernel's own bridge knows no delay. Runs until
 // it is killed. Frames keep their virtio header, so that neither checksums nor segmentation are done here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Render nodes on four hosts behind a viewer on the first: the image of one machine, over a network, and what
 // becomes of it when a host is cut off or a rank stands still.
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # launch_agent.sh [OPTIONS] HOST COMMAND…: what ssh is to hosts, for hosts that are network namespaces. As with ssh, the
 # command is one line for a shell, gets an environment of its own, and nothing runs on a host that the network does not
 # reach: somebody must answer there, if only by refusing the connection. The launcher's folder is not there.

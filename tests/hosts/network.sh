@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # network.sh SWITCH MICROSECONDS HOSTS FOLDER [RATE]: that many hosts, host1 and so on, as network namespaces, each with
 # one connection of 1 Gbit/s, or of that rate, to a switch that hands frames on so much later. For a process in namespaces of its own (mounts,
 # network), which alone sees all of this; it goes with them. FOLDER gets the hosts' names, and what the switch says.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A test program that makes networks must not touch the machine's: it goes on in namespaces of its own, for
 // network, mounts, host name and processes. Whatever it leaves there, the kernel removes with its first
 // process.

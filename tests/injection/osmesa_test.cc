@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs of OSMesa: an OpenGL of their own, without a window system.
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that use EGL's OpenGL in unusual ways.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another interposer in front of us: `apitrace trace understudy run … program`. Its library is preloaded,
 // answers for every OpenGL that is opened, and takes us for the driver. (Behind us it stands in
 // tests/clients/driver_calls_test.cc.)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program, bare and under an injection method: what it printed, and what Understudy counted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process that never has a context opens no core, and is in the launcher's report all the same.
 #include <gtest/gtest.h>
 #include <stdlib.h>

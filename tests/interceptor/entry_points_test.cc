@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The entry library against the libraries that are installed here: what they export, it must export.
 #include <dlfcn.h>
 #include <elf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the core hears and what the driver is asked, in order: the entry library's side of core.h.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

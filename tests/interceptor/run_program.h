@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a program with an environment and collects what it says: the tests of the injection methods look at
 // whole processes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The three injection methods, as a user opens them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The injection method matrix: which way of opening OpenGL is caught by which injection method. It needs
 // neither X nor a GPU: the driver under the injection method (UNDERSTUDY_DRIVER_DIR) says what it is asked; the
 // system's own OpenGL, reached past the injection method, says nothing.

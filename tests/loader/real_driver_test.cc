@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glxinfo and eglinfo ask a driver nearly everything that can be asked. Under an injection method they must
 // hear the same.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that run with their file's owner's rights: the loader lets nobody in, and they must work all the
 // same.
 #include <gtest/gtest.h>

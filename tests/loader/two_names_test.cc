@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that use several names of OpenGL. glibc compares a requested name with the SONAMEs that are loaded
 // already before it asks anyone, so the order decides whether a later name is still ours: every order is tried,
 // on the system's own driver, because it is the real libraries that carry those SONAMEs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines on stderr, in processes of their own: the environment is read once.
 #include "logging/log.h"
 

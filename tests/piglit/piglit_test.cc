@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL as piglit's tests see it is the same bare and under Understudy, whatever the chain.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several contexts, names that the application chose, and objects that a driver names anew.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small OpenGL program inside the test that is recorded while it draws, and its recording played again.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contexts on OSMesa do what contexts on EGL do, although their one colour buffer is a front buffer and no
 // framebuffer is shared.
 #include "apps/understudy/offscreen/osmesa_contexts.h"

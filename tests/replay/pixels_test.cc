@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pixels on their way to OpenGL: however they lie in the application's memory, the trace holds the same
 // image.
 #include <algorithm>

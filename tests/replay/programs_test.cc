@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs and what they are given.
 #include <array>
 #include <cstring>

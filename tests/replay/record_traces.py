@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Records the bundled viewer into traces/ and the images of a native replay into expected/.
 
     record_traces.py BUILD/bin [NAME...]     without names all of them (WAYS below)

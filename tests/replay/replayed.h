@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A test that draws with a recorded program, and expects its trace to draw the same.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traces that are kept: every version of this program plays them, and sees the same volume in them.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

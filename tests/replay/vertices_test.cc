@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vertices in all the ways that OpenGL takes them: what a trace keeps of them draws the same image.
 #include <array>
 #include <cstring>

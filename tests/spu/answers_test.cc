@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The track unit answers queries itself: never anything but what the driver would have answered. Above a real
 // driver, through calls with any arguments.
 #include "spu/track/answers.h"

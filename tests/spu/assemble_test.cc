@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains from text: which are assembled, and what is said of the others.
 #include "spu/registry/assemble.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices under every blending that the nodes know, into framebuffers of several formats, against the same
 // slices in double precision; every channel has its own bound (`tests/emulation/precision.h`).
 #include <fmt/format.h>

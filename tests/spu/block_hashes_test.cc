@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which blocks differ from what was sent.
 #include "spu/volume/upload/block_hashes.h"
 

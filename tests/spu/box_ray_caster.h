@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An application that draws the faces of a box with a fragment shader that marches through its volume.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume that the application has cut into textures, and draws brick by brick: the cube of slices of
 // drawing.h in pieces.
 #pragma once

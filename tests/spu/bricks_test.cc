@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume in many textures, above a real driver: from the second frame on it is one, and looks as it did.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error and time budgets over a real render service, without OpenGL: the image keeps the error that is named,
 // at a cost that falls with it; what cannot be kept is said.
 #include "spu/volume/budget/budget.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls as a person would write them.
 #include "spu/print/call_text.h"
 

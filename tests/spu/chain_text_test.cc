@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chains as text and as JSON: what is read, what is refused and in which words. Nothing here knows a unit.
 #include "spu/chain_text.h"
 

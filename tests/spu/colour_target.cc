@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "colour_target.h"
 
 namespace understudy::spu::testing {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A framebuffer object of a colour format of the test's choice, with depth, as large as the application's
 // framebuffer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a process remembers of its volumes, when there are more of them than places.
 #include "spu/report/counters.h"
 

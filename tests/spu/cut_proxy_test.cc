@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casters whose volume is cut: by cropping, by clipping planes, by the near plane around an eye that is
 // inside; and those that add their samples up.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cube of slices between whatever else a test draws: fixed function, one glBegin/glEnd of quads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frames that scenes of tests/spu draw, for the judge in double precision.
 #pragma once
 

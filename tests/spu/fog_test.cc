@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fog: measured from colours, recognised under a real driver, and told from what only looks like it.
 #include "spu/volume/classification/fog.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options, variables and units under the names that they had before: they must do what they do under today's.
 #include "spu/former_names.h"
 

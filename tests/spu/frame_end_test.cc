@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // By whatever command someone looks at the framebuffer, the volume's image is there already.
 //
 // A run of slices is kept back until something could see its result. Each command here is the first

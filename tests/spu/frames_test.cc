@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What belongs to a frame: whoever draws, whoever swaps, and however often the same is drawn.
 #include <gtest/gtest.h>
 

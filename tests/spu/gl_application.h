@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An OpenGL application inside the test: a real driver's context (EGL, no window), and a chain above it exactly
 // as the body would set it up. `gl()` is what the application's calls go through.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A GLSL program as the tests' applications make them.
 #pragma once
 

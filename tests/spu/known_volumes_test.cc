@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refusals of a volume: said once, with evidence and advice for whoever asks, and over with it.
 #include "spu/volume/known_volumes/known_volumes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver without a driver: every command of the table is there, notes its call and answers what it was told
 // to.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices that are drawn many by one call, or by indices with a base: what viewers do whose slices are polygons
 // of three to six corners in one buffer.
 #include <gtest/gtest.h>

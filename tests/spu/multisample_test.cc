@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices into multisampled framebuffers, against the driver's own drawing of them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The units that look at every call, perf and print, above a driver that notes what reaches it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

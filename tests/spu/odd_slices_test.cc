@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slices that no sound viewer draws, and some do: the application's image bit for bit, or one that cannot be
 // told from it, and no error that the application did not make.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Some drivers take the name of a back buffer that is not there for the front buffer, others refuse it: none
 // gets to see it. What comes of it on a driver is in tests/replay/osmesa_contexts_test.cc.
 #include "spu/player/one_buffer.h"

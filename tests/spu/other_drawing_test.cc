@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geometry before, through and after the volume, in perspective and in parallel projection, against the
 // driver's own drawing.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binaries of programs: those of another run are refused, those of this one keep their sources.
 #include <gtest/gtest.h>
 

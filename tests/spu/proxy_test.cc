@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casters in a fragment shader, recognised by what they draw: the same image, or the application's own.
 #include <gtest/gtest.h>
 

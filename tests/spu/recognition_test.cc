@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume unit above a real driver: recognised, substituted, and the same image.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever is not understood is not substituted, bit for bit, with its reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways of drawing a volume that are not slices whose colour is the sample's: not substituted, bit for
 // bit, for the right reason.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples as a driver rounds them that filters 8-bit texels in 8 bits.
 #include "spu/volume/classification/sample_rounding.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // More than one run of slices in a frame: two volumes, two viewports, one texture drawn twice. Where the judge
 // reaches (one viewport), it is the same frame in double precision.
 #include <gtest/gtest.h>

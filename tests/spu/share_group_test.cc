@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is kept for all contexts of a group.
 #include "spu/track/share_group.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes that draw the same volume by slices, each in another way of speaking OpenGL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Less usual ways of slicing above a real driver, judged in float framebuffers against the application's own
 // drawing.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One context is brought into the state of another by the calls that make the difference, above a real driver.
 #include <EGL/egl.h>
 #include <gtest/gtest.h>

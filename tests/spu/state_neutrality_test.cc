@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every row of state that OpenGL can be asked (spu/track/state.h), and what that table leaves out, is the same
 // after a substituted draw as after the application's own.
 #include <fmt/format.h>

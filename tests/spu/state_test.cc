@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Without a trace: what OpenGL can be asked is the same after a substituted draw as after the application's
 // own.
 #include <gtest/gtest.h>

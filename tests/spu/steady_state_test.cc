@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In steady state a call costs no memory: the chain, its units and the way between them allocate nothing.
 // malloc of this program is the one below, which counts.
 #include <gtest/gtest.h>

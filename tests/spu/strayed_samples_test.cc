@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where application and nodes show different samples along the edges of slices, whose they are: the rasteriser
 // puts vertices on its grid of 1/256 pixel before it decides which pixels' centres a slice covers.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A texture that changes between frames: only what differs travels, and the image is that of a texture which
 // was loaded with the new texels from the start, bit for bit.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stacks of 2-D textures that are a volume, and textured quads that are none.
 #include <gtest/gtest.h>
 

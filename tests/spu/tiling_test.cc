@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which textures are pieces of one volume, and where they lie in it.
 #include "spu/volume/merging/tiling.h"
 

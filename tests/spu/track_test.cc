@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The track unit above a driver that writes down what it is called.
 #include "spu/track/track.h"
 

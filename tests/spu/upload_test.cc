@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever way the texels went up, and in whatever format, the volume that is drawn is the one that they tell,
 // judged in double precision.
 #include <gtest/gtest.h>

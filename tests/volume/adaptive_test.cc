@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adaptive steps: nearer to the integral than samples as many, the same for any partition and instruction set.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

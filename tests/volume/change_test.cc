@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels that change after a volume is complete: the store and the images are those of a volume that was
 // filled with the new texels from the start.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every way to cut a volume: boxes that tile it on block faces, an image that stays the same, and costs that
 // are divided as fairly as faces allow.
 #include <gmock/gmock.h>

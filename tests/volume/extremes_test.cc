@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hard cases: whatever the texels and the view, the image is finite, and right where right is defined.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fields with known values, and textures made from them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operator first-hit: of every ray its first sample that is not clear, alone.
 #include <gtest/gtest.h>
 

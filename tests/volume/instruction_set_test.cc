@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same image on every instruction set that this machine can run, and from the plain kernel that the
 // vector kernel must agree with.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the ray caster leaves out changes no image, and what it counts adds up.
 #include <gtest/gtest.h>
 

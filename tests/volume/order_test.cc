@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order of accuracy: how fast the error of the volume rendering integral falls as steps are halved. It is a
 // slope over at least four halvings and many rays, of smooth procedural fields under smooth tables; on voxels
 // fields have kinks, and no order is promised. (Etiene et al. 2014 verify renderers by it.)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One rank or many: the same image.
 #include <gmock/gmock.h>
 

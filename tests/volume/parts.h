@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume rendered whole, and in the parts of several ranks, by any ray caster.
 #pragma once
 

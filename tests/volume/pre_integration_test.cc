@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integrated segments: their table against quadrature, their images against the volume rendering
 // integral.
 #include "volume/raycast/pre_integration.h"

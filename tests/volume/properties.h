@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds of every image, on random scenes: it is finite, the same for any partition, mirrored when the
 // scene is, and of a coloured medium it shows no opacity above 1 and no colour brighter than the medium's.
 #pragma once

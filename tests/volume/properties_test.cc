@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds of every image, on the CPU.
 #include "tests/volume/properties.h"
 

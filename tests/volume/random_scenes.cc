@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/volume/random_scenes.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes that nobody thought of: random fields, tables, cameras and samples, the same for the same seed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integral without step size against closed forms, before anything is judged by it.
 #include "volume/reference/ray_integral.h"
 

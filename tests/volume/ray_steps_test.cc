@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples on constant steps along the rays, as ray casters in a fragment shader take them: against the
 // double-precision reference, and the same for any partition.
 #include <gtest/gtest.h>

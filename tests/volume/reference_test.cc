@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference must itself agree with closed forms before others are judged by it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A store whose cells change holds what a new one would.
 #include <gmock/gmock.h>
 

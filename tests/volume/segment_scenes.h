@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests with surfaces, light and pre-integration, drawn by one rank or by several.
 #pragma once
 

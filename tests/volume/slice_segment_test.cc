@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segments: colours that depend on two samples, by a pre-integration table.
 #include <gmock/gmock.h>
 #include <hwy/targets.h>

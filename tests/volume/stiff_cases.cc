@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/volume/stiff_cases.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stiff tables, odd fields and hard views, each with its bounds, for every ray caster.
 #pragma once
 

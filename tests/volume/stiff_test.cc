@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hard cases on the CPU, against the same samples in double precision.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bricks, the table's emptiness query and the map of distances.
 #include <gmock/gmock.h>
 

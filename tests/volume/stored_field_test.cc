@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The integral of a pixel from the bricks of one rank, or of several, is the integral of the whole texture.
 #include "volume/reference/stored_field.h"
 

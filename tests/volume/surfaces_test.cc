@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Iso-surfaces and light: against closed forms and the double-precision reference, and the same for any
 // partition.
 #include <gtest/gtest.h>

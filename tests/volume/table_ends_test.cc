@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integrated segments under tables that end within the field's values: beyond an end the medium is that of
 // the end, so a segment that leads past it is parted there.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transfer functions from control points, and the camera that goes around a volume.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bricked storage of one rank's share of a volume.
 //
 // Blocks of 8^3 cells keep their 9^3 texels together, so that the eight corners of any cell lie close to each

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks that leave a store, and come to one: the cells of ranks whose boxes change.
 #include <algorithm>
 #include <bit>

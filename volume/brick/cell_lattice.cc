@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/brick/cell_lattice.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the cells of a volume lie. A cell is the cube between eight neighbouring texel centres, the piece on
 // which the trilinear filter is one polynomial; along an axis, cell c spans the texels c and c + 1.
 //

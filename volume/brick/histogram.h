@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How often values occur in a volume: each rank counts the texels of its own cells, so that sums over the ranks
 // count every texel once.
 #pragma once

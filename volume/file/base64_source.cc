@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/file/base64_source.h"
 
 namespace understudy::volume {

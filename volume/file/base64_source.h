@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What base64 text stands for, as VTK writes it.
 #pragma once
 

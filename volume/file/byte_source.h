@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes by their place, wherever they come from: a file, or what a file holds in compressed form.
 #pragma once
 

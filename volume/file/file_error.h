@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is wrong with a volume's file, or with what was said about it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a gzip or zlib stream holds.
 #pragma once
 

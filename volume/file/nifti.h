@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // NIfTI-1 and NIfTI-2 volumes (.nii, .hdr with .img, each also .gz).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // NRRD volumes, header and data in one file or in two (teem.sourceforge.net/nrrd/format.html). Encodings: raw
 // and gzip.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Raw scalars without a header: their size and type are told by the user or by the file's name.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which files volumes may be read from. Who asks for a volume need not be who runs the process that reads it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/file/synthetic.h"
 
 #include <fmt/format.h>

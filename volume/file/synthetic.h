@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes that need no file: computed where and when they are read, so that large ones can be had anywhere.
 #pragma once
 

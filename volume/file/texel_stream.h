@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A box of a volume file as texels, slice range by slice range: what a rank reads of a volume is its own box
 // and nothing else.
 #pragma once

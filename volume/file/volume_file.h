@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume in a file, of which any box can be read without the rest.
 //
 // NRRD is known by its first bytes, NIfTI and VTI by their names (.nii .hdr .img .vti, each also with .gz), and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Image data of VTK in XML: appended (raw, base64) or inline (base64) data, in zlib blocks or as it is.
 #pragma once
 

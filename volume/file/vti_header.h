@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the XML of a VTK image file says, up to where its data begins.
 #pragma once
 

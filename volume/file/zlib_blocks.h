@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data in separately compressed blocks, as VTK's XML files have it: any block can be had without the others.
 #pragma once
 

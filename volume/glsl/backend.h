@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who casts a node's rays: the CPU, OpenGL, or whichever turns out to be faster here.
 //
 // For an application's own process there is the CPU alone: OpenGL's names mean its entry library there, and its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Some bricks of a BrickStore, as many as memory allows, side by side in one 3-D texture. Each has all texels
 // of its cells' corners, so that a filter inside it needs no neighbour. Bricks come when they are asked for;
 // those that were not asked for the longest make room.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/glsl/brick_passes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a volume of which not all bricks are in textures. A ray walks as far as it meets no visible brick that
 // is absent; there it waits, with what it has composed, for the next pass, which brings in the bricks from the
 // first on that a ray waits for, in visibility order. So every ray takes the samples that it would take of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bricks of a volume of which only some are in textures at a time. Free of OpenGL, for command lines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One OpenGL context with its entry points and the programs that were made in it. All ray casters of a process
 // can share one; it serves one thread at a time.
 #pragma once

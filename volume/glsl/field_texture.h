@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The texels of a BrickStore as one 3-D texture: a texel per lattice point of the blocks held, so that neither
 // borders nor ends that join are the shader's business.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The OpenGL that the ray caster in GLSL uses: 3.3 core, each entry point from the library whose context it is
 // for.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/glsl/glsl_ray_caster.h"
 
 #include <fmt/format.h>

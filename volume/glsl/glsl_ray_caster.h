@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casting in a fragment shader: what the ray caster on the CPU draws (raycast/ray_caster.h), from one 3-D
 // texture in an OpenGL context of its own, or, where that would be over OpenGL's limits or the device's memory,
 // from as many bricks as fit, in passes (brick_passes.h). It takes the same samples, at the same float

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fragment shader that walks along one pixel's ray, in the variants that requests ask for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An OpenGL 3.3 core context without window, on EGL or on OSMesa. Both libraries are opened when one is asked
 // for, never linked: a process without them runs, and OSMesa exports OpenGL's own names.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <fmt/format.h>

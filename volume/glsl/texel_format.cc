@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/glsl/texel_format.h"
 
 #include <cmath>

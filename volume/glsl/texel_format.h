@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How texels of each type lie in a texture. Bytes are widened to 16 bits: some drivers filter 8-bit textures in
 // 8 bits.
 #pragma once

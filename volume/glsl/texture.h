@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A texture's name, for as long as it is wanted. Made and given up while the device's context is current.
 #pragma once
 

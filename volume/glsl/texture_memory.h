@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much memory the texels of a node's volumes may take in textures. Other textures (rays, images, tables,
 // distances) are small beside them and are not counted.
 #pragma once

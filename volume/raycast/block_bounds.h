@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a block can add to a maximum: rays pass by blocks that show nothing larger than what they have seen.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What draws the cells of one BrickStore: the ray caster on the CPU, or another that keeps its contract
 // (raycast/ray_caster.h). Whoever holds bricks is given the means to make one.
 #pragma once

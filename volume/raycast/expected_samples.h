@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many samples the ray caster may be expected to take where, before it does: what a block shows under the
 // classification, times how densely the request's samples lie there. Opaque things in front are not thought of.
 #pragma once

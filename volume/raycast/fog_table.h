@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fog made ready for sampling: a place in its table as a function of lattice coordinates, and the slope to the
 // next entry beside every entry.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adaptive steps, part by part, ray by ray: what is meant by them, where the vector kernel knows no instruction
 // set, and what tests hold it against.
 #include <algorithm>

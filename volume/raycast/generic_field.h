@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field as the plain kernels read it: one position after the other.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sample by sample, ray by ray, in the words of the definition. It runs where the vector kernel knows no
 // instruction set, and tests hold the vector kernel against it.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segment by segment, ray by ray, in the words of the definition: surfaces, light and pre-integration where the
 // vector kernel knows no instruction set, and what tests hold it against.
 #include <algorithm>

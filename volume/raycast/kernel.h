@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the kernels share: a packet of rays goes in, premultiplied pixels come out. The generic kernel takes
 // every texel type, filter and operator and says plainly what is meant; the others are faster on one
 // combination and must give the same image.

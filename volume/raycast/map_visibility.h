@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a block of colours can show anything under a map of colours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which blocks can be left out, and how far: per block the Chebyshev distance to the next block that shows
 // something, 0 for those that do. From a sample in a block of distance d, all blocks fewer than d steps away
 // are empty. (Cohen, Sheffer 1994, proximity clouds; Deakin, Knackstedt 2020 for Chebyshev distance.)

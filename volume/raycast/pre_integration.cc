@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/raycast/pre_integration.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a transfer function to a table of the segments between two samples.
 #pragma once
 

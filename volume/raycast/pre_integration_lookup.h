@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pre-integration table made ready for sampling: in units of the texel type, and able to say at once whether
 // anything shows for two ranges of values.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray caster makes of a classification before it casts rays, and keeps from image to image: tables,
 // which blocks show something (empty-space skipping), bounds of blocks, and the division of adaptive steps.
 // A part of ray_caster.cc.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/raycast/ray_caster.h"
 
 #include <fmt/format.h>

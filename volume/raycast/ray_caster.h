@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casting on the CPU: composites the samples that the application's own slices would have shown, as far
 // as they fall in the cells that a BrickStore owns.
 //

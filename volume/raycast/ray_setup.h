@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From pixels to rays. In clip space the pixel (X, Y) is the line x = X w, y = Y w; with A's rows A0 .. A3 it
 // meets plane s at the point t of texture space that solves
 //

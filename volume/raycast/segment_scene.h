@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces, light and pre-integration made ready for a kernel: in units of the texel type, and of cells.
 #pragma once
 

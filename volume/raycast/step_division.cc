@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/raycast/step_division.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Method::adaptive: into how many equal parts a step is divided, and what a part shows.
 //
 // The error of samples in the middle of 2^d parts is estimated from the second differences b of the transfer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where on a segment the field passes a value: between two ends on different sides of it, by the rule of false
 // position (in the Illinois form, which halves the value at an end that stays), and by bisection where that is
 // slow. A field may be even at the very value: it passes where it comes to have it, or ceases to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A transfer function made ready for sampling: in units of the texel type, with the slope to the next entry
 // beside every entry, and able to say at once whether anything shows within a range of values.
 #pragma once

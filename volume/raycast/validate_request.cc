@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a request can be rendered: validate() of ray_caster.h.
 #include <fmt/format.h>
 

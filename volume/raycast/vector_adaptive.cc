@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that the generic adaptive kernel does, on the vector instructions of the machine it runs on. Parts of
 // steps queue up, eight of every ray at a time, and are then taken as vector_kernel.cc takes samples.
 #include <algorithm>

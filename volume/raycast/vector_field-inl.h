@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the vector kernels share: packets of rays, the field where they are, and colours. A part of
 // vector_kernel.cc and vector_segments-inl.h, included there once per instruction set.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that the generic kernel does, on the vector instructions of the machine it runs on.
 //
 // Early termination and empty bricks are looked at once per eight samples, so that addresses never wait for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light on the samples of vector kernels: a part of vector_segments-inl.h, included there once per instruction
 // set, among the functions that it calls.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integrated segments.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that the generic segments do, on the vector instructions of the machine it runs on, eight segments of
 // every ray at a time, as vector_kernel.cc takes samples. What happens seldom (surfaces, the ends of rays) is
 // done segment by segment. A part of vector_segments.cc and vector_pre_integrated_segments.cc, included there

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segments whose samples are classified, and the way to those that are pre-integrated: two files, because each
 // takes long to compile.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segments and pre-integration tables in the vector kernels: a part of vector_kernel.cc and
 // vector_segments-inl.h, included there once per instruction set, among the functions that they call.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/reference/field_along_ray.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A voxel field along one ray, exactly: within a cell of eight texels the linear filter makes a cubic of it.
 #pragma once
 

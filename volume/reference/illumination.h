@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light on a point of the field, in double precision: volume/light.h, literally.
 #pragma once
 

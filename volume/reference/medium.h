@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a value of the field does to light: the right-hand side of the volume rendering integral
 //
 //   dT/dt = -extinction T,   dC/dt = source T,   T(0) = 1, C(0) = 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume rendering integral of one pixel of a request: what its samples, taken ever more densely, tend to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray through a field shows, in double precision and without a step size: the volume rendering integral,
 // the extremes and the sum that other operators mean, and the first hit of an iso-surface.
 #pragma once

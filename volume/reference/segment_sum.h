@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a request with surfaces, light or pre-integration means, in double precision and ray by ray: surfaces
 // are found by bisection, and segments integrated by quadrature. Slow, plain and written independently of the
 // ray caster.

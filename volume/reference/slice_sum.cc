@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "volume/reference/slice_sum.h"
 
 #include <algorithm>

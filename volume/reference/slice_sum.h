@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the application's samples mean, literally and in double precision: for every pixel the ordered
 // composition of every plane that its ray meets, or of every step that it takes. Slow, plain and written
 // independently of the ray caster, which is judged by it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field of a brick store along one ray, exactly: what field_along_ray() says of a whole texture, of the
 // cells that one rank owns.
 #pragma once

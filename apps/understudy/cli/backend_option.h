@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `--backend` of `run`, `replay`, `serve` and `render`: who casts the nodes' rays, and `--gpu-memory`: what
 // that may take.
 #pragma once

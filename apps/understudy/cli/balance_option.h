@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `--balance` of `run`, `replay` and `serve`: who of the nodes gets how much of a volume.
 #pragma once
 

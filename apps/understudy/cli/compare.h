@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy compare A B`: how far two images are apart.
 #pragma once
 

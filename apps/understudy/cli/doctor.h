@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy doctor`: what works on this machine, one line each, with the fix where it does not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/cli/loading_nodes.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who loads a volume and renders it: nodes of this command, nodes that run already, or this process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Options of commands that start nodes: `--exchange`, `--pixels`, `--gather` and `--overlap`, how partial
 // images become one, `--hostfile`, where the ranks are, and `--server-opengl`.
 #pragma once

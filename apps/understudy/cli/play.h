@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays a trace in this process: what `understudy replay` starts, and what tests call.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy print TRACE`: what a trace holds, one line a record.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a rendering without a viewer says about itself: one line, and a JSON report (docs/report.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy replay TRACE`: plays what `understudy run --trace` recorded, without a viewer and without a
 // display.
 #pragma once

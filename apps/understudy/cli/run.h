@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The subcommand `run`: its options, and those of the option table that other subcommands take too.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy serve -n N [--socket PATH]`: keeps a node group running for viewers that come and go.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy run --trace FILE`: the viewer's chain begins with the unit that records it.
 #pragma once
 

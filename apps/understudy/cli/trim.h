@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy trim TRACE --frames A-B -o OUT`: a shorter trace that shows the same frames.
 #pragma once
 

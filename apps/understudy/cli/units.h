@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy units`: the stream processing units that chains are made of, with their options.
 #pragma once
 

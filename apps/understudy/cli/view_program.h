@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy view` is a program of its own, understudy-view: a window needs libraries that every other command
 // would have to wait for when it starts.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/file_scene/control_points_file.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transfer functions in files:
 //   {"positions": "range", "knots": [{"at": 0.2, "colour": [1, 0.5, 0.2], "opacity": 0}, ...]}
 // "positions" is "range" (0 is the volume's least value, 1 its greatest; so without it) or "values"; opacity is

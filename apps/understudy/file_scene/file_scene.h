@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume in a file and the image that is wanted of it, as commands without an application take them on
 // their command lines.
 #pragma once

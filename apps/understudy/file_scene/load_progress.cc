@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/file_scene/load_progress.h"
 
 #include <fmt/format.h>

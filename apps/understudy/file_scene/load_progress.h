@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the ranks are in reading a volume, on standard error: a bar that is drawn over itself, or lines.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several numbers in one argument: "30,20,4", "512x512".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a rendering of a file shows beside samples: pre-integrated segments, iso-surfaces and light.
 #pragma once
 

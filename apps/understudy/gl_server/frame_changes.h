@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is different in a drawable's image from one frame to the next.
 #pragma once
 

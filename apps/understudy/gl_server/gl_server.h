@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GL server: makes the OpenGL calls of applications that have none (`understudy run --remote`), on contexts
 // without a window system, through the chain that a viewer here would have, and sends their images back.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/gl_server/guarded_player.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trace is played in a child process: what a driver does to a process that makes calls as nobody would make
 // them (a damaged trace, a driver's own fault) is told with the call at which it happened.
 #pragma once

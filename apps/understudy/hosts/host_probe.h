@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which hosts answer: the node's program is asked for its help on all of them at once, through the launch
 // agent.
 //

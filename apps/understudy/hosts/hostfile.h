@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hosts as Open MPI's hostfiles list them: a host a line, how many ranks it takes, comments behind '#'.
 //
 //   node1            # one rank, which uses all processors of the host

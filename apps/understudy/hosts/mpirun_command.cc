@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/hosts/mpirun_command.h"
 
 #include <sstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Open MPI's command for a node group, from where its ranks are to be.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many ranks a node group has, on which hosts, and who starts them there.
 //
 // Rank 0 shares a Unix socket and memory with the viewer, so one host must be the launcher's own, and it comes

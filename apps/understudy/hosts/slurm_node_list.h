@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nodes of a Slurm allocation, as SLURM_JOB_NODELIST has them: "gpu1,node[01-03,7]".
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images in files: PNG, and PFM (Debevec's portable float map) for composited frames before they are rounded.
 #pragma once
 

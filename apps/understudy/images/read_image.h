@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images as OpenGL has them, made to lie as images in files do.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process for each client of one that listens: neither a driver's faults nor a closed connection concern
 // another client.
 #pragma once

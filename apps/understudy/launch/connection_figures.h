@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What connections over TCP have done for a run: a file for each in the run's folder, written when it ends.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environments of child processes: the viewer's loads the entry library, the nodes' does not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the parts of Understudy lie: beside this program, as built (build/bin and build/lib) or installed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The listener of `understudy serve --listen`: a process that lets clients of other machines in, if they have
 // the secret, and gives each a process that carries its messages to the nodes or to the GL server here
 // (compositor/transport/tcp).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the ranks of a node group go about their work, as understudy-node takes it on its command line.
 #pragma once
 

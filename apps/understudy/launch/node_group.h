@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The render nodes behind one socket of this machine: a broker that owns the socket, and mpirun with N ranks
 // behind it, here or on several hosts.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A job that has render nodes for as long as it takes.
 #pragma once
 

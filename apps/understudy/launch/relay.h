@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connections to nodes and GL servers on other machines: a process that listens at a Unix socket here, so that
 // viewers meet nodes or a GL server as they do on one machine, and carries what they say over TCP
 // (compositor/transport/tcp).

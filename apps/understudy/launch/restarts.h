@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How often a lost group of nodes is started again, and after which pause.
 #pragma once
 

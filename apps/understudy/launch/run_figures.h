@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the processes of a run have counted, once they have ended.
 #pragma once
 

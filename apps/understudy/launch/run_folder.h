@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The private folder of one run: counters of the viewer's processes, the socket of its nodes, their log. Mode
 // 0700 in compositor::runtime_folder(), removed with everything in it at the end.
 #pragma once

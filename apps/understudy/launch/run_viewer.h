@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run: the viewer as a child process with the entry library under it, nodes behind it when asked for, and the
 // figures of the run at its end. The exit status is the viewer's own (128 + signal when killed), and with
 // `required` one that tells what was missing.

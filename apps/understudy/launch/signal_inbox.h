@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signals as messages: while an inbox lives they wait in a file descriptor, to be polled beside sockets, and
 // none interrupts the program. Children do not inherit this (see ChildProcess).
 #pragma once

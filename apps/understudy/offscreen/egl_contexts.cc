@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/offscreen/egl_contexts.h"
 
 #include <EGL/egl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contexts on EGL without a window system, each with a pbuffer of its own, or with those that stand for an
 // application's windows.
 #pragma once

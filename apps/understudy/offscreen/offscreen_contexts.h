@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL contexts without a window system, for traces and for applications whose calls come from elsewhere: of
 // the recorded versions and profiles, each with a drawable of its own, or with those that stand for an
 // application's windows. On EGL (egl_contexts.h), or where that has no driver, on OSMesa (osmesa_contexts.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contexts on OSMesa, Mesa's renderer on the CPU that needs neither EGL nor a kernel's graphics driver.
 //
 // OSMesa knows no drawables: every context has a framebuffer of its own, and memory that it copies images to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One setting of one scene: its time, and its error against the integral.
 #pragma once
 

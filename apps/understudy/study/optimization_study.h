@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What leaving out is worth: the bundled viewer under `understudy run` on a scene, once as usual and once with
 // one item done nevertheless (`--disable-optimization`), item by item.
 #pragma once

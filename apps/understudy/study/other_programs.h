@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What other programs show of a scene, and how long they take: the bundled viewer, bare, whose slices OpenGL
 // blends in eight bits, and VTK's two volume mappers, where they are installed. All get the same texels, table,
 // camera and number of samples a voxel. Their errors are of colour alone: not every image tells opacity.

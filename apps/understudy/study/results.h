@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a study has found so far, in files: study.json is read again by a study that goes on, study.csv has a
 // row a setting.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/study/scene.h"
 
 #include <tbb/parallel_for.h>

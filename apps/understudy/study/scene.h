@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a study looks at: a volume, a table and a camera, with the double-precision integral of some of its
 // rays.
 #pragma once

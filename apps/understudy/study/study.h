@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy study --out DIR`: error against run time, over a grid of settings and a set of scenes.
 #pragma once
 

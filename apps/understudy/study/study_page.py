@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """study_page.py DIR: DIR/index.html from DIR/study.json, self-contained. `understudy study` calls it."""
 
 import base64

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bundled viewer on a scene of the study, and how programs beside the study are run.
 #pragma once
 

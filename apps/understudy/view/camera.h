@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera of a viewer as its hand moves it: rotated by an arcball, moved across the image, brought nearer.
 #pragma once
 

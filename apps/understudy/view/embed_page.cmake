@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DOUT=page_files.cc -DFILES="a.html;b.js" -P embed_page.cmake: the files as text in a C++ source.
 set(text "#include \"apps/understudy/view/page_files.h\"\n\n#include <array>\n\nnamespace understudy::launcher {\n\n"
   "std::span<const PageFile> page_files() {\n  using Files = std::array<PageFile, ")

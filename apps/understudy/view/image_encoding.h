@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images as bytes on their way to an eye: eight bits a channel over black, as PNG or JPEG.
 #pragma once
 

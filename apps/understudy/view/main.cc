@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // understudy-view: what `understudy view` becomes, with the same words.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is said to a viewer's page: JSON text, and images with a head of JSON (README.md lists the keys).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a viewer must know to be let in, and how it shows that it does without saying it: the server names a
 // number that it used never before, the viewer answers with HMAC-SHA-256 (RFC 2104) of it under the secret.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume that viewers look at, behind a service that may be lost and made again.
 #pragma once
 

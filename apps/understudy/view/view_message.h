@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a viewer's page asks for, as JSON text (README.md lists the keys). Whoever sends it may be anybody:
 // every length and every number is compared with a limit.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one viewer has in sight: each browser window, and each window of its own, has its own.
 #pragma once
 

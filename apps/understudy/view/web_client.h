@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A viewer without eyes, for tests and benchmarks: speaks with `understudy view --web` as its page does.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Serves the page and talks with the viewers that it opens, on a thread of its own. Anybody may connect: who
 // has not shown the secret gets the page and nothing else, nobody holds a place for long without it, and every
 // length is compared with a limit before it is believed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy view --web`: a volume in the browsers of whoever has the session's secret.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy view` without `--web`: a volume in a window of this machine, by SDL and without OpenGL.
 #pragma once
 

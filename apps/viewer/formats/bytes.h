@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a stated number of bytes from a plain or gzip-compressed file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // NIfTI-1 volumes (.nii, .hdr/.img, each also .gz); the header is read by niftiio, the voxels by us.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // NRRD volumes (attached or detached header, raw, ascii or gzip encoding), read by teem.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Voxel types that the viewer does not draw directly (32- and 64-bit integers, doubles) become floats.
 #pragma once
 

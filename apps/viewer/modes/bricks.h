@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // As the table mode, in many 3-D textures of at most 64 texels an edge that share their outer texels with their
 // neighbours: the bricks are drawn one after the other in visibility order, each with its part of all slices.
 #pragma once

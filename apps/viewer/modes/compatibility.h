@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the two compatibility-profile modes share: matrix stacks and opaque geometry in immediate mode.
 #pragma once
 

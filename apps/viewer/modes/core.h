@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scalar RED texture and a 1-D colour table in GLSL 3.30 core; all slices in one glDrawArrays from a vertex
 // buffer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL object names that delete themselves. Destroy them with their context current.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/viewer/modes/lit.h"
 
 #include "apps/viewer/modes/compatibility.h"

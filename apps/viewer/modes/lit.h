@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // As the table mode, with the light of one direction on the surfaces that the field's gradient tells of (Levoy
 // 1988): seven samples a fragment.
 #pragma once

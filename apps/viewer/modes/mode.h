@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A way to draw a volume's slices with OpenGL; one file per way.
 //
 //   rgba   colours looked up per voxel on the CPU, RGBA8 texture, fixed function, immediate mode

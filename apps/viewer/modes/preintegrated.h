@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integrated segments (Engel, Kraus and Ertl 2001): each fragment looks at the slice's front and back
 // coordinate, and in a 2-D table at what lies between the two values.
 #pragma once

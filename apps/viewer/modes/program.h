@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles and links a GLSL program of one vertex and one fragment shader.
 #pragma once
 

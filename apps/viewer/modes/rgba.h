@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-classified RGBA8 texture, fixed function, one immediate-mode triangle fan per slice.
 // Keeps the texels, because another table means other colours in every voxel.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scalar LUMINANCE texture and a 1-D colour table in GLSL 1.20; one triangle fan per slice from client vertex
 // arrays.
 #pragma once

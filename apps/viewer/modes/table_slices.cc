@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/viewer/modes/table_slices.h"
 
 #include "apps/viewer/modes/compatibility.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the modes with a colour table in GLSL 1.20 share: a program that looks texels up in a table, and one
 // triangle fan per slice from client vertex arrays.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "apps/viewer/modes/volume_texture.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume's 3-D texture and the 1-D colour table, both linear and clamped to the edge.
 #pragma once
 

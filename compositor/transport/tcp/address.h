@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a service is to be found: a Unix socket of this machine, or a host and a port.
 #pragma once
 

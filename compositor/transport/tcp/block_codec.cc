@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/transport/tcp/block_codec.h"
 
 #include <lz4.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blocks of a message, compressed without loss or as they are, and which of it is the fastest way over a line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the two ends of a connection over TCP find out that they share a secret, before either believes anything
 // else.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the two ends of a connection over TCP say to each other on their own account.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where clients of other machines come in: a listening socket, whoever has come and not yet proved that it has
 // the secret, and nothing else. Pending clients cost a descriptor each, have limits::hello_patience, and when
 // there are more than limits::max_pending_clients the one that has got least far, of these the oldest, makes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Carries messages between a Unix socket of this machine and a connection over TCP, both ways at once, until
 // one of the two ends. There is one at each end of a connection; applications, node groups and GL servers know
 // nothing of TCP.

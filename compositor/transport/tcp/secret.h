@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What both ends of a connection over TCP must have: the contents of a file that only its owner may read.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages over a TCP connection whose two ends have proved themselves (handshake.h). One thread may send while
 // another receives.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "compositor/transport/tcp/tcp_message_reader.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of a connection over TCP become messages.
 //
 // A message there is the header of message.h and then its payload in blocks: how many bytes a block stands for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TCP sockets for connections: they wait for nothing, send at once, and notice in bounded time that the line is
 // cut.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One volume's error or time: asked for, chosen for, watched, and reported.
 //
 //   a new volume, table or service ──► calibrate ──► the cheapest setting that keeps the error, proven on the

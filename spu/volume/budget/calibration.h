@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What settings cost and how wrong they are, measured on a small image of the scene that is to be shown.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/budget/free_sampling.h"
 
 #include <fmt/format.h>

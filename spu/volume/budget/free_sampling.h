@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that are not bound to the application's own: what a request means apart from where its samples lie,
 // and the same image from other samples.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that finds out which colours the application's pipeline gives to samples: probed where they are not
 // known (classification: Levoy 1988; pre-integrated: Engel, Kraus, Ertl 2001).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes of colours, which the application has classified itself: the map from a texel's colour to a
 // fragment's.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fog, observed: colours may depend on one more number than the sample, such as the distance from the eye, when
 // they do so in the same way for all samples: every colour is faded by a weight, and one colour is added.
 #pragma once

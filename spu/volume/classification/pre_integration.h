@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integration tables, observed: colours may depend on two samples, the front and the back of a segment.
 #pragma once
 

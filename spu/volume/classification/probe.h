@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classification by probing: the application's own fragment pipeline is shown a texture whose texels are known,
 // draws into a float framebuffer, and what comes out is the transfer function. One mechanism for texture
 // environments, look-up textures, window/level uniforms and colour maps written in shader code: observe, don't

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the application's fragment pipeline is shown texels that are known: a float framebuffer of its own, a
 // texture in the place of the volume, and a program whose inputs are given.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples as drivers give them that filter 8-bit texels in 8 bits.
 //
 // llvmpipe rounds every filtered sample of such a texture to a whole number of 1/255 (graphics cards round the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre-integrated slices: colours of segments, by the values at their two ends (Engel, Kraus, Ertl 2001).
 #pragma once
 

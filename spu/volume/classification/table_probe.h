@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes of one value: the colour of every value, a transfer function, and the fog over it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the volume unit must know about the context it stands in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/context/float_framebuffer.h"
 
 #include <algorithm>

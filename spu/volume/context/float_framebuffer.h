@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A framebuffer of the application's extent that keeps what is drawn as floats: an 8-bit one rounds each slice,
 // and loses fog. With as many samples a pixel as the application's, so that the edges of slices cover as much.
 #pragma once

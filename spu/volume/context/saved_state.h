@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our own drawing inside the application's context, without a trace.
 //
 // Probing, observing and presenting each need a known pipeline for a moment. A SavedState reads everything that

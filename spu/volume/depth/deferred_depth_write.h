@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depth that slices write, and that usually nobody looks at.
 //
 // Many viewers leave depth writes on while they blend slices. Drawing the slices once more for their depth

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The opaque geometry that stands before, inside or behind the volume: its depth, for the render nodes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/depth/depth_watch.h"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether somebody looks at the depth that substituted slices would have written (deferred_depth_write.h).
 #pragma once
 

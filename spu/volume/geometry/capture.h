@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observing vertex shaders: the run is drawn once with the application's vertex stage alone and rasterisation
 // off, and transform feedback writes down the clip position and everything that the fragment stage would read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observing fixed-function vertices: the run is drawn once in feedback mode, where OpenGL writes down what
 // reaches the rasteriser instead of rasterising it. Matrices, texgen as it was set, texture matrix, display
 // lists, user clip planes and lighting are all the driver's own answer; nothing is emulated. 500 quads cost

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera of a run of slices, by linear least squares: clip = A (t, 1).
 //
 // Whatever chain of matrices, texgen planes and shader arithmetic lies between, for a volume drawn by slices it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the application's pipeline did with a run of slices, as observed: polygons whose vertices carry both the
 // texture coordinate that addresses the volume and the clip position.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run turned out to be: its geometry, and what its fragments get. The value that all later stages take.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/geometry/slice_segment.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Segments, observed: an input of the fragment stage, beside the one that addresses the volume, that may
 // address it a second time, always the same way off.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From observed polygons to the application's sampling: equidistant parallel planes through a box of texture
 // space.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is remembered of one volume between frames: a part for every stage.
 #pragma once
 

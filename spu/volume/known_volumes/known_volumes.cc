@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/known_volumes/known_volumes.h"
 
 #include <fmt/format.h>

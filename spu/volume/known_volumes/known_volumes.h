@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volumes of one context, by the texture that they are known by.
 #pragma once
 

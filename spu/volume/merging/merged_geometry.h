@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the runs of all bricks to one: their polygons must be what one set of planes cuts out of one box, drawn
 // in the order in which the bricks lie.
 #pragma once

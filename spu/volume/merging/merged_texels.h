@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The texels of a volume that lies in several 3-D textures.
 #pragma once
 

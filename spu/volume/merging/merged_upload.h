@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The texels of a merged volume on their way to the render nodes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes that the application cut into many 3-D textures, and draws brick by brick.
 #pragma once
 

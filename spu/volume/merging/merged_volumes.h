@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds out which textures are bricks of one volume: in the first frame each is a volume of its own, and where
 // they turn out to be a tiling, they are drawn as one from then on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/merging/run_merger.h"
 
 #include <fmt/format.h>

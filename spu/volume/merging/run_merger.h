@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs through the bricks of one volume wait for each other, and are shown as one: one request for a volume
 // assembled from all textures takes their place. Wherever that fails, they are shown one by one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether several textures are pieces of one volume: from the cameras they are drawn under follows where each
 // lies among the texels of the others.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/observation/array_calls.h"
 
 #include <algorithm>

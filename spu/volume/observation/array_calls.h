@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // While a run of slices is open: calls that point vertex arrays elsewhere, and questions about them.
 //
 // Draws from the application's own memory are kept with their vertices (client_arrays.h), so the arrays may

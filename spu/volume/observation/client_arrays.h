@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws from the application's own memory, captured at the moment of the call.
 //
 // The memory may change before the run is drawn (one buffer refilled for every slice is common), so the draw is

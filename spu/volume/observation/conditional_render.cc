@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/observation/conditional_render.h"
 
 #include "spu/volume/observation/draw_observer.h"

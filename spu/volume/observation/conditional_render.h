@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditional rendering, which no query tells: whether draws take place lies with an occlusion query's answer.
 #pragma once
 

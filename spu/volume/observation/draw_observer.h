@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The first stage: watches for draws that may be a volume, and keeps them as runs.
 //
 //   watching ──(a draw that may be a volume)──► deferring ──(any other call, a frame end)──► close the run

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The slots of the dispatch table that the volume unit takes while it watches, and while a run is open.
 #pragma once
 

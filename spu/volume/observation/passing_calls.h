@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls while runs wait for the others of their volume: those that neither see pixels nor change what the
 // image will be shown with go by, every other one shows what waits first.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Program binaries that a viewer kept from another run of it, as Qt does on disk: what they compute is not
 // known, as there is no source.
 #pragma once

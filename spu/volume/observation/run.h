@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run: consecutive draws of slices with one pipeline, kept instead of drawn until it is known what they mean.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/observation/stack_detection.h"
 
 #include "spu/volume/observation/draw_observer.h"

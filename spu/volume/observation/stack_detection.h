@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes as stacks of 2-D textures: what there is to see of them before anything is drawn.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For how long draws through 2-D textures are looked at: they may be the slices of a stack.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/observation/texture_changes.h"
 
 #include <algorithm>

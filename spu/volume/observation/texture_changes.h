@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which texture an upload changes: asked of the driver, while there are volumes and so somebody wants to know.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How slices are put together in the framebuffer: which of the operators that the nodes know the application's
 // blend equation and factors amount to, for colour and for alpha.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which draws may be a volume: the state that surrounds them, read from the driver when a draw is about to
 // happen.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The samplers of the application's programs, asked of the driver once a link.
 #pragma once
 

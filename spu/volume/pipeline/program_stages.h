@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The application's program, taken apart: its vertex stage alone, to capture what it computes, and its fragment
 // stage under a vertex stage of ours, to show it chosen samples.
 #pragma once

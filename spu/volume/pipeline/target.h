@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The framebuffer that slices are drawn into, as far as it changes what blending leaves there.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where images come from: the render service, with the application's own samples, or with those that keep the
 // error or the time that was asked for.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The image goes back where the slices would have been drawn: into whatever framebuffer the application has
 // bound.
 #pragma once

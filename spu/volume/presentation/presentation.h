@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that shows a volume: its image is rendered, checked, and put where the application would have
 // drawn.
 #pragma once

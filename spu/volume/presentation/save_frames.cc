@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/presentation/save_frames.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Composited frames as files: float images that can be compared to the last bit (`understudy compare`).
 #pragma once
 

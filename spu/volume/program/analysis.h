@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a program's shaders: sources in, facts out (facts.h). Needs no OpenGL context, and knows no driver.
 #pragma once
 

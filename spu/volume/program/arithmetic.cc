@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Operators and constructors.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs in assembly language: a straight line of instructions, so one walk over them is enough.
 #include <algorithm>
 #include <array>

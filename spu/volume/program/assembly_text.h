@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The text of programs in assembly language (ARB_vertex_program, ARB_fragment_program), cut into instructions.
 #pragma once
 

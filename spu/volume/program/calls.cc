@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls: into the functions of the text, and of built-in ones.
 #include <algorithm>
 #include <utility>

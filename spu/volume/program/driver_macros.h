@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Macros that a driver defines by what it can do. The front end can other things: where the text asks for such
 // a macro, it gets the driver's answer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which expressions change variables while they are evaluated. GLSL leaves open in which order the operands
 // around them are read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From what the walk has found to facts.
 #include <algorithm>
 #include <map>

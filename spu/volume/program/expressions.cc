@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expressions: from nodes of the tree to values.
 #include <utility>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a shader's text says about its values: which sources can reach which outputs, discards and texture
 // fetches.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What shaders read from textures, and what they do to images, buffers and counters.
 #include <algorithm>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/program/flow_sets.h"
 
 #include <algorithm>

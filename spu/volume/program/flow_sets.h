@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sets of dependences, each kept once: sets are equal when their numbers are, and a union is computed once.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL front end: glslang, which the Khronos Group keeps. Its symbols stay inside the library that links
 // this one: applications bring a glslang of their own.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What reaches a fragment's colour, depth and discards in the end, tables followed: a texel of a table is
 // replaced by what its coordinate depends on, a texel of the volume is where the way ends.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where ways through the program meet.
 #include <algorithm>
 

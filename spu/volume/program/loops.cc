@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops: walked over until nothing new is found, then left with what is known of the last iteration.
 #include <utility>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the components of an operator's result come from those of its operands.
 #pragma once
 

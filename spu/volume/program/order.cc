@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Operands, which GLSL lets be read in any order: where one of them changes variables, the others may read them
 // before or after it.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What can be assigned to: variables, their elements, members and components.
 #include <algorithm>
 #include <numeric>

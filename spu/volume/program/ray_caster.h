@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a fragment stage that marches through a volume shows besides its samples.
 #pragma once
 

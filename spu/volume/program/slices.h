@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a fragment stage that slices a volume shows a function of the sample and of nothing else.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statements: what is executed, and under which conditions.
 #include <utility>
 

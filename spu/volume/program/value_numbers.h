@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers for values: what has the same number is the same value, whatever the inputs are (value numbering;
 // Alpern, Wegman and Zadeck 1988). By them two fetches are known to read one texel, and a branch that changes
 // nothing to change nothing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values as the analysis knows them, and arithmetic on them.
 #pragma once
 

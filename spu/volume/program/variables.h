@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the variables of a shader lie: every number that one holds is a cell.
 #pragma once
 

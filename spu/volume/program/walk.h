@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Follows values through the tree of one shader stage: abstract interpretation, where a value is the set of
 // what it can depend on and a number that equal values share. Calls are followed into the functions, loops
 // until nothing new is found.

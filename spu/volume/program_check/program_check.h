@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the text of a program must say for its volume to be substituted. Measuring finds what colours are for
 // the values that were tried; the text says on what else they can depend (spu/volume/program).
 #pragma once

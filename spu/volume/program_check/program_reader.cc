@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/program_check/program_reader.h"
 
 namespace understudy::spu {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The application's programs as the volume unit knows them, each read once a link: taken apart for measuring,
 // and its text for what the colours can depend on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proxy geometry: the box whose faces a ray caster draws, and the rays through it.
 #pragma once
 

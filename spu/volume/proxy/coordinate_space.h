@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which input of the fragment stage addresses a ray caster's volume, and the box that is drawn in it.
 #pragma once
 

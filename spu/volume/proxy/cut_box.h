@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A box whose corner before the near plane was cut off, and closed again, by the application itself: what some
 // ray casters draw when the eye is inside their volume.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planes by which a ray caster cuts its volume: regions of a grid that it crops away, and half-spaces.
 //
 // An image tells such planes only to within a step, so they are read from the uniforms whose names say what

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The application's own draw over fields that are known: its volume is replaced by one value, its depth texture
 // by the far plane, its framebuffer by a float one, its cuts are lifted. Everything is put back.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casters that begin every ray a part of a step later than its neighbours, by a texture of noise.
 //
 // Which texture that is, and what its numbers mean, is found by showing others in its place: under a texture of

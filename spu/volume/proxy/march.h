@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a fragment shader marches through its volume, measured on what it draws.
 //
 // Four things are asked: which input of the fragment stage is the texture coordinate, how samples are placed on

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What nodes are asked to show for a march, and what their image becomes.
 #include <algorithm>
 

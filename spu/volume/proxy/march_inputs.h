@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the measurement of a ray caster depends on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colour of one sample of every value, measured on rays of few samples.
 #pragma once
 

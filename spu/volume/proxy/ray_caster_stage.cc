@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/proxy/ray_caster_stage.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage for ray casters: from the draw of a box, whose fragment shader marches, to a request. Stands where
 // upload, classification and composition stand for slices: how rays march says what colours mean, and is
 // measured on the texels' own range of values.

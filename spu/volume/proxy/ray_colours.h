@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colours of rays and of their samples: how samples add up to a ray, by over, as a sum, or as an extreme.
 #pragma once
 

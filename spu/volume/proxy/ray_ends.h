@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays that begin and end at planes inside their box, in the words of a request: every pixel's ray begins so
 // many steps later, and ends at the depth of the plane that it leaves by.
 #pragma once

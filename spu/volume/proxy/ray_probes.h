@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays through the application's box, looked at over fields of one value.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the number of samples on many rays to the rule that places them.
 #pragma once
 

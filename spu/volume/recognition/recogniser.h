@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The second stage: what a run of draws is. Its vertices are observed as the application's own pipeline places
 // them; a camera is fitted to them, and the slices' planes and segments are found. Cabral, Cam, Foran 1994 draw
 // such slices; Krüger and Westermann 2003 such a box.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A refusal: the application draws a run itself, and here is why.
 #pragma once
 

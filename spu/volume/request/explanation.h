@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What was recognised, in plain words, for the report.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is asked of the nodes for one run, and what their image needs besides to become the run's.
 #pragma once
 

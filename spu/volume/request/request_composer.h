@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that puts a request together: camera, samples, colours, window, and what hides the volume.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/session/frame_latency.h"
 
 #include <unistd.h>

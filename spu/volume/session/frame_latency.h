@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A render service before another one that lets the nodes work while the application does (`--frame-latency
 // 1`): while the camera moves, a request is answered with the image of the one before, and its own is cast
 // until the next one comes. A request that is asked again is answered with its own image, so that what a

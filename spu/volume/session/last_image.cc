@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/session/last_image.h"
 
 #include <unistd.h>

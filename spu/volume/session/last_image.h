@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A render service before another one: a request that was asked before is answered with the image that is
 // still there. Some viewers draw all they show twice a frame; all draw frames in which nothing has moved.
 #pragma once

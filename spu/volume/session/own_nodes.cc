@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/session/own_nodes.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Render nodes for a process that was started without the launcher: UNDERSTUDY_NODES=4 with plain LD_PRELOAD.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/session/render_session.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The process's one way to the render service: made when the first volume is recognised, shared by all
 // contexts, and made again after a node group was lost.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage for slices: from a recognised run to a request, by way of upload, classification and composition.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The volume itself, read from the driver.
 //
 // Whatever way the texels went up (whole, slice by slice, from a buffer, copied, defined twice), the driver

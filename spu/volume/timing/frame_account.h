@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One context's part of a frame: where its time goes, and what it did and left out.
 #pragma once
 

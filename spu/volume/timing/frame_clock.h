@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the volume unit's part of a frame goes: recognising, reading depth, uploading, rendering,
 // verifying, presenting.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each context of the process did since its last frame end. A context that draws into framebuffer objects
 // and ends no frames draws for those that do (Qt's widgets have a context of their own, and are shown by
 // another): its figures go to the next frame that ends anywhere.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Never slower than the viewer: what substituting a volume costs is held against what the application's own
 // drawing costs, which is measured whenever an image is compared whole. Where substituting was slower over a
 // second, the application draws; it is tried again after a pause, which grows as long as nothing has changed.

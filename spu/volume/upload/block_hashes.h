@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What was sent of a volume, as one 64-bit hash per block: enough to tell which texels differ when the
 // application uploads them all again, without keeping them. Two different blocks pass for equal once in 2^64.
 #pragma once

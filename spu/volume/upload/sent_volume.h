@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the render service holds of one texture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a texture to the render service: all texels once, and then only those that differ.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that brings a texture's texels to the render nodes: once, and then what changes of them.
 #pragma once
 

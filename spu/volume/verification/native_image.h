@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the application itself would draw: its run, repeated off screen into a float framebuffer.
 //
 // An 8-bit framebuffer loses fog (between 52 and 57 dB for usual slices, 39 dB at alpha 2/255), and would hold

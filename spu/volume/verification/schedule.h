@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a substituted volume is compared with what the application itself would draw.
 //
 //   whole image, before it is shown:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bound for every tile of an image, not an average over all of it: a wrong tile must fail in an image that is
 // dark elsewhere, and a right image under a step table must pass.
 //

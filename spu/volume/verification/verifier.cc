@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/verification/verifier.h"
 
 #include <fmt/format.h>

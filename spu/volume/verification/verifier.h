@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage that compares an image with what the application itself would draw, before it is shown: whole, or
 // in sentinels (schedule.h says when, tile_comparison.h by what bound).
 #pragma once

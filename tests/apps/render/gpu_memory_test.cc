@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes larger than the memory that OpenGL may take, as the user of `understudy render` meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One rank or four: the same image, under a table so narrow that samples mostly miss it as well.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

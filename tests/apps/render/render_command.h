@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy render` run by a test, in a folder of its own.
 #pragma once
 

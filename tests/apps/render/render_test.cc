@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy render` as its user sees it: images of files without a viewer, in one process and on nodes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

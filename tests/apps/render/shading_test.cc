@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces, light and segments as the user of `understudy render` asks for them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

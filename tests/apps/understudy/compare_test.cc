@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy compare`: what two images differ by, and which files it reads.
 #include "apps/understudy/cli/compare.h"
 

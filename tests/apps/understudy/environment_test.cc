@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environments of children: injection methods for the viewer, none for the nodes.
 #include "apps/understudy/launch/environment.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One table serves the command line and the environment.
 #include "spu/options.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where ranks go: hostfiles, Slurm's lists and environment, and the command line that Open MPI gets of them.
 #include "apps/understudy/hosts/placement.h"
 

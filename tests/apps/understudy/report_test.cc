@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counters outlive their process, and the report says what they hold.
 #include "spu/report/report.h"
 

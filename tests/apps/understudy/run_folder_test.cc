@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder of a run is private, and gone at the end.
 #include "apps/understudy/launch/run_folder.h"
 

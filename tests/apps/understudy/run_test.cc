@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy run` as its user sees it: the viewer's own exit status, one summary line, nothing left behind.
 // The viewers here are shell commands; they open no OpenGL.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy study` as its user sees it: what is wrong is said, what was measured is kept, the page shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of `understudy study`: what it measures, and what it keeps.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera under the hand: what an arcball promises, and that images follow the pointer.
 #include "apps/understudy/view/camera.h"
 

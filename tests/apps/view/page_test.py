@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """page_test.py PROGRAMS OUT: the page of `understudy view --web` in a real browser, without a screen.
 
 It is opened by its link, turned with the mouse, its transfer function is edited, a surface is lit, boxes are drawn, a node

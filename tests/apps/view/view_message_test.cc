@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What pages ask for: every key arrives, what cannot be believed is refused, and what is believed can be drawn.
 #include "apps/understudy/view/view_message.h"
 

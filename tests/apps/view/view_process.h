@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy view --web 0`, started by a test.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `understudy view` as a whole: its images are those of `understudy render`, whatever viewers and nodes do.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

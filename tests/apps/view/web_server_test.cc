@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The server against those who should not be let in, or not for long. Sockets are real.
 #include "apps/understudy/view/web_server.h"
 

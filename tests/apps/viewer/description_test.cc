@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the viewer writes with --describe is enough to recompute its image without OpenGL: an emulation in
 // double precision that knows nothing but the description and the volume file agrees with it.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/apps/viewer/run_viewer.h"
 
 #include <fcntl.h>

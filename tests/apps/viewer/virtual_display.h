@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An X server without a screen, for tests of the window.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver that says that it was loaded.
 #include <cstdio>
 

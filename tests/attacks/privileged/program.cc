@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens EGL and asks it for its driver; says whether the kernel takes it for a program with more rights than
 // its user has.
 #include <dlfcn.h>

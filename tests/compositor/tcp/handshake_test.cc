@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who is let in, and what everybody else is told: nothing is believed that has not been proved.
 #include "compositor/transport/tcp/handshake.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/compositor/tcp/line.h"
 
 #include <fcntl.h>

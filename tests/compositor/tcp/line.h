@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line between clients and a server that a test can hold still or cut: it connects on whoever connects here.
 #pragma once
 

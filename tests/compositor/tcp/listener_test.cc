@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The listener under people who do not belong there: none of them disturbs those who do, and nothing of them
 // stays.
 #include "compositor/transport/tcp/listener.h"

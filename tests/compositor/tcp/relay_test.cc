@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Applications and nodes that meet over TCP: images are those of a Unix socket, a line that is cut for a
 // while goes on where it was, and one that is gone ends both sides.
 #include "compositor/transport/tcp/relay.h"

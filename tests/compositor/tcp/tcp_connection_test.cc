@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Links whose other end is busy, and such whose other end is gone.
 #include "compositor/transport/tcp/tcp_connection.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What travels over TCP comes out as it went in, whatever pieces it arrives in, and what cannot be is refused.
 #include "compositor/transport/tcp/tcp_message_reader.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // around_main destroyed|current [FILE]: OpenGL before main, from a constructor, and after it, from a handler of
 // atexit and a destructor; the context is destroyed at main's end, or still current. Mesa's llvmpipe has taken
 // itself apart by then; its softpipe draws on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // forks SCENE: a process that forks before or after it has a context.
 #include <string.h>
 #include <sys/wait.h>

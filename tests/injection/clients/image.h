@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An image made of many kinds of calls, the number that stands for its pixels, and a volume in slices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // oddities SCENE: lawful but unusual lives of contexts.
 #include <pthread.h>
 #include <string.h>

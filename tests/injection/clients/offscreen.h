@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A context of desktop OpenGL with a small framebuffer of its own, by EGL and without a window system.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // osmesa FILE: draws images and then a volume through OSMesa, which it is linked with. FILE gets the last
 // image of the volume; a second argument `depth` has it print the depth buffer's bytes too.
 #include <GL/osmesa.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contexts of OSMesa and of EGL by turns on one thread: two OpenGLs in one program.
 #include <GL/osmesa.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // osmesa_opened LIBRARY dlsym|address: opens OSMesa and asks the loader, or OSMesaGetProcAddress, for all else.
 #include <GL/osmesa.h>
 #include <dlfcn.h>

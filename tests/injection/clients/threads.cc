@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // threads shared|apart|volumes: two threads, each with a context of its own that shares objects with the other
 // or does not, draw many images at the same time.
 #include <pthread.h>

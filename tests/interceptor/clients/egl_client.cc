@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program of EGL that needs no display: handles are plain numbers, and the test driver takes them.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

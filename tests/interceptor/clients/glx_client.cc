@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program of GLX that needs no X server: handles are plain numbers, and the test driver takes them.
 #include <GL/glx.h>
 #include <pthread.h>

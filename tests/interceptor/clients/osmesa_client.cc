@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program of OSMesa: handles are plain numbers, and the test driver takes them.
 #include <GL/gl.h>
 #include <GL/osmesa.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A core for tests: it says what the entry library tells it, and which calls reach its table.
 #include "interceptor/core.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver for tests: it draws nothing and says what it is asked to do, one line a call on standard output.
 #pragma once
 

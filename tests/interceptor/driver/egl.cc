@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libEGL.so.1 of the test driver.
 #include <string.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libGLX.so.0 of the test driver.
 #include <dlfcn.h>
 #include <string.h>

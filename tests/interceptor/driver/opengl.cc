@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libOpenGL.so.0 of the test driver. It has no glAccum: what a driver lacks can be tested.
 #include "driver.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libOSMesa.so.8 of the test driver: with an OpenGL of its own.
 #include <string.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // names [LIBRARY…]: opens the libraries in that order, uses each so that its driver is loaded, then says for
 // every one which file a function of it comes from. Built without libraries and linked with each of them.
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program that never touches OpenGL, though it opens a library: says which files are mapped.
 #include <dlfcn.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // opened LIBRARY FUNCTION: opens the library and calls the function with one argument, 0.
 #include <dlfcn.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens OSMesa, and asks OSMesaGetProcAddress for the rest.
 #include <dlfcn.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // plugin_host PLUGIN [deep]: opens a plugin, which may have its own OpenGL in front with RTLD_DEEPBIND, and
 // draws.
 #include <dlfcn.h>

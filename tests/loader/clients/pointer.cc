@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A library with a global variable named like the function that it will point to, as some loaders have.
 #include <dlfcn.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linked with libGL, but gets glClear from glXGetProcAddressARB, as every extension loader does.
 #include <stdio.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dispatch/call_id.h"
 
 #include <gtest/gtest.h>

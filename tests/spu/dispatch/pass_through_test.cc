@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dispatch/pass_through.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every dialect that a driver may be given: all versions, several shaders of one stage, stages other than
 // fragments.
 #include <gmock/gmock.h>

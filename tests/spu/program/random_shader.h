@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fragment shaders by chance: everything that values can be led through, in any order.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What ray casters show besides their samples.
 #include "spu/volume/program/ray_caster.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether slices show a function of the sample, and what is said where they do not.
 #include "spu/volume/program/slices.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A source that is not listed has no influence: tried with shaders made by chance, on a real driver.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

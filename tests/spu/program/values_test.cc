@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What values depend on: component by component, through variables, functions, branches and loops.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shaders that are in use: those of the bundled viewer, read from its sources.
 #include <gmock/gmock.h>
 

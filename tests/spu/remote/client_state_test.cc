@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The client's side of OpenGL's state follows from the calls.
 #include "spu/remote/client_state.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What applications and GL servers say to each other: all of it arrives, and nothing that is cut or absurd is
 // believed.
 #include "spu/remote/gl_server_protocol.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An application of one window whose calls a GL server makes, in a process of its own.
 #pragma once
 

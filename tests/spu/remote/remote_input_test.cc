@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What fuzzers begin with, and much that is nearly that.
 #include "tests/fuzz/remote_input.h"
 

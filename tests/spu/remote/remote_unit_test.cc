@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A chain whose calls a GL server makes, in a process of its own: what OpenGL answers there is what the
 // application sees here.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arguments for any command of the registry, with memory behind every pointer.
 #pragma once
 

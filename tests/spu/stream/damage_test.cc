@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Streams that nobody in his right mind would have written: an error that names the place, never a crash, a
 // hang or memory beyond what the file may claim. tests/fuzz looks for more of the kind.
 #include <gtest/gtest.h>

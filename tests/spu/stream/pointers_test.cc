@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a stream from elsewhere says of pointers: OpenGL is handed bytes that came with it, memory of ours, or
 // an offset within a buffer object, and nothing else.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver for tests of streams that are not to be believed: it reads and writes every argument to its extent,
 // as a driver that checks nothing would. Under AddressSanitizer whatever lies outside is seen.
 //

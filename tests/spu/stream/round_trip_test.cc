@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every command of the registry through the stream and back: OpenGL sees the same.
 #include <gtest/gtest.h>
 

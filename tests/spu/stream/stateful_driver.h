@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver for tests of the stream: it keeps the few things a stream depends on -- the pixel store and the
 // bindings -- and notes every call with what its pointers point at.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an application sees and shows where tile workers draw tiles of its window is what it sees and shows
 // where one process draws all of it, to the last bit.
 #include "spu/tiles/tiles.h"

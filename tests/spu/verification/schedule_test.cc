@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a substituted image is compared with the application's own.
 #include "spu/volume/verification/schedule.h"
 

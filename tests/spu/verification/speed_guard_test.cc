@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The application draws where that is faster.
 #include "spu/volume/timing/speed_guard.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bound that every tile of an image must keep: right images pass, one wrong tile fails.
 #include "spu/volume/verification/tile_comparison.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that are not what they say: an error that names the file and the next step, never a crash or a huge
 // allocation.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every format: what was written comes back, whole and in parts, and a part costs no more than it must.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

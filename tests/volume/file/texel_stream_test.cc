@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From scalars to texels: exact where it can be, and where it cannot the error is told.
 #include "volume/file/texel_stream.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes to write into files, and what came back out of them.
 #pragma once
 

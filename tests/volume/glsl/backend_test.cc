@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who casts the rays: what is asked for, what is measured, and what happens where OpenGL cannot.
 #include "volume/glsl/backend.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Volumes that textures cannot hold at once: by bricks that come and go, in passes, on EGL and on OSMesa. What
 // is drawn must be what one texture would show.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small scenes that the ray caster in GLSL draws: every texel type, operator, wrapping and kind of step.
 #pragma once
 

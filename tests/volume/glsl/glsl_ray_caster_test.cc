@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray caster in GLSL against the double-precision reference and against the CPU, on EGL and on OSMesa.
 #include "volume/glsl/glsl_ray_caster.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hard cases and random scenes in OpenGL, against the same samples in double precision.
 #include <gtest/gtest.h>
 

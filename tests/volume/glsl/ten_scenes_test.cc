@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ten volumes, measured and computed, as every ray caster draws them, against double precision: samples on the
 // CPU and in OpenGL, and pre-integrated segments on the CPU.
 #include <gtest/gtest.h>

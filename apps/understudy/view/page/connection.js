@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The conversation with the program: it proves that it knows the secret, and comes back when it was cut.
 
 const again_ms = 1000;

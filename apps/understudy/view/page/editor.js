@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The transfer function: control points over the volume's values, above the volume's histogram.
 
 const radius = 6;

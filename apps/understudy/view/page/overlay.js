@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The boxes of the ranks, drawn over the image with the camera that it was taken with.
 
 export function colourOf(rank) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page: what the hand does becomes requests, one at a time; what comes back is shown.
 import {Connection} from '/connection.js';
 import {TransferEditor, colourIn, hexOf} from '/editor.js';

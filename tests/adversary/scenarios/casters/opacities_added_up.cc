@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/adversary/caster_scene.h"
 #include "tests/adversary/scenario.h"
 

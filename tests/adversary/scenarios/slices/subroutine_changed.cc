@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/adversary/odd_tables.h"
 #include "tests/adversary/scenario.h"
 #include "tests/adversary/slice_scene.h"

@@ -263,7 +263,7 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
   const fs::path said = folder_ / "said";
   const pid_t launcher = fork();
   if (launcher == 0) {
-    freopen(said.c_str(), "w", stderr);
+    if (freopen(said.c_str(), "w", stderr) == nullptr) _exit(98);
     const std::string script = "echo $UNDERSTUDY_CONNECT >" + socket_file.string() + ".part; mv " +
                                socket_file.string() + ".part " + socket_file.string() + "; while [ ! -e " +
                                done.string() + " ]; do sleep 0.1; done";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How programs and libraries are built: an error in one of them should not be worth more than its end.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

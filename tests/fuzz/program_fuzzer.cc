@@ -14,12 +14,12 @@ namespace {
 
 using namespace understudy::spu::program;
 
-void check(const GlServerFacts& facts, const Dependences& dependences) {
+void check(const StageFacts& facts, const Dependences& dependences) {
   for (const Dependence& dependence : dependences)
     if (dependence.source >= facts.sources.size()) std::abort();
 }
 
-void check(const GlServerFacts& facts) {
+void check(const StageFacts& facts) {
   for (const Source& source : facts.sources) {
     if (source.kind == SourceKind::texel && source.number >= facts.fetches.size()) std::abort();
     if (source.component < 0 || source.component >= source.components) std::abort();
@@ -38,9 +38,9 @@ void check(const GlServerFacts& facts) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::vector<std::string> sources{std::string(reinterpret_cast<const char*>(data) + 1, size - 1)};
-  const GlServerFinding finding =
-      sources[0].starts_with("!!") ? analyse_assembly(sources[0]) : analyse(GlServer(data[0] % 3), sources);
-  if (const auto* facts = std::get_if<GlServerFacts>(&finding)) {
+  const StageFinding finding =
+      sources[0].starts_with("!!") ? analyse_assembly(sources[0]) : analyse(Stage(data[0] % 3), sources);
+  if (const auto* facts = std::get_if<StageFacts>(&finding)) {
     check(*facts);
     const std::vector<std::string> volumes{facts->fetches.empty() ? "" : facts->fetches[0].sampler};
     slice_finding(*facts, volumes);

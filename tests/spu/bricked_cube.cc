@@ -52,9 +52,10 @@ std::vector<BrickedCube::Interval> BrickedCube::cut(int size, int edge) {
 
 BrickedCube::BrickedCube(GlApplication& app, int edge, BrickKind kind) : kind_(std::move(kind)) {
   if (kind_.colour != nullptr) {
-    const std::string fragments =
-        std::string("#version 120\n") + "uniform sampler3D field; varying vec3 place; void main() { " +
-        "vec4 texel = texture3D(field, place); float s = texel.r; gl_FragColor = " + kind_.colour + "; }";
+    std::string fragments =
+        "#version 120\nuniform sampler3D field; varying vec3 place; void main() { "
+        "vec4 texel = texture3D(field, place); float s = texel.r; gl_FragColor = ";
+    fragments.append(kind_.colour).append("; }");
     program_ = glsl_program(app.gl(), vertices, fragments.c_str());
   }
   const Blob blob;

@@ -98,7 +98,8 @@ TEST(BadFiles, VtiHeadersThatCannotBe) {
       "<ImageData WholeExtent=\"0 3 0 2 0 1\"><Piece Extent=\"0 3 0 2 0 1\"><PointData>"
       "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/></PointData></Piece></ImageData>"
       "<AppendedData encoding=\"raw\">_";
-  const std::string data = std::string("\x18\0\0\0", 4) + "012345678901234567890123</AppendedData></VTKFile>";
+  std::string data("\x18\0\0\0", 4);
+  data += "012345678901234567890123</AppendedData></VTKFile>";
   EXPECT_EQ(trouble_with(folder.write("ok.vti", good + data)), "");
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;

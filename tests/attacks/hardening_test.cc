@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class Hardening : public clients::Stage {
+class Hardening : public clients::CommandTest {
  protected:
   static std::vector<std::string> binaries() {
     std::vector<std::string> found;

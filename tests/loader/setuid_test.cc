@@ -32,7 +32,7 @@ class Setuid : public ::testing::TestWithParam<InjectionMethod> {
 
   Outcome as_nobody(InjectionMethod injection) const {
     std::vector<std::string> environment = environment_of(injection);
-    environment.push_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
+    environment.emplace_back("UNDERSTUDY_DRIVER_DIR=" TEST_DRIVER);
     return run_program(environment, {"setpriv", "--reuid=65534", "--clear-groups", program()});
   }
 

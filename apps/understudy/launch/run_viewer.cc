@@ -252,8 +252,7 @@ struct RunPlan {
 /// Throws CannotRun for options that exclude each other.
 void check_combination(const RunArguments& arguments, const spu::Options& options) {
   if (!arguments.remote && arguments.injection && stands_in_viewer(options.chain))
-    throw CannotRun(
-        "a chain that ends in remote is for viewers whose calls are made elsewhere; add --remote");
+    throw CannotRun("a chain that ends in remote is for viewers whose calls are made elsewhere; add --remote");
   if (arguments.remote && options.disable)
     throw CannotRun(
         "--remote and UNDERSTUDY_DISABLE exclude each other: without Understudy the viewer's calls go nowhere; "

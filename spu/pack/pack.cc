@@ -58,7 +58,7 @@ std::uint64_t Pack::hand_on(const PackedCall* last) {
 
 constinit const UnitDescription pack_description{
     .name = "pack",
-    .help = "turns calls into records, for unpack or link behind it",
+    .help = "turns calls into records, for unpack or remote behind it",
     .options = options,
     .leads_to = "unpack",
     .or_leads_to = "remote",

@@ -206,9 +206,9 @@ int doctor() {
   for (const Check& check : checks) {
     const Finding finding = look_apart(check);
     if (finding.works) {
-      fmt::print("ok       {:8}{}\n", check.name, finding.what);
+      fmt::print("ok       {:18}{}\n", check.name, finding.what);
     } else {
-      fmt::print("missing  {:8}{}; fix: {}\n", check.name, finding.what, check.fix);
+      fmt::print("missing  {:18}{}; fix: {}\n", check.name, finding.what, check.fix);
     }
     std::fflush(stdout);
   }

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/classification/sample_rounding.h"
 
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include "spu/volume/classification/table_lookup.h"
 
 namespace understudy::spu {
 namespace {
 
 constexpr double steps = 255;
-
-volume::Rgba entry_at(const volume::TransferFunction& table, double value) {
-  const auto last = double(table.entries.size() - 1);
-  const double place = std::clamp((value - table.low) / (double(table.high) - table.low), 0.0, 1.0) * last;
-  const auto below = std::size_t(place);
-  const std::size_t above = std::min(below + 1, table.entries.size() - 1);
-  const auto share = float(place - double(below));
-  volume::Rgba colour;
-  for (std::size_t c = 0; c < 4; ++c)
-    colour[c] = table.entries[below][c] + share * (table.entries[above][c] - table.entries[below][c]);
-  return colour;
-}
 
 }  // namespace
 
@@ -31,7 +21,7 @@ volume::TransferFunction with_rounded_samples(const volume::TransferFunction& ta
   rounded.entries.reserve(entries);
   for (std::size_t i = 0; i < entries; ++i) {
     const double value = table.low + extent * double(i) / double(entries - 1);
-    rounded.entries.push_back(entry_at(table, std::round(value * steps) / steps));
+    rounded.entries.push_back(table_at(table, float(std::round(value * steps) / steps)));
   }
   return rounded;
 }

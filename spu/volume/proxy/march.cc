@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/ray_colours.h"

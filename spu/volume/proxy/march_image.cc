@@ -2,6 +2,7 @@
 // What nodes are asked to show for a march, and what their image becomes.
 #include <algorithm>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "volume/request.h"

@@ -26,9 +26,6 @@ float brightest_channel(const volume::Rgba& colour);
 volume::Rgba sample_of(const March& march, const volume::Rgba& ray, double n);
 volume::Rgba ray_of(const March& march, const volume::Rgba& sample, double n);
 
-/// Linear between entries.
-volume::Rgba table_at(const volume::TransferFunction& table, float value);
-
 /// How much of a ray's samples is seen: between nothing and 1, but for sums that shine brighter.
 float amount(const March& march, const volume::Rgba& ray);
 

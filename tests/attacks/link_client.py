@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The client's end of a TCP link: handshake and messages (compositor/transport/tcp/handshake.h, tcp_message_reader.h; 127.0.0.1 only)."""
+"""The client's end of a TCP link: handshake, records and messages (compositor/transport/tcp/handshake.h, session_keys.h, record.h,
+tcp_message_reader.h; 127.0.0.1 only)."""
 
+import ctypes
 import hashlib
 import hmac
 import os
@@ -8,34 +10,87 @@ import socket
 import struct
 
 HELLO = b"UNDERLNK"
-LINK_VERSION = 2
+LINK_VERSION = 3
+ONLY_ASKS, PLAIN = 1, 2
 MESSAGE_MAGIC = 0x59445355
 MESSAGE_HEAD = struct.Struct("<IBBHQQ")
 BLOCK_BYTES = 1 << 18
+RECORD_BYTES = 1 << 16
+STREAM_HEAD_BYTES, SEAL_BYTES = 24, 17
 # Protocol, version, number: compositor/service/launcher_protocol.h, spu/remote/gl_server_protocol.h, line_protocol.h.
 TYPES = {"hello_client": (1, 12, 1), "hello_nodes": (1, 12, 2), "accepted": (1, 12, 4), "refused": (1, 12, 5),
          "calls": (4, 12, 1), "answered": (4, 12, 2), "image": (4, 12, 3), "line_alive": (5, 1, 1)}
 NAMES = {number: name for name, number in TYPES.items()}
+
+SODIUM = ctypes.CDLL("libsodium.so.23")
+SODIUM.sodium_init()
+SODIUM_STREAM = "crypto_secretstream_xchacha20poly1305_"
+
+
+def stream(name, *arguments):
+    return getattr(SODIUM, SODIUM_STREAM + name)(*arguments)
 
 
 class Closed(Exception):
     """The server ended the connection."""
 
 
-class LinkClient:
-    def __init__(self, port, secret, to_server):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=30)
-        hello = HELLO + struct.pack("<IBBBB", LINK_VERSION, int(to_server), 0, 0, 0) + os.urandom(32)
-        self.socket.sendall(hello)
-        challenge = self.receive_bytes(48)
-        key = hashlib.blake2b(secret, digest_size=32).digest()
-        said = b"understudy link: client" + hello + challenge + struct.pack("<I", 0)
-        self.socket.sendall(hmac.new(key, said, hashlib.sha512).digest()[:32])
-        verdict = struct.unpack_from("<I", self.receive_bytes(40))[0]
-        if verdict != 0:
-            raise Closed(f"verdict {verdict}")
+class Sealer:
+    """One direction's records; `seal` gives what is to be sent."""
 
-    def receive_bytes(self, count):
+    def __init__(self, key):
+        self.state = ctypes.create_string_buffer(stream("statebytes"))
+        head = ctypes.create_string_buffer(STREAM_HEAD_BYTES)
+        stream("init_push", self.state, head, key)
+        self.head = head.raw
+
+    def seal(self, plain):
+        length = struct.pack("<I", len(plain) + SEAL_BYTES)
+        sealed = ctypes.create_string_buffer(len(plain) + SEAL_BYTES)
+        stream("push", self.state, sealed, None, plain, ctypes.c_ulonglong(len(plain)), length, ctypes.c_ulonglong(4), 0)
+        head, self.head = self.head, b""
+        return head + length + sealed.raw
+
+
+class Opener:
+    def __init__(self, key, head):
+        self.state = ctypes.create_string_buffer(stream("statebytes"))
+        stream("init_pull", self.state, head, key)
+
+    def open(self, length, sealed):
+        plain = ctypes.create_string_buffer(len(sealed))
+        if stream("pull", self.state, plain, None, None, sealed, ctypes.c_ulonglong(len(sealed)), length, ctypes.c_ulonglong(4)):
+            raise Closed("a record does not open")
+        return plain.raw[: len(sealed) - SEAL_BYTES]
+
+
+class LinkClient:
+    def __init__(self, port, secret, to_server, flags=0, pretends=0):
+        """`pretends`: flags that the proof covers and that the server is not told (somebody on the way)."""
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=30)
+        self.opener = self.sealer = None
+        self.opened = b""
+        public, private = ctypes.create_string_buffer(32), ctypes.create_string_buffer(32)
+        SODIUM.crypto_kx_keypair(public, private)
+        hello = HELLO + struct.pack("<IBBBB", LINK_VERSION, int(to_server), 0, 0, flags) + os.urandom(32) + public.raw
+        self.socket.sendall(hello)
+        challenge = self.receive_raw(48 + 32)
+        key = hashlib.blake2b(secret, digest_size=32).digest()
+        proved = hello[:15] + bytes([flags ^ pretends]) + hello[16:] + challenge
+        said = b"understudy link: client" + proved + struct.pack("<I", 0)
+        self.socket.sendall(hmac.new(key, said, hashlib.sha512).digest()[:32])
+        self.verdict = struct.unpack_from("<I", self.receive_raw(40))[0]
+        if self.verdict != 0:
+            raise Closed(f"verdict {self.verdict}")
+        if flags & PLAIN:
+            return
+        receive, send = ctypes.create_string_buffer(32), ctypes.create_string_buffer(32)
+        if SODIUM.crypto_kx_client_session_keys(receive, send, public, private, challenge[-32:]):
+            raise Closed("the server's key is none")
+        self.sealer = Sealer(bound(send.raw, key, proved))
+        self.receive_key = bound(receive.raw, key, proved)
+
+    def receive_raw(self, count):
         got = b""
         while len(got) < count:
             part = self.socket.recv(count - len(got))
@@ -44,12 +99,28 @@ class LinkClient:
             got += part
         return got
 
+    def receive_bytes(self, count):
+        if self.sealer is None:
+            return self.receive_raw(count)
+        if self.opener is None:
+            self.opener = Opener(self.receive_key, self.receive_raw(STREAM_HEAD_BYTES))
+        while len(self.opened) < count:
+            length = self.receive_raw(4)
+            self.opened += self.opener.open(length, self.receive_raw(struct.unpack("<I", length)[0]))
+        got, self.opened = self.opened[:count], self.opened[count:]
+        return got
+
     def send(self, name, payload=b""):
         message = MESSAGE_HEAD.pack(MESSAGE_MAGIC, *TYPES[name], len(payload), 0)
         for at in range(0, len(payload), BLOCK_BYTES):
             block = payload[at : at + BLOCK_BYTES]
             message += struct.pack("<II", len(block), len(block)) + block
-        self.socket.sendall(message)
+        self.socket.sendall(self.sealed(message))
+
+    def sealed(self, plain):
+        if self.sealer is None:
+            return plain
+        return b"".join(self.sealer.seal(plain[at : at + RECORD_BYTES]) for at in range(0, len(plain), RECORD_BYTES))
 
     def receive(self):
         """(name, payload); compressed blocks, which no answer here has, as zeros."""
@@ -63,3 +134,7 @@ class LinkClient:
                 payload += block if travelling >> 24 == 0 else bytes(plain)
             if NAMES.get(number) != "line_alive":
                 return NAMES.get(number, number), payload
+
+
+def bound(agreed, key, said):
+    return hashlib.blake2b(b"understudy session key" + agreed + said, key=key, digest_size=32).digest()

@@ -6,14 +6,13 @@
 The session goes on, or ends; the server says which call was left out.
 """
 
-import re
 import struct
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from attacked_server import port_of, server
 from link_client import Closed, LinkClient
 from trace_blocks import stable_id
 
@@ -48,25 +47,6 @@ class Session:
         head = struct.pack("<QQQQ", 1, int(answer), len(words), 0)
         self.link.send("calls", head + struct.pack(f"<{1 + len(heads) + len(words)}Q", len(heads), *heads, *words))
         return self.link.receive()[1] if answer else b""
-
-
-def server(program, folder):
-    environment = {"PATH": "/usr/bin:/bin", "HOME": str(folder), "SECRET_OF_THE_SERVER": WANTED.decode()}
-    log = (folder / "log").open("wb")
-    return subprocess.Popen(
-        [program, "serve", "-n", "1", "--socket", folder / "nodes.sock", "--listen", ":0", "--secret-file", folder / "secret", "--gl-server"],
-        stdout=log, stderr=log, env=environment, cwd=folder)
-
-
-def port_of(process, folder):
-    for _ in range(600):
-        found = re.search(r"and at 127\.0\.0\.1:([0-9]+)", (folder / "log").read_text(errors="replace"))
-        if found:
-            return int(found[1])
-        if process.poll() is not None:
-            break
-        time.sleep(0.1)
-    raise SystemExit(f"the server does not listen:\n{(folder / 'log').read_text(errors='replace')}")
 
 
 def server_of_client(process):
@@ -136,7 +116,7 @@ def attack(session, pid, attempt, address):
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        process = server(sys.argv[1], folder)
+        process = server(sys.argv[1], folder, "--gl-server", SECRET_OF_THE_SERVER=WANTED.decode())
         try:
             port = port_of(process, folder)
             secret = (folder / "secret").read_bytes()

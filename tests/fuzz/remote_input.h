@@ -43,12 +43,13 @@ inline void shake_hands(std::span<const std::byte> input) {
   may_refuse([&] {
     ServerHandshake server(secret);
     server.answer(part(0, hello_bytes));
-    server.answer(part(hello_bytes, proof_bytes));
+    server.answer(part(hello_bytes, public_key_bytes));
+    server.answer(part(hello_bytes + public_key_bytes, proof_bytes));
   });
   may_refuse([&] {
     ClientHandshake client(secret, {});
-    client.answer(part(0, challenge_bytes));
-    client.finish(part(challenge_bytes, verdict_bytes));
+    client.answer(part(0, challenge_bytes + public_key_bytes));
+    client.finish(part(challenge_bytes + public_key_bytes, verdict_bytes));
   });
 }
 

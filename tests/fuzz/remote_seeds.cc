@@ -6,6 +6,7 @@
 
 #include "compositor/relay/jpeg.h"
 #include "compositor/transport/tcp/block_codec.h"
+#include "tests/fuzz/record_input.h"
 #include "tests/fuzz/remote_input.h"
 
 namespace understudy::spu::testing {
@@ -100,7 +101,8 @@ Seeds remote_seeds() {
   compositor::ClientHandshake client(secret, {});
   compositor::ServerHandshake server(secret);
   Buffer of_client = client.hello();
-  Buffer of_server = server.answer(of_client);
+  server.answer(std::span(of_client).first(compositor::hello_bytes));
+  Buffer of_server = server.answer(std::span(of_client).subspan(compositor::hello_bytes));
   const Buffer proof = client.answer(of_server);
   append(of_client, std::span<const std::byte>(proof));
   server.answer(proof);
@@ -115,6 +117,18 @@ Seeds remote_seeds() {
           travelling(compositor::NodeMessage::rendered, some_rendered(coding), codec);
     seeds["calls_" + name] = travelling(GlServerMessage::calls, some_calls(), codec);
     seeds["image_" + name] = travelling(GlServerMessage::image, some_image(PixelCoding::jpeg), codec);
+  }
+  return seeds;
+}
+
+Seeds record_seeds() {
+  Seeds seeds;
+  for (const std::size_t size : {0UL, 1UL, 300UL, 20'000UL}) {
+    compositor::RecordSealer sealer(fuzzed_key);
+    Buffer line;
+    for (int record = 0; record < 3; ++record)
+      append(line, sealer.seal(Buffer(size / std::size_t(record + 1), std::byte(record))));
+    seeds[std::to_string(size)] = line;
   }
   return seeds;
 }

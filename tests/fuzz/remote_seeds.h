@@ -14,6 +14,8 @@ using Seeds = std::map<std::string, std::vector<std::byte>>;  ///< by what they 
 
 /// For play_remote_input() of remote_input.h.
 Seeds remote_seeds();
+/// For open_records() of record_input.h.
+Seeds record_seeds();
 /// For play_gl_server_input().
 Seeds gl_server_seeds();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// write_remote_seeds FOLDER_OF_LINKS FOLDER_OF_STAGES
+// write_remote_seeds FOLDER_OF_LINKS FOLDER_OF_STAGES FOLDER_OF_RECORDS
 #include <filesystem>
 #include <fstream>
 
@@ -16,7 +16,8 @@ void write(const std::filesystem::path& folder, const understudy::spu::testing::
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 3) return 2;
+  if (count != 4) return 2;
   write(arguments[1], understudy::spu::testing::remote_seeds());
   write(arguments[2], understudy::spu::testing::gl_server_seeds());
+  write(arguments[3], understudy::spu::testing::record_seeds());
 }

@@ -145,7 +145,7 @@ Finding look_at_mpi() {
     pclose(output);
   }
   line[std::strcspn(line.data(), "\n")] = '\0';
-  return {true, fmt::format("{} at {}", line.data(), mpirun->string())};
+  return {true, fmt::format("{} at {}; between hosts it encrypts nothing", line.data(), mpirun->string())};
 }
 
 Finding look_at_nodes() {

@@ -48,7 +48,8 @@ void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile) 
           "--hostfile", hostfile,
           "MPI ranks on these hosts, this one among them: a host a line as in 'node1 slots=2', comments "
           "behind '#'; without -n as many as there are slots. Programs and libraries must be there under "
-          "the same path, and the launch agent (ssh, or OMPI_MCA_plm_rsh_agent) must ask for no password")
+          "the same path, and the launch agent (ssh, or OMPI_MCA_plm_rsh_agent) must ask for no password. What "
+          "MPI sends between hosts is not encrypted: use networks that you trust")
       ->type_name("FILE");
 }
 

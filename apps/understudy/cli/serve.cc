@@ -42,6 +42,7 @@ struct ServeArguments {
   std::string listen;       ///< host:port for clients of other machines; empty: none
   std::filesystem::path secret_file;
   bool server = false;
+  bool plain = false;
   std::string tiles = "off";
   std::string server_opengl = "auto";
 };
@@ -90,7 +91,8 @@ Frontends open_frontends(const Installation& installation, const ServeArguments&
                     .secret_file = arguments.secret_file,
                     .nodes = nodes.socket,
                     .server = {},
-                    .folder = nodes.folder};
+                    .folder = nodes.folder,
+                    .plain = arguments.plain};
   if (arguments.server) {
     plan.server = nodes.folder / "gl_server.sock";
     frontends.server =
@@ -211,6 +213,11 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->add_flag("--gl-server", arguments->server,
                  "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "
                  "HOST:PORT)")
+      ->needs(listen);
+  subcommand
+      ->add_flag("--plain", arguments->plain,
+                 "let clients with --plain that connect within this machine (through ssh, say) do without "
+                 "encryption; all others are encrypted")
       ->needs(listen);
   add_gl_server_option(*subcommand, arguments->server_opengl);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")

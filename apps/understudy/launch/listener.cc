@@ -52,11 +52,12 @@ void tell_address(const std::filesystem::path& folder, const std::string& addres
 }
 
 /// What the process of one client does. Returns its exit status.
-int carry(FileDescriptor socket, const ConnectionRequest& connection_request, const ListenerPlan& plan) {
+int carry(compositor::AuthenticatedSocket client, const ConnectionRequest& connection_request,
+          const ListenerPlan& plan) {
   const bool to_server = connection_request.to == Destination::gl_server;
   const compositor::Protocols spoken = to_server ? compositor::Protocols(spu::gl_server_protocols)
                                                  : compositor::Protocols(compositor::service_protocols);
-  TcpConnection connection(std::move(socket), spoken,
+  TcpConnection connection(std::move(client), spoken,
                            to_server ? limits::max_gl_server_message_bytes : limits::max_message_bytes);
   const std::filesystem::path& path = to_server ? plan.server : plan.nodes;
   try {
@@ -86,12 +87,13 @@ int listen(const ListenerPlan& plan) {
   const auto admission = [&](const ConnectionRequest& connection_request) {
     if (connection_request.to == Destination::gl_server && plan.server.empty())
       return AdmissionVerdict::not_offered;
+    if (connection_request.plain && !plan.plain) return AdmissionVerdict::not_plain;
     return clients.count() < limits::max_clients ? AdmissionVerdict::accepted : AdmissionVerdict::too_many;
   };
-  const auto accept = [&](FileDescriptor socket, const ConnectionRequest& connection_request) {
+  const auto accept = [&](compositor::AuthenticatedSocket client, const ConnectionRequest& connection_request) {
     const bool started = clients.start([&] {
       open_listener->forget();
-      return carry(std::move(socket), connection_request, plan);
+      return carry(std::move(client), connection_request, plan);
     });
     if (!started) say("no process can be made for a client; it was sent away");
   };
@@ -122,6 +124,7 @@ OpenListener start_listener(const Installation& installation, const ListenerPlan
                                     "--folder",
                                     plan.folder};
   if (!plan.server.empty()) words.insert(words.end(), {"--gl-server", plan.server});
+  if (plan.plain) words.emplace_back("--plain");
   OpenListener listener{
       std::make_unique<ChildProcess>(Command{.arguments = words, .environment = current_environment()}), {}};
   const auto until = Clock::now() + patience_with_start;
@@ -148,6 +151,7 @@ void add_listener(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--secret-file", plan->secret_file)->required();
   subcommand->add_option("--nodes", plan->nodes)->required();
   subcommand->add_option("--gl-server", plan->server);
+  subcommand->add_flag("--plain", plan->plain);
   subcommand->add_option("--folder", plan->folder)->required();
   subcommand->callback([plan, address, &chosen] {
     chosen = [plan, address] {

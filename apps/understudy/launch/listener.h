@@ -21,6 +21,7 @@ struct ListenerPlan {
   std::filesystem::path nodes;   ///< the nodes' socket
   std::filesystem::path server;  ///< the GL server's; empty: none is offered
   std::filesystem::path folder;  ///< private; must exist
+  bool plain = false;            ///< clients of this machine may do without encryption
 };
 
 struct OpenListener {

@@ -40,7 +40,7 @@ namespace limits = compositor::limits;
 constexpr std::chrono::seconds patience_with_start{10};
 constexpr std::array<const char*, 3> layout_names = {"float", "half", "byte"};
 
-FileDescriptor linked(const ConnectionPlan& plan) {
+compositor::AuthenticatedSocket linked(const ConnectionPlan& plan) {
   const auto address = compositor::tcp_address_of(plan.address);
   if (!address) throw std::runtime_error(fmt::format("'{}' is no host:port", plan.address));
   const compositor::Secret secret = compositor::read_secret(plan.secret_file);
@@ -105,15 +105,26 @@ void try_connection(const ConnectionPlan& plan) {
 std::unique_ptr<ChildProcess> start_relay(const Installation& installation, const ConnectionPlan& plan,
                                           const std::filesystem::path& socket,
                                           const std::filesystem::path& folder) {
+  std::vector<std::string> words = {
+      installation.programs / "understudy",
+      "relay",
+      "--connect",
+      plan.address,
+      "--secret-file",
+      std::filesystem::absolute(plan.secret_file),
+      "--to",
+      plan.connection_request.to == Destination::gl_server ? "gl-server" : "nodes",
+      "--pixels",
+      layout_names[std::size_t(plan.connection_request.pixels)],
+      "--quality",
+      std::to_string(plan.connection_request.jpeg_quality),
+      "--socket",
+      socket,
+      "--figures",
+      folder};
+  if (plan.connection_request.plain) words.emplace_back("--plain");
   auto relay = std::make_unique<ChildProcess>(
-      Command{.arguments = {installation.programs / "understudy", "relay", "--connect", plan.address,
-                            "--secret-file", std::filesystem::absolute(plan.secret_file), "--to",
-                            plan.connection_request.to == Destination::gl_server ? "gl-server" : "nodes",
-                            "--pixels", layout_names[std::size_t(plan.connection_request.pixels)], "--quality",
-                            std::to_string(plan.connection_request.jpeg_quality), "--socket", socket,
-                            "--figures", folder},
-              .environment = current_environment(),
-              .own_group = true});
+      Command{.arguments = words, .environment = current_environment(), .own_group = true});
   const auto until = Clock::now() + patience_with_start;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {
@@ -155,6 +166,10 @@ void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan) {
                   "rest are lossless. Default: all images are lossless")
       ->type_name("1..100")
       ->check(CLI::Range(1, 100));
+  subcommand.add_flag(
+      "--plain", plan.connection_request.plain,
+      "with --connect to this machine (through ssh, say): encrypt nothing; understudy serve must "
+      "have --plain, too");
 }
 
 void add_relay(CLI::App& app, std::function<int()>& chosen) {
@@ -179,6 +194,7 @@ void add_relay(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--pixels", arguments->plan.connection_request.pixels)
       ->transform(CLI::CheckedTransformer(layouts));
   subcommand->add_option("--quality", arguments->plan.connection_request.jpeg_quality);
+  subcommand->add_flag("--plain", arguments->plan.connection_request.plain);
   subcommand->add_option("--socket", arguments->socket)->required();
   subcommand->add_option("--figures", arguments->figures)->required();
   subcommand->callback([arguments, &chosen] {

@@ -36,7 +36,7 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
 void with_connection(ConnectionPlan plan, const std::string& address, const std::string& pixels,
                      const std::function<void(const std::string& socket)>& job);
 
-/// `--secret-file` and `--quality`, for commands with --connect.
+/// `--secret-file`, `--quality` and `--plain`, for commands with --connect.
 void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan);
 
 /// Adds the subcommand `relay`, which is not shown in the help.

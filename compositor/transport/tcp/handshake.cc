@@ -7,6 +7,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "compositor/transport/wire.h"
+
 namespace understudy::compositor {
 
 namespace {
@@ -24,7 +26,7 @@ struct Hello {
   std::uint8_t to = 0;
   std::uint8_t pixels = 0;
   std::uint8_t jpeg_quality = 0;
-  std::uint8_t only_asks = 0;
+  std::uint8_t flags = 0;
   Nonce nonce{};
 };
 static_assert(sizeof(Hello) == hello_bytes);
@@ -44,6 +46,8 @@ struct VerdictWords {
 };
 static_assert(sizeof(VerdictWords) == verdict_bytes);
 
+enum Flag : std::uint8_t { only_asks = 1, plain = 2, all_flags = only_asks | plain };
+
 template <class Words>
 Buffer buffer_of(const Words& words) {
   const auto bytes = std::as_bytes(std::span(&words, 1));
@@ -56,6 +60,11 @@ Words words_of(std::span<const std::byte> bytes) {
   if (bytes.size() != sizeof words) throw HandshakeFailed("it said less than it should");
   std::memcpy(&words, bytes.data(), sizeof words);
   return words;
+}
+
+void append(Buffer& to, const PublicKey& key) {
+  const auto bytes = std::as_bytes(std::span(key));
+  to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
 Nonce fresh_nonce() {
@@ -81,6 +90,15 @@ bool same(const Mac& a, const Mac& b) {
   return ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
+SessionKeys agreed_keys(const EphemeralKey& own, Side side, const PublicKey& theirs, const Secret& secret,
+                        std::span<const std::byte> said) {
+  try {
+    return own.session_keys(side, theirs, secret, said);
+  } catch (const MalformedMessage& error) {
+    throw HandshakeFailed(error.what());
+  }
+}
+
 constexpr std::string_view from_client = "understudy link: client";
 constexpr std::string_view from_server = "understudy link: server";
 
@@ -89,33 +107,59 @@ constexpr std::string_view from_server = "understudy link: server";
 ServerHandshake::ServerHandshake(const Secret& secret) : secret_(&secret) {}
 
 std::size_t ServerHandshake::wants() const {
-  return step_ == Step::hello ? hello_bytes : step_ == Step::proof ? proof_bytes : 0;
+  switch (step_) {
+    case Step::hello:
+      return hello_bytes;
+    case Step::key:
+      return public_key_bytes;
+    case Step::proof:
+      return proof_bytes;
+    default:
+      return 0;
+  }
 }
 
 std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> message) {
-  if (step_ == Step::hello) {
-    const auto hello = words_of<Hello>(message);
-    if (hello.magic_number != magic) throw HandshakeFailed("it is no program of Understudy");
-    Challenge challenge;
-    challenge.nonce = fresh_nonce();
-    if (hello.version != tcp_protocol_version) {
-      last_words_ = buffer_of(challenge);
-      throw HandshakeFailed(
-          fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
-                      "Understudy on both machines",
-                      hello.version, tcp_protocol_version));
-    }
-    if (hello.to > std::uint8_t(Destination::last) || hello.pixels > std::uint8_t(Layout::rgba8) ||
-        hello.jpeg_quality > 100)
-      throw HandshakeFailed("it wants what there is not");
-    connection_request_ = {Destination(hello.to), Layout(hello.pixels), hello.jpeg_quality,
-                           hello.only_asks != 0};
-    said_.assign(message.begin(), message.end());
-    Buffer words = buffer_of(challenge);
-    said_.insert(said_.end(), words.begin(), words.end());
-    step_ = Step::proof;
-    return words;
+  if (step_ == Step::key) return challenge(message);
+  if (step_ == Step::hello)
+    take_hello(message);
+  else
+    take_proof(message);
+  return {};
+}
+
+void ServerHandshake::take_hello(std::span<const std::byte> message) {
+  const auto hello = words_of<Hello>(message);
+  if (hello.magic_number != magic) throw HandshakeFailed("it is no program of Understudy");
+  if (hello.version != tcp_protocol_version) {
+    last_words_ = buffer_of(Challenge{});
+    throw HandshakeFailed(
+        fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
+                    "Understudy on both machines",
+                    hello.version, tcp_protocol_version));
   }
+  if (hello.to > std::uint8_t(Destination::last) || hello.pixels > std::uint8_t(Layout::rgba8) ||
+      hello.jpeg_quality > 100 || (hello.flags & ~all_flags) != 0)
+    throw HandshakeFailed("it wants what there is not");
+  connection_request_ = {Destination(hello.to), Layout(hello.pixels), hello.jpeg_quality,
+                         (hello.flags & only_asks) != 0, (hello.flags & plain) != 0};
+  said_.assign(message.begin(), message.end());
+  step_ = Step::key;
+}
+
+std::vector<std::byte> ServerHandshake::challenge(std::span<const std::byte> their_key) {
+  their_key_ = words_of<PublicKey>(their_key);
+  append(said_, their_key_);
+  Challenge challenge;
+  challenge.nonce = fresh_nonce();
+  Buffer words = buffer_of(challenge);
+  append(words, key_.emplace().public_key());
+  said_.insert(said_.end(), words.begin(), words.end());
+  step_ = Step::proof;
+  return words;
+}
+
+void ServerHandshake::take_proof(std::span<const std::byte> message) {
   Mac theirs;
   if (step_ != Step::proof || message.size() != sizeof theirs) throw HandshakeFailed("it spoke out of turn");
   std::memcpy(theirs.data(), message.data(), sizeof theirs);
@@ -124,8 +168,8 @@ std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> messag
     last_words_ = buffer_of(VerdictWords{std::uint32_t(AdmissionVerdict::wrong_secret)});
     throw HandshakeFailed("its secret is not the one of --secret-file here: give both machines the same file");
   }
+  if (!connection_request_.plain) session_keys_ = agreed_keys(*key_, Side::server, their_key_, *secret_, said_);
   step_ = Step::proved;
-  return {};
 }
 
 std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const {
@@ -136,18 +180,19 @@ std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const 
 
 ClientHandshake::ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
                                  std::uint32_t version)
-    : secret_(&secret), version_(version) {
+    : secret_(&secret), version_(version), plain_(connection_request.plain) {
   Hello hello;
   hello.version = version;
   hello.to = std::uint8_t(connection_request.to);
   hello.pixels = std::uint8_t(connection_request.pixels);
   hello.jpeg_quality = std::uint8_t(connection_request.jpeg_quality);
-  hello.only_asks = std::uint8_t(connection_request.only_asks);
+  hello.flags = std::uint8_t((connection_request.only_asks ? only_asks : 0) | (plain_ ? plain : 0));
   hello.nonce = fresh_nonce();
   hello_ = buffer_of(hello);
+  append(hello_, key_.public_key());
 }
 
-std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challenge) {
+void ClientHandshake::check(std::span<const std::byte> challenge) const {
   const auto words = words_of<Challenge>(challenge);
   if (words.magic_number != magic)
     throw HandshakeFailed("it is no understudy serve --listen: look at host and port");
@@ -156,8 +201,14 @@ std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challe
         fmt::format("it speaks version {} of the connection, this is version {}: use one version of "
                     "Understudy on both machines",
                     words.version, version_));
+}
+
+std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challenge_and_key) {
+  if (challenge_and_key.size() < challenge_bytes) throw HandshakeFailed("it said less than it should");
+  check(challenge_and_key.first(challenge_bytes));
+  their_key_ = words_of<PublicKey>(challenge_and_key.subspan(challenge_bytes));
   said_ = hello_;
-  said_.insert(said_.end(), challenge.begin(), challenge.end());
+  said_.insert(said_.end(), challenge_and_key.begin(), challenge_and_key.end());
   return buffer_of(proof(*secret_, from_client, said_));
 }
 
@@ -173,6 +224,14 @@ void ClientHandshake::finish(std::span<const std::byte> verdict) const {
     throw HandshakeFailed("as many clients as it takes are there already: try again later");
   if (words.verdict == std::uint32_t(AdmissionVerdict::not_offered))
     throw HandshakeFailed("it has no GL server: start it with understudy serve --gl-server --listen …");
+  if (words.verdict == std::uint32_t(AdmissionVerdict::not_plain))
+    throw HandshakeFailed(
+        "it encrypts: leave --plain out, or start understudy serve with --plain too, on one machine with this");
+}
+
+std::optional<SessionKeys> ClientHandshake::session_keys() const {
+  if (plain_) return std::nullopt;
+  return agreed_keys(key_, Side::client, their_key_, *secret_, said_);
 }
 
 }  // namespace understudy::compositor

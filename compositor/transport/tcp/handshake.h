@@ -6,10 +6,13 @@
 // client proves that it has the secret, then the server does. A proof is HMAC-SHA-512-256 (libsodium's
 // crypto_auth) of a label for the direction and of all that was said before, so that nobody can use one end's
 // proof at another, at another time or for other wishes. (Challenge and response in both directions: ISO/IEC
-// 9798-4.) What comes later is neither signed nor encrypted: on networks that others can write to, connections
-// go through ssh.
+// 9798-4.) Part of what was said are the public keys from which both ends make the keys of the session
+// (session_keys.h), with which all that follows is encrypted and authenticated (record.h). Whether it is, is a
+// wish like others: nobody on the way can change it, and a client is never given less than it wanted.
 //
-// Nothing here touches a socket; each step takes one message of a fixed size and gives the next.
+// Nothing here touches a socket; each step takes one message of a fixed size and gives the next. The first one
+// of both sides ends before the keys, and stays as it is in all versions: so versions that differ are told
+// apart.
 #pragma once
 
 #include <array>
@@ -23,10 +26,11 @@
 
 #include "compositor/transport/pixel_width.h"
 #include "compositor/transport/tcp/secret.h"
+#include "compositor/transport/tcp/session_keys.h"
 
 namespace understudy::compositor {
 
-constexpr std::uint32_t tcp_protocol_version = 2;  ///< grows with every change of what travels over TCP
+constexpr std::uint32_t tcp_protocol_version = 3;  ///< grows with every change of what travels over TCP
 
 enum class Destination : std::uint8_t {
   nodes,      ///< the render service
@@ -40,6 +44,7 @@ struct ConnectionRequest {
   Layout pixels = Layout::rgba32f;  ///< of the nodes' images on their way back
   int jpeg_quality = 0;             ///< of images of views that move, 1 to 100; 0: no bit of them is lost
   bool only_asks = false;           ///< whether it would be let in
+  bool plain = false;               ///< unencrypted, for connections within one machine
 };
 
 enum class AdmissionVerdict : std::uint32_t {
@@ -47,11 +52,13 @@ enum class AdmissionVerdict : std::uint32_t {
   wrong_secret,
   too_many,
   not_offered,
-  last = not_offered
+  not_plain,
+  last = not_plain
 };
 
 constexpr std::size_t hello_bytes = 48;
 constexpr std::size_t challenge_bytes = 48;
+constexpr std::size_t public_key_bytes = sizeof(PublicKey);  ///< behind both
 constexpr std::size_t proof_bytes = 32;
 constexpr std::size_t verdict_bytes = 40;
 
@@ -75,14 +82,23 @@ class ServerHandshake {
   std::vector<std::byte> verdict(AdmissionVerdict verdict) const;
   std::span<const std::byte> last_words() const { return last_words_; }
   const ConnectionRequest& connection_request() const { return connection_request_; }
+  /// Of this end, once proved; none for a client that wanted to do without.
+  const std::optional<SessionKeys>& session_keys() const { return session_keys_; }
 
  private:
-  enum class Step { hello, proof, proved };
+  enum class Step { hello, key, proof, proved };
+
+  void take_hello(std::span<const std::byte> message);
+  std::vector<std::byte> challenge(std::span<const std::byte> their_key);
+  void take_proof(std::span<const std::byte> message);
 
   const Secret* secret_;
   Step step_ = Step::hello;
   ConnectionRequest connection_request_;
-  std::vector<std::byte> said_;  ///< hello and challenge
+  PublicKey their_key_{};
+  std::optional<EphemeralKey> key_;
+  std::optional<SessionKeys> session_keys_;
+  std::vector<std::byte> said_;  ///< hello and challenge, with the keys behind them
   std::vector<std::byte> last_words_;
 };
 
@@ -91,15 +107,23 @@ class ClientHandshake {
   ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
                   std::uint32_t version = tcp_protocol_version);
 
+  /// With its key behind it.
   const std::vector<std::byte>& hello() const { return hello_; }
-  /// The proof. Throws HandshakeFailed.
-  std::vector<std::byte> answer(std::span<const std::byte> challenge);
+  /// Throws HandshakeFailed for a challenge behind which no key of this version follows.
+  void check(std::span<const std::byte> challenge) const;
+  /// The proof, for a challenge with its key behind it. Throws HandshakeFailed.
+  std::vector<std::byte> answer(std::span<const std::byte> challenge_and_key);
   /// Throws HandshakeFailed unless the server has the secret and lets this client in.
   void finish(std::span<const std::byte> verdict) const;
+  /// Of this end, once finished; none for a client that wanted to do without.
+  std::optional<SessionKeys> session_keys() const;
 
  private:
   const Secret* secret_;
   std::uint32_t version_;
+  bool plain_;
+  EphemeralKey key_;
+  PublicKey their_key_{};
   std::vector<std::byte> hello_;
   std::vector<std::byte> said_;
 };

@@ -67,7 +67,8 @@ void Listener::step() {
     // Whoever is accepted becomes a process, which forgets all pending clients that there are then.
     PendingClient heard = std::move(pending_[i]);
     pending_.erase(pending_.begin() + std::ptrdiff_t(i));
-    if (heard.let_in) accept_(std::move(heard.socket), heard.handshake.connection_request());
+    if (heard.let_in)
+      accept_({std::move(heard.socket), heard.handshake.session_keys()}, heard.handshake.connection_request());
   }
 }
 
@@ -101,6 +102,12 @@ void Listener::drop(const PendingClient& pending, const std::string& why) {
   say_(fmt::format("{} was not let in{}: {}", peer_address(pending.socket.get()).text(), others, why));
 }
 
+AdmissionVerdict Listener::verdict_on(const PendingClient& pending) const {
+  const ConnectionRequest& request = pending.handshake.connection_request();
+  if (request.plain && !is_within_machine(pending.socket.get())) return AdmissionVerdict::not_plain;
+  return admission_(request);
+}
+
 bool Listener::hear(PendingClient& pending) {
   const int socket = pending.socket.get();
   while (const std::size_t wants = pending.handshake.wants()) {
@@ -129,15 +136,16 @@ bool Listener::hear(PendingClient& pending) {
       return false;
     }
   }
-  const ConnectionRequest connection_request = pending.handshake.connection_request();
-  const AdmissionVerdict verdict = admission_(connection_request);
+  const AdmissionVerdict verdict = verdict_on(pending);
   if (!tell(socket, pending.handshake.verdict(verdict))) return false;
   if (verdict == AdmissionVerdict::too_many)
     drop(pending, "as many clients as are served are here already");
   else if (verdict == AdmissionVerdict::not_offered)
     drop(pending, "it wants a GL server; give understudy serve --gl-server");
+  else if (verdict == AdmissionVerdict::not_plain)
+    drop(pending, "it wants no encryption; that takes --plain here too, and both ends on this machine");
   else
-    pending.let_in = !connection_request.only_asks;
+    pending.let_in = !pending.handshake.connection_request().only_asks;
   return false;
 }
 

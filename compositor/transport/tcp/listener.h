@@ -14,6 +14,7 @@
 #include "compositor/transport/file_descriptor.h"
 #include "compositor/transport/socket.h"
 #include "compositor/transport/tcp/address.h"
+#include "compositor/transport/tcp/authenticated_socket.h"
 #include "compositor/transport/tcp/handshake.h"
 
 namespace understudy::compositor {
@@ -29,10 +30,11 @@ class Listener {
   /// Whether a client with these wishes may come in.
   using Admission = std::function<AdmissionVerdict(const ConnectionRequest&)>;
   /// A client that was told that it may.
-  using Accept = std::function<void(FileDescriptor socket, const ConnectionRequest& connection_request)>;
+  using Accept = std::function<void(AuthenticatedSocket client, const ConnectionRequest& connection_request)>;
 
-  /// `secret` must outlive the listener. `say` gets a line about who was not let in, at most one a second.
-  /// Throws std::runtime_error where nobody can listen.
+  /// `secret` must outlive the listener. Who wants no encryption is only asked about where both ends are on
+  /// this machine. `say` gets a line about who was not let in, at most one a second. Throws std::runtime_error
+  /// where nobody can listen.
   Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say);
   Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say,
            const ListenerLimits& limits);
@@ -63,6 +65,7 @@ class Listener {
   void make_room();
   /// False when the pending client is done with, one way or the other.
   bool hear(PendingClient& pending);
+  AdmissionVerdict verdict_on(const PendingClient& pending) const;
   void drop(const PendingClient& pending, const std::string& why);
 
   const Secret& secret_;

@@ -92,11 +92,12 @@ std::string Relay::run() {
     } catch (const std::exception& error) {
       reason = error.what();
     }
+    // Locked before the shutdown: that ends the other direction, too, which does not know why.
+    const std::scoped_lock lock(mutex);
+    if (ended++ == 0) why = reason;
     // The other side hears the end after all that was said before it.
     ::shutdown(from, SHUT_RD);
     ::shutdown(to, SHUT_WR);
-    const std::scoped_lock lock(mutex);
-    if (ended++ == 0) why = reason;
     changed.notify_all();
   };
   {

@@ -21,6 +21,8 @@ namespace {
 
 /// Shorter blocks travel as they are.
 constexpr std::size_t least_compressed = 512;
+/// Shorter pieces share a record; longer ones are sealed from where they lie.
+constexpr std::size_t least_record = std::size_t(1) << 14;
 
 /// The peer went before it had said all: a listener with too many pending clients may do that, and takes the
 /// next try.
@@ -50,20 +52,29 @@ void write_all(int socket, std::span<const std::byte> bytes) {
     throw WentEarly("it closed the connection without a word: look at host and port");
 }
 
-FileDescriptor prove(const TcpAddress& address, const Secret& secret,
-                     const ConnectionRequest& connection_request, Deadline deadline) {
+AuthenticatedSocket prove(const TcpAddress& address, const Secret& secret,
+                          const ConnectionRequest& connection_request, Deadline deadline) {
   FileDescriptor socket = connect_to(address, deadline);
+  if (connection_request.plain && !is_within_machine(socket.get()))
+    throw std::runtime_error(
+        fmt::format("--plain is for connections within one machine, and {} is another: leave --plain out, "
+                    "and all is encrypted",
+                    address.text()));
   ClientHandshake handshake(secret, connection_request);
   write_all(socket.get(), handshake.hello());
-  write_all(socket.get(), handshake.answer(read_exactly(socket.get(), challenge_bytes, deadline)));
+  std::vector<std::byte> challenge = read_exactly(socket.get(), challenge_bytes, deadline);
+  handshake.check(challenge);
+  const std::vector<std::byte> key = read_exactly(socket.get(), public_key_bytes, deadline);
+  challenge.insert(challenge.end(), key.begin(), key.end());
+  write_all(socket.get(), handshake.answer(challenge));
   handshake.finish(read_exactly(socket.get(), verdict_bytes, deadline));
-  return socket;
+  return {std::move(socket), handshake.session_keys()};
 }
 
 }  // namespace
 
-FileDescriptor connect_tcp(const TcpAddress& address, const Secret& secret,
-                           const ConnectionRequest& connection_request, Deadline deadline) {
+AuthenticatedSocket connect_tcp(const TcpAddress& address, const Secret& secret,
+                                const ConnectionRequest& connection_request, Deadline deadline) {
   constexpr int tries = 5;
   for (int attempt = 1;; ++attempt) {
     try {
@@ -76,6 +87,15 @@ FileDescriptor connect_tcp(const TcpAddress& address, const Secret& secret,
       throw std::runtime_error(fmt::format("whoever listens at {}: {}", address.text(), error.what()));
     }
   }
+}
+
+TcpConnection::TcpConnection(AuthenticatedSocket peer, Protocols spoken, std::uint64_t max_payload,
+                             std::chrono::milliseconds patience)
+    : socket_(std::move(peer.socket)), patience_(patience), reader_(spoken, max_payload) {
+  if (!peer.keys) return;
+  sealer_.emplace(peer.keys->send);
+  opener_.emplace(peer.keys->receive);
+  gathered_.reserve(max_record_bytes);
 }
 
 double TcpConnection::bytes_per_second() const {
@@ -108,6 +128,38 @@ void TcpConnection::wait_for_room() {
 }
 
 void TcpConnection::write(std::span<const Bytes> pieces, bool more) {
+  if (sealer_)
+    write_records(pieces, more);
+  else
+    write_as_they_are(pieces, more);
+}
+
+/// The line carries a record while the next one is sealed.
+void TcpConnection::write_records(std::span<const Bytes> pieces, bool more) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const bool more_pieces = more || i + 1 < pieces.size();
+    Bytes piece = pieces[i];
+    if (piece.size() >= least_record) write_gathered(true);
+    while (piece.size() >= least_record) {
+      const Bytes some = piece.first(std::min(piece.size(), max_record_bytes));
+      piece = piece.subspan(some.size());
+      const Bytes record = sealer_->seal(some);
+      write_as_they_are({&record, 1}, more_pieces || !piece.empty());
+    }
+    if (gathered_.size() + piece.size() > max_record_bytes) write_gathered(true);
+    gathered_.insert(gathered_.end(), piece.begin(), piece.end());
+  }
+  if (!more) write_gathered(false);
+}
+
+void TcpConnection::write_gathered(bool more) {
+  if (gathered_.empty()) return;
+  const Bytes record = sealer_->seal(gathered_);
+  write_as_they_are({&record, 1}, more);
+  gathered_.clear();
+}
+
+void TcpConnection::write_as_they_are(std::span<const Bytes> pieces, bool more) {
   std::vector<iovec> left;
   // sendmsg() takes pointers to non-const and does not write.
   for (const Bytes& piece : pieces)
@@ -201,26 +253,58 @@ void TcpConnection::send_alive() {
   write({&words, 1}, false);
 }
 
+std::span<std::byte> TcpConnection::room() {
+  return opener_ ? opener_->room() : reader_.room();
+}
+
+std::optional<Message> TcpConnection::took(std::size_t count) {
+  if (!opener_) return reader_.took(count);
+  if (!opener_->took(count)) return std::nullopt;
+  const std::size_t plain = opener_->plain_bytes();
+  // Records within a block are opened to their place.
+  if (const std::span<std::byte> place = reader_.room(); plain <= place.size()) {
+    opener_->open(place.first(plain));
+    return plain == 0 ? std::nullopt : reader_.took(plain);
+  }
+  opened_.resize(plain);
+  taken_ = 0;
+  opener_->open(opened_);
+  return take_opened();
+}
+
+std::optional<Message> TcpConnection::take_opened() {
+  while (taken_ < opened_.size()) {
+    const std::span<std::byte> place = reader_.room();
+    const std::size_t count = std::min(place.size(), opened_.size() - taken_);
+    std::copy_n(opened_.begin() + std::ptrdiff_t(taken_), count, place.begin());
+    taken_ += count;
+    if (std::optional<Message> message = reader_.took(count)) return message;
+  }
+  return std::nullopt;
+}
+
 Message TcpConnection::receive() {
   for (;;) {
-    const std::span<std::byte> room = reader_.room();
-    const ssize_t got = ::recv(socket_.get(), room.data(), room.size(), MSG_DONTWAIT);
-    if (got > 0) {
-      heard_at_ = Clock::now();
-      received_.bytes += std::size_t(got);
-      if (std::optional<Message> message = reader_.took(std::size_t(got));
-          message && message->type != LineMessage::alive) {
-        ++received_.messages;
-        received_.payload_bytes += message->payload.size();
-        return std::move(*message);
+    std::optional<Message> message = take_opened();
+    if (!message) {
+      const std::span<std::byte> to = room();
+      const ssize_t got = ::recv(socket_.get(), to.data(), to.size(), MSG_DONTWAIT);
+      if (got > 0) {
+        heard_at_ = Clock::now();
+        received_.bytes += std::size_t(got);
+        message = took(std::size_t(got));
+      } else if (got == 0) {
+        throw ConnectionLost("closed the connection");
+      } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+        if (!wait_until_ready(socket_.get(), POLLIN, heard_at_.load() + patience_)) give_up_silent_line();
+      } else if (errno != EINTR) {
+        throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
       }
-    } else if (got == 0) {
-      throw ConnectionLost("closed the connection");
-    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      if (!wait_until_ready(socket_.get(), POLLIN, heard_at_.load() + patience_)) give_up_silent_line();
-    } else if (errno != EINTR) {
-      throw ConnectionLost(fmt::format("lost the connection: {}", std::strerror(errno)));
     }
+    if (!message || message->type == LineMessage::alive) continue;
+    ++received_.messages;
+    received_.payload_bytes += message->payload.size();
+    return std::move(*message);
   }
 }
 

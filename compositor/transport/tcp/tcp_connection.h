@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages over a TCP connection whose two ends have proved themselves (handshake.h). One thread may send while
-// another receives.
+// Messages over a TCP connection whose two ends have proved themselves (handshake.h), in encrypted records
+// (record.h) but where both ends wanted none. One thread may send while another receives.
 //
 // A peer may be busy for long and take nothing (a GL server at a call, a node at a volume), and looks like a
 // line that is cut. So each end says that it is there when it says nothing else, and who is silent is gone.
@@ -11,13 +11,17 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "compositor/transport/connection.h"
 #include "compositor/transport/tcp/address.h"
+#include "compositor/transport/tcp/authenticated_socket.h"
 #include "compositor/transport/tcp/block_codec.h"
 #include "compositor/transport/tcp/handshake.h"
+#include "compositor/transport/tcp/record_opener.h"
+#include "compositor/transport/tcp/record_sealer.h"
 #include "compositor/transport/tcp/tcp_message_reader.h"
 
 namespace understudy::compositor {
@@ -40,9 +44,8 @@ class TcpConnection {
  public:
   /// Accepts messages of the protocols `spoken`, which must outlive it. A peer that is silent for `patience` is
   /// gone.
-  TcpConnection(FileDescriptor socket, Protocols spoken, std::uint64_t max_payload,
-                std::chrono::milliseconds patience = limits::connection_patience)
-      : socket_(std::move(socket)), patience_(patience), reader_(spoken, max_payload) {}
+  TcpConnection(AuthenticatedSocket peer, Protocols spoken, std::uint64_t max_payload,
+                std::chrono::milliseconds patience = limits::connection_patience);
 
   int fd() const { return socket_.get(); }
   double bytes_per_second() const;
@@ -68,12 +71,23 @@ class TcpConnection {
  private:
   void send_block(MessageType type, Bytes block, bool last);
   void write(std::span<const Bytes> pieces, bool more);
+  void write_records(std::span<const Bytes> pieces, bool more);
+  void write_gathered(bool more);
+  void write_as_they_are(std::span<const Bytes> pieces, bool more);
+  std::span<std::byte> room();
+  std::optional<Message> took(std::size_t count);
+  std::optional<Message> take_opened();
   void wait_for_room();
   bool peer_is_silent() const;
   [[noreturn]] void give_up_silent_line() const;
 
   FileDescriptor socket_;
   std::chrono::milliseconds patience_;
+  std::optional<RecordSealer> sealer_;
+  std::optional<RecordOpener> opener_;
+  std::vector<std::byte> gathered_;  ///< for the next record
+  std::vector<std::byte> opened_;    ///< of a record in which messages end and begin
+  std::size_t taken_ = 0;            ///< of opened_
   TcpMessageReader reader_;
   MessageType begun_{};
   std::uint64_t begun_left_ = 0;  ///< bytes of it that are still to be sent
@@ -88,7 +102,7 @@ class TcpConnection {
 
 /// Connects, and has both sides prove themselves. Throws std::runtime_error: what is wrong at `address`, and
 /// what to do there.
-FileDescriptor connect_tcp(const TcpAddress& address, const Secret& secret,
-                           const ConnectionRequest& connection_request, Deadline deadline);
+AuthenticatedSocket connect_tcp(const TcpAddress& address, const Secret& secret,
+                                const ConnectionRequest& connection_request, Deadline deadline);
 
 }  // namespace understudy::compositor

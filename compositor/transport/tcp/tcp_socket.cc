@@ -63,6 +63,21 @@ TcpAddress address_of(int socket, decltype(&::getpeername) name) {
   return {host, std::uint16_t(std::stoi(port))};
 }
 
+bool is_loopback(int socket, decltype(&::getpeername) name) {
+  sockaddr_storage storage{};
+  socklen_t size = sizeof storage;
+  if (name(socket, reinterpret_cast<sockaddr*>(&storage), &size) != 0) return false;
+  constexpr std::uint8_t loopback_net = 127;
+  if (storage.ss_family == AF_INET) {
+    const auto& address = reinterpret_cast<const sockaddr_in&>(storage).sin_addr;
+    return ::ntohl(address.s_addr) >> 24 == loopback_net;
+  }
+  if (storage.ss_family != AF_INET6) return false;
+  const in6_addr& address = reinterpret_cast<const sockaddr_in6&>(storage).sin6_addr;
+  return IN6_IS_ADDR_LOOPBACK(&address) ||
+         (IN6_IS_ADDR_V4MAPPED(&address) && address.s6_addr[12] == loopback_net);
+}
+
 }  // namespace
 
 void set_connection_options(int socket) {
@@ -92,6 +107,10 @@ TcpAddress own_address(int socket) {
 
 TcpAddress peer_address(int socket) {
   return address_of(socket, &::getpeername);
+}
+
+bool is_within_machine(int socket) {
+  return is_loopback(socket, &::getsockname) && is_loopback(socket, &::getpeername);
 }
 
 FileDescriptor connect_to(const TcpAddress& address, Deadline deadline) {

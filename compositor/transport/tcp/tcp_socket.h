@@ -21,6 +21,9 @@ TcpAddress peer_address(int socket);
 /// Throws std::runtime_error.
 FileDescriptor connect_to(const TcpAddress& address, Deadline deadline);
 
+/// Whether both ends of a connection have loopback addresses, which no packet from elsewhere can have.
+bool is_within_machine(int socket);
+
 /// For a connection that was accepted: what connect_to() has set already.
 void set_connection_options(int socket);
 

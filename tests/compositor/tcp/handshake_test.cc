@@ -10,20 +10,21 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "compositor/transport/tcp/address.h"
 #include "compositor/transport/tcp/secret.h"
+#include "compositor/transport/wire.h"
 #include "tests/compositor/scratch_folder.h"
+#include "tests/compositor/tcp/session.h"
 
 namespace understudy::compositor {
 namespace {
 
+using testing::challenge_to;
 using ::testing::HasSubstr;
 using testing::ScratchFolder;
-
-Secret secret_of(const std::string& text) {
-  return Secret(std::as_bytes(std::span(text)));
-}
+using testing::secret_of;
 
 std::string failure(const std::function<void()>& step) {
   try {
@@ -34,14 +35,14 @@ std::string failure(const std::function<void()>& step) {
   return {};
 }
 
-const ConnectionRequest some_wishes = {Destination::gl_server, Layout::rgba8, 75, true};
+const ConnectionRequest some_wishes = {Destination::gl_server, Layout::rgba8, 75, true, true};
 
 TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
   ServerHandshake server(secret);
   ASSERT_EQ(server.wants(), hello_bytes);
-  const auto challenge = server.answer(client.hello());
+  const auto challenge = challenge_to(server, client.hello());
   ASSERT_EQ(server.wants(), proof_bytes);
   EXPECT_FALSE(server.proved());
   EXPECT_TRUE(server.answer(client.answer(challenge)).empty());
@@ -51,11 +52,62 @@ TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
   EXPECT_EQ(server.connection_request().pixels, Layout::rgba8);
   EXPECT_EQ(server.connection_request().jpeg_quality, 75);
   EXPECT_TRUE(server.connection_request().only_asks);
+  EXPECT_TRUE(server.connection_request().plain);
   EXPECT_NO_THROW(client.finish(server.verdict(AdmissionVerdict::accepted)));
   EXPECT_THAT(failure([&] { client.finish(server.verdict(AdmissionVerdict::too_many)); }),
               HasSubstr("try again later"));
   EXPECT_THAT(failure([&] { client.finish(server.verdict(AdmissionVerdict::not_offered)); }),
               HasSubstr("--gl-server"));
+  EXPECT_THAT(failure([&] { client.finish(server.verdict(AdmissionVerdict::not_plain)); }),
+              HasSubstr("leave --plain out"));
+  EXPECT_FALSE(client.session_keys().has_value());
+  EXPECT_FALSE(server.session_keys().has_value());
+}
+
+TEST(Handshake, EachSessionHasKeysOfItsOwnAndOneForEachDirection) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  std::set<std::array<unsigned char, session_key_bytes>> all;
+  for (int session = 0; session < 3; ++session) {
+    const auto [client, server] = testing::keys_of_session(secret);
+    EXPECT_EQ(client.send, server.receive);
+    EXPECT_EQ(client.receive, server.send);
+    all.insert({client.send, client.receive});
+  }
+  EXPECT_EQ(all.size(), 6U);
+}
+
+/// Whoever is on the way takes the place of both ends and has no secret: he has keys with each, and no proof.
+TEST(Handshake, KeysThatWereExchangedOnTheWayAreNotBelieved) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  const EphemeralKey of_somebody;
+  const auto with_their_key = [&](std::vector<std::byte> words) {
+    std::ranges::copy(std::as_bytes(std::span(of_somebody.public_key())), words.end() - public_key_bytes);
+    return words;
+  };
+  ClientHandshake client(secret, {});
+  ServerHandshake server(secret);
+  const auto challenge = challenge_to(server, with_their_key(client.hello()));
+  EXPECT_THROW(server.answer(client.answer(with_their_key(challenge))), HandshakeFailed);
+  EXPECT_FALSE(server.session_keys().has_value());
+}
+
+TEST(Handshake, AKeyThatGivesAKnownSecretIsNone) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  EXPECT_THROW(EphemeralKey().session_keys(Side::server, PublicKey{}, secret, {}), MalformedMessage);
+  PublicKey one{};
+  one[0] = 1;  // of order 1
+  EXPECT_THROW(EphemeralKey().session_keys(Side::client, one, secret, {}), MalformedMessage);
+}
+
+TEST(Handshake, AWishForNoEncryptionIsNotPutInOnTheWay) {
+  const Secret secret = secret_of("sixteen bytes or more");
+  ClientHandshake client(secret, {});
+  std::vector<std::byte> changed = client.hello();
+  changed[15] |= std::byte(2);
+  ServerHandshake server(secret);
+  EXPECT_THROW(server.answer(client.answer(challenge_to(server, changed))), HandshakeFailed);
+  EXPECT_TRUE(server.connection_request().plain);
+  EXPECT_FALSE(server.proved());
 }
 
 TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
@@ -63,7 +115,7 @@ TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
   const Secret ours = secret_of("another one, of a server");
   ClientHandshake client(theirs, {});
   ServerHandshake server(ours);
-  const auto proof = client.answer(server.answer(client.hello()));
+  const auto proof = client.answer(challenge_to(server, client.hello()));
   EXPECT_THAT(failure([&] { server.answer(proof); }), HasSubstr("--secret-file"));
   EXPECT_FALSE(server.proved());
   const std::vector<std::byte> words(server.last_words().begin(), server.last_words().end());
@@ -78,7 +130,7 @@ TEST(Handshake, AServerWithoutTheSecretIsNotTrusted) {
   const Secret theirs = secret_of("what somebody made up");
   ClientHandshake client(ours, {});
   ServerHandshake impostor(theirs);
-  client.answer(impostor.answer(client.hello()));
+  client.answer(challenge_to(impostor, client.hello()));
   EXPECT_THAT(failure([&] { client.finish(impostor.verdict(AdmissionVerdict::accepted)); }),
               HasSubstr("do not trust it"));
 }
@@ -87,29 +139,29 @@ TEST(Handshake, ProofsServeOnce) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, {});
   ServerHandshake first(secret);
-  const auto proof = client.answer(first.answer(client.hello()));
+  const auto proof = client.answer(challenge_to(first, client.hello()));
   EXPECT_NO_THROW(first.answer(proof));
   // The same words to the same server again, which has another random number.
   ServerHandshake second(secret);
-  second.answer(client.hello());
+  challenge_to(second, client.hello());
   EXPECT_THROW(second.answer(proof), HandshakeFailed);
   // And the server's own words, sent back to it.
   const std::vector<std::byte> verdict = first.verdict(AdmissionVerdict::accepted);
   ServerHandshake third(secret);
-  third.answer(client.hello());
+  challenge_to(third, client.hello());
   EXPECT_THROW(third.answer(std::span(verdict).subspan(8)), HandshakeFailed);
 }
 
 TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
-  for (std::size_t at = 0; at < hello_bytes; ++at) {
+  for (std::size_t at = 0; at < client.hello().size(); ++at) {
     std::vector<std::byte> changed = client.hello();
     changed[at] ^= std::byte(1);
     EXPECT_THROW(
         {
           ServerHandshake server(secret);
-          server.answer(client.answer(server.answer(changed)));
+          server.answer(client.answer(challenge_to(server, changed)));
         },
         HandshakeFailed)
         << "byte " << at;
@@ -120,9 +172,9 @@ TEST(Handshake, OtherVersionsAreToldOnBothSides) {
   const Secret secret = secret_of("sixteen bytes or more");
   ClientHandshake newer(secret, {}, tcp_protocol_version + 1);
   ServerHandshake server(secret);
-  EXPECT_THAT(failure([&] { server.answer(newer.hello()); }), HasSubstr("one version of Understudy"));
+  EXPECT_THAT(failure([&] { challenge_to(server, newer.hello()); }), HasSubstr("one version of Understudy"));
   ASSERT_EQ(server.last_words().size(), challenge_bytes);
-  EXPECT_THAT(failure([&] { newer.answer(server.last_words()); }), HasSubstr("one version of Understudy"));
+  EXPECT_THAT(failure([&] { newer.check(server.last_words()); }), HasSubstr("one version of Understudy"));
 }
 
 TEST(Handshake, GarbageIsNeverBelieved) {
@@ -139,9 +191,9 @@ TEST(Handshake, GarbageIsNeverBelieved) {
     EXPECT_THROW(strict.answer(garbage(round)), HandshakeFailed);
     ClientHandshake client(secret, {});
     ServerHandshake server(secret);
-    server.answer(client.hello());
+    challenge_to(server, client.hello());
     EXPECT_THROW(server.answer(garbage(proof_bytes)), HandshakeFailed);
-    EXPECT_THROW(client.answer(garbage(challenge_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.answer(garbage(challenge_bytes + public_key_bytes)), HandshakeFailed);
     EXPECT_THROW(client.finish(garbage(verdict_bytes)), HandshakeFailed);
   }
 }

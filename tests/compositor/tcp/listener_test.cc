@@ -15,6 +15,7 @@
 #include "compositor/transport/tcp/tcp_connection.h"
 #include "compositor/transport/tcp/tcp_socket.h"
 #include "tests/compositor/scratch_folder.h"
+#include "tests/compositor/tcp/session.h"
 
 namespace understudy::compositor {
 namespace {
@@ -22,13 +23,10 @@ namespace {
 using testing::eventually;
 using ::testing::HasSubstr;
 using testing::open_descriptors;
+using testing::secret_of;
 
 Deadline soon() {
   return Clock::now() + std::chrono::seconds(20);
-}
-
-Secret secret_of(const std::string& text) {
-  return Secret(std::as_bytes(std::span(text)));
 }
 
 /// A listener that is stepped on a thread; clients that are let in are kept.
@@ -37,9 +35,9 @@ class ListenerTest : public ::testing::Test {
   void open(const ListenerLimits& limits = {std::chrono::milliseconds(1000), 64}) {
     listener_.emplace(
         TcpAddress{"127.0.0.1", 0}, secret_, [this](const ConnectionRequest&) { return verdict_.load(); },
-        [this](FileDescriptor socket, const ConnectionRequest& connection_request) {
+        [this](AuthenticatedSocket client, const ConnectionRequest& connection_request) {
           if (forgets_) listener_->forget();
-          accepted_.push_back(std::move(socket));
+          accepted_.push_back(std::move(client));
           last_wishes_ = connection_request;
         },
         [this](const std::string& line) { said_.push_back(line); }, limits);
@@ -78,7 +76,7 @@ class ListenerTest : public ::testing::Test {
   const Secret secret_ = secret_of("sixteen bytes or more");
   std::atomic<AdmissionVerdict> verdict_ = AdmissionVerdict::accepted;
   std::mutex mutex_;
-  std::vector<FileDescriptor> accepted_;
+  std::vector<AuthenticatedSocket> accepted_;
   bool forgets_ = false;  ///< as the process of a client does
   ConnectionRequest last_wishes_;
   std::vector<std::string> said_;
@@ -89,14 +87,14 @@ class ListenerTest : public ::testing::Test {
 
 TEST_F(ListenerTest, AClientWithTheSecretIsLetInWithItsWishes) {
   open();
-  const FileDescriptor socket =
+  AuthenticatedSocket socket =
       connect_tcp(address_, secret_, {Destination::gl_server, Layout::rgba16f, 50, false}, soon());
   ASSERT_TRUE(eventually([&] { return accepted() == 1; }));
   EXPECT_EQ(last_wishes_.to, Destination::gl_server);
   EXPECT_EQ(last_wishes_.pixels, Layout::rgba16f);
   // Both ends are a connection now.
-  TcpConnection here(FileDescriptor(::dup(socket.get())), service_protocols, 1 << 20);
-  TcpConnection there(FileDescriptor(::dup(accepted_.front().get())), service_protocols, 1 << 20);
+  TcpConnection here(std::move(socket), service_protocols, 1 << 20);
+  TcpConnection there(std::move(accepted_.front()), service_protocols, 1 << 20);
   const std::vector<std::byte> words(300'000, std::byte(7));
   const Bytes payload(words);
   std::jthread sender([&] { here.send(NodeMessage::add_texels, 9, {&payload, 1}); });
@@ -123,6 +121,19 @@ TEST_F(ListenerTest, WhoOnlyAsksIsToldAndGoes) {
   };
   EXPECT_THAT(refusal(AdmissionVerdict::too_many), HasSubstr("try again later"));
   EXPECT_THAT(refusal(AdmissionVerdict::not_offered), HasSubstr("--gl-server"));
+}
+
+TEST_F(ListenerTest, NoEncryptionIsAWishThatBothEndsMustHave) {
+  open();
+  ConnectionRequest connection_request;
+  connection_request.plain = true;
+  AuthenticatedSocket socket = connect_tcp(address_, secret_, connection_request, soon());
+  EXPECT_FALSE(socket.keys.has_value());
+  ASSERT_TRUE(eventually([&] { return accepted() == 1; }));
+  EXPECT_FALSE(accepted_.front().keys.has_value());
+  verdict_ = AdmissionVerdict::not_plain;
+  EXPECT_THROW(connect_tcp(address_, secret_, connection_request, soon()), std::runtime_error);
+  EXPECT_EQ(accepted(), 1U);
 }
 
 TEST_F(ListenerTest, AWrongSecretIsSaidOnBothSides) {
@@ -165,7 +176,7 @@ TEST_F(ListenerTest, AProcessForAClientKeepsNoPendingClient) {
   open({std::chrono::minutes(10), 64});
   const FileDescriptor before = pending();
   ASSERT_TRUE(eventually([&] { return ask([&] { return listener_->pending_clients(); }) == 1; }));
-  const FileDescriptor client = connect_tcp(address_, secret_, {}, soon());
+  const AuthenticatedSocket client = connect_tcp(address_, secret_, {}, soon());
   ASSERT_TRUE(eventually([&] { return accepted() == 1; }));
   EXPECT_TRUE(is_closed(before));
 }
@@ -222,7 +233,7 @@ TEST_F(ListenerTest, AThousandUnauthenticatedClientsDisturbNoClientAndLeaveNothi
     ConnectionRequest asking;
     asking.only_asks = true;
     for (int i = 0; i < 50; ++i) EXPECT_NO_THROW(connect_tcp(address_, secret_, asking, soon())) << i;
-    const FileDescriptor client = connect_tcp(address_, secret_, {}, soon());
+    const AuthenticatedSocket client = connect_tcp(address_, secret_, {}, soon());
     EXPECT_TRUE(eventually([&] { return accepted() == 1; }));
     flood.join();
     EXPECT_LE(ask([&] { return listener_->pending_clients(); }), 64U);

@@ -72,10 +72,10 @@ class RelayTest : public NodeGroupTest {
   std::vector<std::jthread> carriers_;
   Listener listener_ = Listener(
       TcpAddress{"127.0.0.1", 0}, secret_, [](const ConnectionRequest&) { return AdmissionVerdict::accepted; },
-      [this](FileDescriptor socket, const ConnectionRequest& connection_request) {
+      [this](AuthenticatedSocket client, const ConnectionRequest& connection_request) {
         carriers_.emplace_back(
-            [this, fd = std::make_shared<FileDescriptor>(std::move(socket)), connection_request] {
-              TcpConnection tcp(std::move(*fd), service_protocols, limits::max_message_bytes,
+            [this, peer = std::make_shared<AuthenticatedSocket>(std::move(client)), connection_request] {
+              TcpConnection tcp(std::move(*peer), service_protocols, limits::max_message_bytes,
                                 far_patience_.value_or(connection_patience_));
               Connection here(connect_to(path_, soon()), service_protocols);
               NodesRelay(here, tcp, connection_request).run();
@@ -247,13 +247,15 @@ class LongMessageTest : public ::testing::Test {
     application_.emplace(FileDescriptor(ends[0]), service_protocols);
     near_ = std::jthread([this, fd = ends[1]] {
       Connection here(FileDescriptor(fd), service_protocols);
-      TcpConnection tcp(connect_to(line_.address(), soon()), service_protocols, limits::max_message_bytes,
+      TcpConnection tcp({connect_to(line_.address(), soon()), {}}, service_protocols, limits::max_message_bytes,
                         patience_);
       Relay(here, tcp).run();
     });
     EXPECT_TRUE(wait_until_ready(listening_.get(), POLLIN, soon()));
-    far_.emplace(FileDescriptor(::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)),
-                 service_protocols, limits::max_message_bytes, patience_);
+    far_.emplace(
+        AuthenticatedSocket{
+            FileDescriptor(::accept4(listening_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)), {}},
+        service_protocols, limits::max_message_bytes, patience_);
     receiver_ = std::jthread([this] {
       try {
         message_ = far_->receive();

@@ -2,6 +2,7 @@
 // Links whose other end is busy, and such whose other end is gone.
 #include "compositor/transport/tcp/tcp_connection.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -13,12 +14,13 @@
 #include <vector>
 
 #include "compositor/service/service_protocols.h"
-#include "compositor/transport/tcp/tcp_socket.h"
+#include "tests/compositor/tcp/session.h"
 
 namespace understudy::compositor::testing {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::HasSubstr;
 
 /// More than lines and machines keep on the way.
 constexpr std::size_t much = std::size_t(64) << 20;
@@ -35,14 +37,10 @@ std::vector<std::byte> noise() {
 class TcpConnectionTest : public ::testing::Test {
  protected:
   TcpConnectionTest() {
-    const FileDescriptor listening = listen_at(TcpAddress{"127.0.0.1", 0});
-    const Deadline deadline = Clock::now() + std::chrono::seconds(10);
-    FileDescriptor near = connect_to(own_address(listening.get()), deadline);
-    EXPECT_TRUE(wait_until_ready(listening.get(), POLLIN, deadline));
-    FileDescriptor far(::accept4(listening.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    set_connection_options(far.get());
-    near_.emplace(std::move(near), service_protocols, 2 * much, patience);
-    far_.emplace(std::move(far), service_protocols, 2 * much, patience);
+    auto [near, far] = connected_sockets();
+    const auto [near_keys, far_keys] = keys_of_session(secret_of("sixteen bytes or more"));
+    near_.emplace(AuthenticatedSocket{std::move(near), near_keys}, service_protocols, 2 * much, patience);
+    far_.emplace(AuthenticatedSocket{std::move(far), far_keys}, service_protocols, 2 * much, patience);
   }
 
   /// Until its thread is asked to stop.
@@ -94,6 +92,122 @@ TEST_F(TcpConnectionTest, WhoOnlySaysThatHeIsThereSendsNoMessage) {
   });
   EXPECT_EQ(near_->receive().sequence, 5U);
   EXPECT_EQ(near_->received().messages, 1U);
+}
+
+/// Somebody on the way, between two connections.
+class TamperedConnectionTest : public ::testing::Test {
+ protected:
+  TamperedConnectionTest() {
+    auto [near, near_line] = connected_sockets();
+    auto [far_line, far] = connected_sockets();
+    const auto [near_keys, far_keys] = keys_of_session(secret_of("sixteen bytes or more"));
+    near_.emplace(AuthenticatedSocket{std::move(near), near_keys}, service_protocols, much);
+    far_.emplace(AuthenticatedSocket{std::move(far), far_keys}, service_protocols, much);
+    near_line_ = std::move(near_line);
+    far_line_ = std::move(far_line);
+  }
+
+  void say(const std::string& text) {
+    const Bytes payload = std::as_bytes(std::span(text));
+    near_->send(NodeMessage::add_texels, 1, {&payload, 1});
+  }
+  /// All that is on the way from the near end.
+  std::vector<std::byte> intercepted() {
+    std::vector<std::byte> bytes(1 << 16);
+    EXPECT_TRUE(wait_until_ready(near_line_.get(), POLLIN, Clock::now() + std::chrono::seconds(10)));
+    const ssize_t got = ::recv(near_line_.get(), bytes.data(), bytes.size(), 0);
+    bytes.resize(std::size_t(std::max<ssize_t>(got, 0)));
+    return bytes;
+  }
+  void hand_on(std::span<const std::byte> bytes) {
+    EXPECT_EQ(::send(far_line_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), ssize_t(bytes.size()));
+  }
+  /// Why the far end ends the session; empty: it has got a message.
+  std::string end_of_session() {
+    try {
+      far_->receive();
+    } catch (const MalformedMessage& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  std::optional<TcpConnection> near_;
+  std::optional<TcpConnection> far_;
+  FileDescriptor near_line_;
+  FileDescriptor far_line_;
+};
+
+TEST_F(TamperedConnectionTest, ReadsNothing) {
+  const std::string words = "/scans/of_somebody.nrrd glTexImage3D and then some texels";
+  say(words);
+  const std::vector<std::byte> line = intercepted();
+  ASSERT_GT(line.size(), words.size());
+  const std::string text(reinterpret_cast<const char*>(line.data()), line.size());
+  for (std::size_t i = 0; i + 4 <= words.size(); ++i)
+    EXPECT_EQ(text.find(words.substr(i, 4)), std::string::npos) << words.substr(i, 4);
+  EXPECT_EQ(text.find("USDY"), std::string::npos);
+  hand_on(line);
+  EXPECT_EQ(end_of_session(), "");
+}
+
+TEST_F(TamperedConnectionTest, AFlippedByteEndsTheSession) {
+  say("some texels");
+  std::vector<std::byte> line = intercepted();
+  line.back() ^= std::byte(1);
+  hand_on(line);
+  EXPECT_THAT(end_of_session(), HasSubstr("changed, replayed or left out on its way"));
+}
+
+TEST_F(TamperedConnectionTest, AReplayedRecordEndsTheSession) {
+  say("the first, behind the head of the stream");
+  hand_on(intercepted());
+  EXPECT_EQ(end_of_session(), "");
+  say("some texels");
+  const std::vector<std::byte> line = intercepted();
+  hand_on(line);
+  EXPECT_EQ(end_of_session(), "");
+  hand_on(line);
+  EXPECT_THAT(end_of_session(), HasSubstr("changed, replayed or left out on its way"));
+}
+
+TEST_F(TamperedConnectionTest, AMessageWithoutEncryptionEndsTheSession) {
+  MessageHeader header;
+  header.type = NodeMessage::done;
+  const std::vector<std::byte> head(stream_head_bytes);
+  hand_on(head);
+  hand_on(std::as_bytes(std::span(&header, 1)));
+  EXPECT_THAT(end_of_session(), HasSubstr("changed on its way"));
+}
+
+TEST_F(TamperedConnectionTest, MessagesOfAnyLengthComeWhole) {
+  const std::jthread line([this] {
+    std::array<std::byte, 5000> bytes{};
+    for (;;) {
+      if (!wait_until_ready(near_line_.get(), POLLIN, Clock::now() + std::chrono::seconds(10))) return;
+      const ssize_t got = ::recv(near_line_.get(), bytes.data(), bytes.size(), 0);
+      if (got <= 0) return;
+      for (ssize_t sent = 0; sent < got;) {
+        const ssize_t now =
+            ::send(far_line_.get(), &bytes[std::size_t(sent)], std::size_t(got - sent), MSG_NOSIGNAL);
+        if (now > 0)
+          sent += now;
+        else if (!wait_until_ready(far_line_.get(), POLLOUT, Clock::now() + std::chrono::seconds(10)))
+          return;
+      }
+    }
+  });
+  const std::vector<std::byte> all = noise();
+  std::uint64_t sequence = 0;
+  for (const std::size_t size :
+       {0, 1, 511, 16'383, 16'384, 65'535, 65'536, 65'537, 262'144, 262'145, 1'000'000}) {
+    const std::array<Bytes, 3> parts = {Bytes(all).first(size / 3),
+                                        Bytes(all).subspan(size / 3, size - size / 3), Bytes()};
+    const std::jthread sender([&] { near_->send(NodeMessage::add_texels, ++sequence, parts); });
+    const Message message = far_->receive();
+    EXPECT_TRUE(std::ranges::equal(message.payload, Bytes(all).first(size))) << size;
+  }
+  ::shutdown(near_->fd(), SHUT_RDWR);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/fuzz/record_input.h"
 #include "tests/fuzz/remote_seeds.h"
 
 namespace understudy::spu::testing {
@@ -37,6 +38,14 @@ TEST(RemoteInput, NothingThatNobodySentDoesHarm) {
     const int believed = play_remote_input(input);
     const bool is_handshake = name.empty() || name == "client" || name == "server";
     EXPECT_TRUE(is_handshake || believed == 1) << name;
+  });
+}
+
+TEST(RecordInput, NothingThatNobodySealedDoesHarm) {
+  play_all(record_seeds(), [](const std::string& name, const Buffer& input) {
+    const bool believed = open_records(input);
+    EXPECT_TRUE(name.empty() || believed) << name;
+    seal_and_open(input);
   });
 }
 

@@ -7,13 +7,15 @@ OpenGL and nodes there, all of it on a GL server there; as it is, or with JPEG i
 the nodes' images. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
 has every line, and each line every way; times and ratios are medians of those of the rounds. What travelled is counted on the
 longer of two runs, less the shorter: upwards before it was compressed, as the volume, which is compressed by what the line
-seemed to be, travels in both runs; downwards as it travelled.
+seemed to be, travels in both runs; downwards as it travelled. What encryption costs is measured on this machine's own network, held to 1 Gbit/s, where
+--plain may be had: a viewer that sends its nodes another 128^3 of noise with every frame, with and without, in turns.
 Only root can make such lines.
 """
 
 import contextlib
 import json
 import os
+import random
 import re
 import statistics
 import subprocess
@@ -32,6 +34,8 @@ SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
 LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
         "stage, quality 80": ["--remote", "--quality", "80"]}
+OF_THIS_MACHINE = ["one machine", "loopback"]
+GIGABIT = "1 Gbit/s, within a machine"
 PORT = 7070
 ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run
@@ -44,14 +48,14 @@ def on(host):
 
 
 @contextlib.contextmanager
-def server(folder, host):
+def server(folder, host, options=()):
     """`understudy serve` with two nodes and a GL server; where it listens, and the secret."""
     secret = folder / "secret"
     where = f"10.77.0.1:{PORT}" if host else f"127.0.0.1:{PORT}"
     with open(folder / "serve.log", "w+", encoding="utf-8") as log:
         process = subprocess.Popen(
             [*on(host), str(viewers.PROGRAMS / "understudy"), "serve", "-n", "2", "--socket", str(folder / "nodes.sock"),
-             "--listen", where, "--secret-file", str(secret), "--gl-server"], stdout=log, stderr=subprocess.STDOUT,
+             "--listen", where, "--secret-file", str(secret), "--gl-server", *options], stdout=log, stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL, env={**os.environ, **viewers.SOFTWARE, "DISPLAY": ""})
         try:
             until = time.monotonic() + 30
@@ -130,9 +134,28 @@ def measure(line, folder, display, host_of_server=None, host_of_client=None):
         return figures
 
 
+def encryption(folder, display):
+    """The same of a viewer that sends much, with and without."""
+    noise = folder / "noise.128x128x128"
+    noise.write_bytes(random.Random(1).randbytes(128**3))
+    figures = {}
+    with server(folder, None, ["--plain"]) as link:
+        for way, options in {"encrypted": [], "plain": ["--plain"]}.items():
+            print(f"  {GIGABIT}, {way}", file=sys.stderr, flush=True)
+            client = Client(folder, None, [*link, *options], display)
+            viewer = [viewers.PROGRAMS / "understudy-viewer", noise, "--mode", "time", "--offscreen", "--window-size", "128", "128"]
+            text = viewers.run([*client.prefix(["--speed-guard", "off"]), *viewer, "--frames", FRAMES[1], "--print-times"],
+                               client.environment())
+            times = [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
+            travelled = client.travelled()
+            figures[f"encryption/{way}"] = {"ms": statistics.median(times[FRAMES[0]:])} | {
+                what: travelled[what] / FRAMES[1] for what in ("up", "down", "round_trips")}
+    return figures
+
+
 def in_namespaces(line, folder, display):
     """The same between two hosts, in a process whose namespaces go with it."""
-    rate, one_way = LINES[line]
+    rate, one_way = LINES.get(line, ("1gbit", 0))
     text = subprocess.run(
         ["unshare", "--mount", "--net", "--pid", "--fork", "--mount-proc", "--propagation", "private", sys.executable, "-B",
          str(HERE / "remote.py"), line, rate, str(one_way), str(folder), display],
@@ -144,20 +167,25 @@ def rows():
     folder = viewers.OUT / "bench" / "remote"
     folder.mkdir(parents=True, exist_ok=True)
     lines = [line for line, hosts in LINES.items() if not hosts or (os.geteuid() == 0 and SWITCH.exists())]
+    lines += [GIGABIT] if os.geteuid() == 0 else []
     for line in LINES.keys() - lines:
         print(f"  {line}: needs root, and {SWITCH}", file=sys.stderr)
     rounds = []
     with VirtualDisplay() as display:
         for number in range(ROUNDS):
             print(f"  round {number + 1} of {ROUNDS}", file=sys.stderr)
-            rounds.append({line: (in_namespaces if LINES[line] else measure)(line, folder, display) for line in lines})
+            rounds.append({line: (measure if line in OF_THIS_MACHINE else in_namespaces)(line, folder, display) for line in lines})
     result = []
     for line in lines:
         for name in rounds[0][line]:
             row = {"name": f"remote/{name}/{line}", "value": median_of(rounds, line, name, "ms"), "unit": "ms"}
             row |= {f"bytes_{way}": median_of(rounds, line, name, way) for way in ("up", "down")}
             row["round_trips"] = median_of(rounds, line, name, "round_trips")
-            if line != "one machine" and name in rounds[0]["one machine"]:
+            if name == "encryption/encrypted":
+                plain = "encryption/plain"
+                row |= {"ratio_to": f"remote/{plain}/{line}",
+                        "ratio": statistics.median(each[line][name]["ms"] / each[line][plain]["ms"] for each in rounds)}
+            elif line != "one machine" and name in rounds[0]["one machine"]:
                 row |= {"ratio_to": f"remote/{name}/one machine",
                         "ratio": statistics.median(each[line][name]["ms"] / each["one machine"][name]["ms"] for each in rounds)}
             result.append(row)
@@ -169,6 +197,12 @@ def median_of(rounds, line, name, what):
 
 
 def main(line, rate, one_way, folder, display):
+    if line == GIGABIT:
+        for command in (["ip", "link", "set", "lo", "up", "mtu", "1500"],
+                        ["tc", "qdisc", "add", "dev", "lo", "root", "tbf", "rate", rate, "burst", "256k", "latency", "20ms"]):
+            subprocess.run(command, check=True)
+        json.dump(encryption(Path(folder), display), sys.stdout)
+        return
     subprocess.run(["sh", str(HOSTS / "network.sh"), str(SWITCH), one_way, "2", folder, rate], check=True,
                    stdout=sys.stderr)
     time.sleep(1)

@@ -9,6 +9,7 @@
 
 #include "apps/understudy/cli/compare.h"
 #include "apps/understudy/cli/doctor.h"
+#include "apps/understudy/cli/key.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/print.h"
 #include "apps/understudy/cli/render.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) try {
   launcher::add_print(app, chosen);
   launcher::add_trim(app, chosen);
   launcher::add_serve(app, chosen);
+  launcher::add_key(app, chosen);
   launcher::add_gl_server_command(app, chosen);
   launcher::add_listener(app, chosen);
   launcher::add_relay(app, chosen);

@@ -72,7 +72,7 @@ class LinkClient:
         self.opened = b""
         public, private = ctypes.create_string_buffer(32), ctypes.create_string_buffer(32)
         SODIUM.crypto_kx_keypair(public, private)
-        hello = HELLO + struct.pack("<IBBBB", LINK_VERSION, int(to_server), 0, 0, flags) + os.urandom(32) + public.raw
+        hello = HELLO + struct.pack("<IBBBB", LINK_VERSION, int(to_server), 0, 0, flags) + os.urandom(32) + public.raw + bytes(32)
         self.socket.sendall(hello)
         challenge = self.receive_raw(48 + 32)
         key = hashlib.blake2b(secret, digest_size=32).digest()

@@ -36,10 +36,11 @@ class OverTcp : public CommandTest {
   }
 
   /// `understudy serve` with two nodes at a port of its own.
-  void serve(const Words& options = {}) {
+  void serve(const Words& options = {}) { serve_with(Words{"--secret-file", secret()} + options); }
+  void serve_with(const Words& options) {
     fs::create_directory(file("server"));
     server_.emplace(command_of(Words{(programs / "understudy").string(), "serve", "-n", "2", "--socket",
-                                     socket(), "--listen", ":0", "--secret-file", secret()} +
+                                     socket(), "--listen", ":0"} +
                                options),
                     file("server"));
     std::smatch found;
@@ -141,6 +142,31 @@ TEST_F(OverTcp, WhoHasAnotherSecretDrawsByItselfAndSaysWhy) {
   const Outcome without = run(under({"--connect", address_}) + frame("none.png"));
   EXPECT_EQ(without.status, 2);
   EXPECT_THAT(without.err, HasSubstr("needs --secret-file"));
+  end_server();
+}
+
+TEST_F(OverTcp, KeysServeInPlaceOfASecret) {
+  const std::string understudy = (programs / "understudy").string();
+  for (const char* name : {"server.key", "mine.key", "other.key"})
+    run_well({understudy, "key", file(name).string()});
+  EXPECT_NE(run({understudy, "key", file("mine.key").string()}).status, 0);
+  fs::copy_file(file("mine.key.pub"), file("clients"));
+  serve_with({"--key", file("server.key").string(), "--clients", file("clients").string()});
+  const auto render = [&](const std::string& key, const std::string& server_key) {
+    return run({understudy, "render", "synthetic:20x20x20", "--size", "32x32", "--out",
+                file("keys.png").string(), "--connect", address_, "--key", file(key).string(), "--server-key",
+                file(server_key).string()});
+  };
+  EXPECT_EQ(render("mine.key", "server.key.pub").status, 0);
+  EXPECT_TRUE(fs::exists(file("keys.png")));
+  EXPECT_THAT(render("other.key", "server.key.pub").err, HasSubstr("does not know the key"));
+  EXPECT_NE(render("mine.key", "other.key.pub").status, 0);
+  run_well(under({"--connect", address_, "--key", file("mine.key").string(), "--server-key",
+                  file("server.key.pub").string(), "--report", file("report.json")}) +
+           frame("run.png"));
+  EXPECT_EQ(substituted(json("report.json")), 1);
+  // No secret was made.
+  EXPECT_FALSE(fs::exists(secret()));
   end_server();
 }
 

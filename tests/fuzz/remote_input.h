@@ -35,7 +35,7 @@ bool may_refuse(Step step) {
 inline void shake_hands(std::span<const std::byte> input) {
   using namespace compositor;
   const std::array<std::byte, 16> contents{};
-  const Secret secret(contents);
+  const Credentials secret{Secret(contents)};
   const auto part = [&](std::size_t from, std::size_t size) {
     from = std::min(from, input.size());
     return input.subspan(from, std::min(size, input.size() - from));
@@ -43,13 +43,13 @@ inline void shake_hands(std::span<const std::byte> input) {
   may_refuse([&] {
     ServerHandshake server(secret);
     server.answer(part(0, hello_bytes));
-    server.answer(part(hello_bytes, public_key_bytes));
-    server.answer(part(hello_bytes + public_key_bytes, proof_bytes));
+    server.answer(part(hello_bytes, client_key_bytes));
+    server.answer(part(hello_bytes + client_key_bytes, proof_bytes));
   });
   may_refuse([&] {
     ClientHandshake client(secret, {});
-    client.answer(part(0, challenge_bytes + public_key_bytes));
-    client.finish(part(challenge_bytes + public_key_bytes, verdict_bytes));
+    client.answer(part(0, challenge_bytes + server_key_bytes));
+    client.finish(part(challenge_bytes + server_key_bytes, verdict_bytes));
   });
 }
 

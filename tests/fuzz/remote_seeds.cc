@@ -97,7 +97,7 @@ Seeds remote_seeds() {
   using compositor::ImageCoding;
   Seeds seeds;
   const std::array<std::byte, 16> contents{};
-  const compositor::Secret secret(contents);
+  const compositor::Credentials secret{compositor::Secret(contents)};
   compositor::ClientHandshake client(secret, {});
   compositor::ServerHandshake server(secret);
   Buffer of_client = client.hello();

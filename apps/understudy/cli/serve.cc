@@ -41,6 +41,8 @@ struct ServeArguments {
   pid_t while_process = 0;  ///< 0: until asked to end
   std::string listen;       ///< host:port for clients of other machines; empty: none
   std::filesystem::path secret_file;
+  std::filesystem::path key_file;
+  std::filesystem::path clients;
   bool server = false;
   bool plain = false;
   std::string tiles = "off";
@@ -83,12 +85,14 @@ Frontends open_frontends(const Installation& installation, const ServeArguments&
                     "0.0.0.0:7070 for all of its networks",
                     arguments.listen));
   bool made = false;
-  compositor::read_or_make_secret(arguments.secret_file, made);
+  if (!arguments.secret_file.empty()) compositor::read_or_make_secret(arguments.secret_file, made);
   if (made)
     fmt::print("understudy: made the secret {0}; copy it to where viewers are: scp {0} HOST:\n",
                std::filesystem::absolute(arguments.secret_file).string());
   ListenerPlan plan{.address = *address,
                     .secret_file = arguments.secret_file,
+                    .key_file = arguments.key_file,
+                    .clients = arguments.clients,
                     .nodes = nodes.socket,
                     .server = {},
                     .folder = nodes.folder,
@@ -148,10 +152,9 @@ int serve(const ServeArguments& arguments) {
     fmt::print("understudy: {} nodes at {}; use them with: understudy run --connect {} -- viewer args…\n",
                nodes.ranks(), socket.string(), socket.string());
     if (frontends.listener.process)
-      fmt::print(
-          "understudy: and at {0}; use them with: understudy run {1}--connect {0} --secret-file FILE -- viewer "
-          "args…\n",
-          frontends.listener.address.text(), frontends.server ? "[--remote] " : "");
+      fmt::print("understudy: and at {0}; use them with: understudy run {1}--connect {0} {2} -- viewer args…\n",
+                 frontends.listener.address.text(), frontends.server ? "[--remote] " : "",
+                 arguments.secret_file.empty() ? "--key FILE --server-key FILE.pub" : "--secret-file FILE");
     std::fflush(stdout);
   }
   return 0;
@@ -197,18 +200,30 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
       ->capture_default_str();
   add_exchange_options(*subcommand, arguments->choices);
   add_tiles_option(*subcommand, arguments->tiles);
-  CLI::Option* secret_file =
-      subcommand
-          ->add_option("--secret-file", arguments->secret_file,
-                       "with --listen: the secret that clients must have; created if the file does not exist")
-          ->type_name("FILE");
+  subcommand
+      ->add_option("--secret-file", arguments->secret_file,
+                   "with --listen: the secret that clients must have; created if the file does not exist")
+      ->type_name("FILE");
   CLI::Option* listen =
       subcommand
           ->add_option("--listen", arguments->listen,
                        "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
                        "all of its networks; port 0 takes any that is free")
-          ->type_name("[HOST]:PORT")
-          ->needs(secret_file);
+          ->type_name("[HOST]:PORT");
+  CLI::Option* key =
+      subcommand
+          ->add_option("--key", arguments->key_file,
+                       "with --listen: this server's own key (understudy key FILE), beside or in "
+                       "place of a secret")
+          ->type_name("FILE")
+          ->needs(listen);
+  CLI::Option* clients =
+      subcommand
+          ->add_option("--clients", arguments->clients,
+                       "with --key: the public keys of clients that may come in, a FILE.pub a line")
+          ->type_name("FILE")
+          ->needs(key);
+  key->needs(clients);
   subcommand
       ->add_flag("--gl-server", arguments->server,
                  "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "
@@ -223,7 +238,11 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);
-  subcommand->callback([arguments, &chosen] { chosen = [arguments] { return serve(*arguments); }; });
+  subcommand->callback([arguments, &chosen] {
+    if (!arguments->listen.empty() && arguments->secret_file.empty() && arguments->key_file.empty())
+      throw CLI::RequiresError("--listen", "--secret-file or --key");
+    chosen = [arguments] { return serve(*arguments); };
+  });
 }
 
 }  // namespace understudy::launcher

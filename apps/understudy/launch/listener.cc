@@ -17,6 +17,7 @@
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/key_file.h"
 #include "compositor/transport/tcp/listener.h"
 #include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
@@ -79,9 +80,16 @@ int carry(compositor::AuthenticatedSocket client, const ConnectionRequest& conne
   return 1;
 }
 
+compositor::Credentials credentials_of(const ListenerPlan& plan) {
+  std::optional<compositor::Secret> secret;
+  if (!plan.secret_file.empty()) secret = compositor::read_secret(plan.secret_file);
+  if (plan.key_file.empty()) return compositor::Credentials(secret.value());
+  return {compositor::read_key_file(plan.key_file), compositor::read_public_keys(plan.clients), secret};
+}
+
 int listen(const ListenerPlan& plan) {
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
-  const compositor::Secret secret = compositor::read_secret(plan.secret_file);
+  const compositor::Credentials credentials = credentials_of(plan);
   ClientProcesses clients;
   Listener* open_listener = nullptr;
   const auto admission = [&](const ConnectionRequest& connection_request) {
@@ -97,7 +105,7 @@ int listen(const ListenerPlan& plan) {
     });
     if (!started) say("no process can be made for a client; it was sent away");
   };
-  Listener listener(plan.address, secret, admission, accept, say);
+  Listener listener(plan.address, credentials, admission, accept, say);
   open_listener = &listener;
   tell_address(plan.folder, listener.address().text());
   while (!asked_to_end(inbox, clients)) {
@@ -117,13 +125,13 @@ OpenListener start_listener(const Installation& installation, const ListenerPlan
                                     "listener",
                                     "--listen",
                                     plan.address.text(),
-                                    "--secret-file",
-                                    plan.secret_file,
                                     "--nodes",
                                     plan.nodes,
                                     "--folder",
                                     plan.folder};
   if (!plan.server.empty()) words.insert(words.end(), {"--gl-server", plan.server});
+  if (!plan.secret_file.empty()) words.insert(words.end(), {"--secret-file", plan.secret_file});
+  if (!plan.key_file.empty()) words.insert(words.end(), {"--key", plan.key_file, "--clients", plan.clients});
   if (plan.plain) words.emplace_back("--plain");
   OpenListener listener{
       std::make_unique<ChildProcess>(Command{.arguments = words, .environment = current_environment()}), {}};
@@ -148,7 +156,9 @@ void add_listener(CLI::App& app, std::function<int()>& chosen) {
       app.add_subcommand("listener", "lets clients of other machines in, for serve --listen");
   subcommand->group("");
   subcommand->add_option("--listen", *address)->required();
-  subcommand->add_option("--secret-file", plan->secret_file)->required();
+  subcommand->add_option("--secret-file", plan->secret_file);
+  subcommand->add_option("--key", plan->key_file);
+  subcommand->add_option("--clients", plan->clients);
   subcommand->add_option("--nodes", plan->nodes)->required();
   subcommand->add_option("--gl-server", plan->server);
   subcommand->add_flag("--plain", plan->plain);

@@ -17,11 +17,13 @@ namespace understudy::launcher {
 
 struct ListenerPlan {
   compositor::TcpAddress address;
-  std::filesystem::path secret_file;
-  std::filesystem::path nodes;   ///< the nodes' socket
-  std::filesystem::path server;  ///< the GL server's; empty: none is offered
-  std::filesystem::path folder;  ///< private; must exist
-  bool plain = false;            ///< clients of this machine may do without encryption
+  std::filesystem::path secret_file;  ///< empty: clients have keys
+  std::filesystem::path key_file;     ///< of this server; empty: clients have the secret
+  std::filesystem::path clients;      ///< their public keys, with key_file
+  std::filesystem::path nodes;        ///< the nodes' socket
+  std::filesystem::path server;       ///< the GL server's; empty: none is offered
+  std::filesystem::path folder;       ///< private; must exist
+  bool plain = false;                 ///< clients of this machine may do without encryption
 };
 
 struct OpenListener {

@@ -22,6 +22,7 @@
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
+#include "compositor/transport/tcp/key_file.h"
 #include "compositor/transport/tcp/tcp_connection.h"
 #include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
@@ -40,11 +41,19 @@ namespace limits = compositor::limits;
 constexpr std::chrono::seconds patience_with_start{10};
 constexpr std::array<const char*, 3> layout_names = {"float", "half", "byte"};
 
+compositor::Credentials credentials_of(const ConnectionPlan& plan) {
+  if (plan.key_file.empty()) return compositor::Credentials(compositor::read_secret(plan.secret_file));
+  const std::vector<compositor::PublicKey> server = compositor::read_public_keys(plan.server_key);
+  if (server.size() != 1)
+    throw std::runtime_error(fmt::format("'{}' holds {} public keys; --server-key wants that of one server",
+                                         plan.server_key.string(), server.size()));
+  return {compositor::read_key_file(plan.key_file), server};
+}
+
 compositor::AuthenticatedSocket linked(const ConnectionPlan& plan) {
   const auto address = compositor::tcp_address_of(plan.address);
   if (!address) throw std::runtime_error(fmt::format("'{}' is no host:port", plan.address));
-  const compositor::Secret secret = compositor::read_secret(plan.secret_file);
-  return compositor::connect_tcp(*address, secret, plan.connection_request,
+  return compositor::connect_tcp(*address, credentials_of(plan), plan.connection_request,
                                  Clock::now() + limits::hello_patience);
 }
 
@@ -96,6 +105,13 @@ int carry(FileDescriptor application, const ConnectionPlan& plan, const std::fil
 
 }  // namespace
 
+std::string lack_of_credentials(const std::string& address) {
+  return fmt::format(
+      "--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, copied to this "
+      "machine; or --key and --server-key",
+      address);
+}
+
 void try_connection(const ConnectionPlan& plan) {
   ConnectionPlan asking = plan;
   asking.connection_request.only_asks = true;
@@ -110,8 +126,6 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
       "relay",
       "--connect",
       plan.address,
-      "--secret-file",
-      std::filesystem::absolute(plan.secret_file),
       "--to",
       plan.connection_request.to == Destination::gl_server ? "gl-server" : "nodes",
       "--pixels",
@@ -122,6 +136,12 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
       socket,
       "--figures",
       folder};
+  const auto add_file = [&](const char* option, const std::filesystem::path& file) {
+    if (!file.empty()) words.insert(words.end(), {option, std::filesystem::absolute(file)});
+  };
+  add_file("--secret-file", plan.secret_file);
+  add_file("--key", plan.key_file);
+  add_file("--server-key", plan.server_key);
   if (plan.connection_request.plain) words.emplace_back("--plain");
   auto relay = std::make_unique<ChildProcess>(
       Command{.arguments = words, .environment = current_environment(), .own_group = true});
@@ -139,11 +159,7 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
 
 void with_connection(ConnectionPlan plan, const std::string& address, const std::string& pixels,
                      const std::function<void(const std::string& socket)>& job) {
-  if (plan.secret_file.empty())
-    throw std::runtime_error(
-        fmt::format("--connect {0} needs --secret-file FILE: the one that understudy serve --listen "
-                    "{0} uses, copied to this machine",
-                    address));
+  if (!plan.has_credentials()) throw std::runtime_error(lack_of_credentials(address));
   plan.address = address;
   compositor::ExchangeSettings settings;
   compositor::set_layout(settings, pixels);
@@ -156,10 +172,24 @@ void with_connection(ConnectionPlan plan, const std::string& address, const std:
 }
 
 void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan) {
-  subcommand
-      .add_option("--secret-file", plan.secret_file,
-                  "for --connect HOST:PORT: the secret of `understudy serve` there, copied to this machine")
-      ->type_name("FILE");
+  CLI::Option* secret =
+      subcommand
+          .add_option("--secret-file", plan.secret_file,
+                      "for --connect HOST:PORT: the secret of `understudy serve` there, copied to this machine")
+          ->type_name("FILE");
+  CLI::Option* key =
+      subcommand
+          .add_option("--key", plan.key_file,
+                      "in place of --secret-file: your own key (understudy key FILE), which `understudy serve "
+                      "--clients` there must know")
+          ->type_name("FILE")
+          ->excludes(secret);
+  CLI::Option* server_key =
+      subcommand
+          .add_option("--server-key", plan.server_key, "with --key: the public key (FILE.pub) of the server")
+          ->type_name("FILE.pub")
+          ->needs(key);
+  key->needs(server_key);
   subcommand
       .add_option("--quality", plan.connection_request.jpeg_quality,
                   "with --connect HOST:PORT: JPEG quality of images while the view moves; images of a view at "
@@ -183,7 +213,9 @@ void add_relay(CLI::App& app, std::function<int()>& chosen) {
       app.add_subcommand("relay", "carries messages to another machine, for --connect HOST:PORT");
   subcommand->group("");
   subcommand->add_option("--connect", arguments->plan.address)->required();
-  subcommand->add_option("--secret-file", arguments->plan.secret_file)->required();
+  subcommand->add_option("--secret-file", arguments->plan.secret_file);
+  subcommand->add_option("--key", arguments->plan.key_file);
+  subcommand->add_option("--server-key", arguments->plan.server_key);
   const std::map<std::string, Destination> services = {{"nodes", Destination::nodes},
                                                        {"gl-server", Destination::gl_server}};
   subcommand->add_option("--to", arguments->plan.connection_request.to)

@@ -19,8 +19,15 @@ namespace understudy::launcher {
 struct ConnectionPlan {
   std::string address;  ///< host:port
   std::filesystem::path secret_file;
+  std::filesystem::path key_file;    ///< with server_key, in place of a secret
+  std::filesystem::path server_key;  ///< the public key of the server
   compositor::ConnectionRequest connection_request;
+
+  bool has_credentials() const { return !secret_file.empty() || !key_file.empty(); }
 };
+
+/// What to do for a connection to `address` without credentials.
+std::string lack_of_credentials(const std::string& address);
 
 /// Whether both sides prove themselves, now. Throws std::runtime_error: what is wrong, and what to do.
 void try_connection(const ConnectionPlan& plan);
@@ -36,7 +43,7 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
 void with_connection(ConnectionPlan plan, const std::string& address, const std::string& pixels,
                      const std::function<void(const std::string& socket)>& job);
 
-/// `--secret-file`, `--quality` and `--plain`, for commands with --connect.
+/// `--secret-file`, `--key`, `--server-key`, `--quality` and `--plain`, for commands with --connect.
 void add_connection_options(CLI::App& subcommand, ConnectionPlan& plan);
 
 /// Adds the subcommand `relay`, which is not shown in the help.

@@ -124,11 +124,7 @@ std::optional<ConnectionPlan> connection_of(const RunArguments& arguments, const
   if (options.connect.empty() || options.disable) return {};
   const auto address = compositor::tcp_address_of(options.connect);
   if (!address) return {};
-  if (arguments.connection.secret_file.empty())
-    throw std::runtime_error(
-        fmt::format("--connect {0} needs --secret-file FILE: the one that understudy serve --listen {0} uses, "
-                    "copied to this machine",
-                    options.connect));
+  if (!arguments.connection.has_credentials()) throw std::runtime_error(lack_of_credentials(options.connect));
   ConnectionPlan plan = arguments.connection;
   plan.address = address->text();
   plan.connection_request.to =
@@ -271,8 +267,9 @@ std::optional<ConnectionPlan> checked_connection(const RunArguments& arguments, 
   } catch (const std::runtime_error& error) {
     throw CannotRun(error.what(), connection ? 1 : usage_error);
   }
-  if (!connection && !arguments.connection.secret_file.empty())
-    say("--secret-file is for --connect HOST:PORT; nodes and GL servers of this machine need no secret");
+  if (!connection && arguments.connection.has_credentials())
+    say("--secret-file and --key are for --connect HOST:PORT; nodes and GL servers of this machine need "
+        "neither");
   return connection;
 }
 

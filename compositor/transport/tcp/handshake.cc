@@ -90,10 +90,10 @@ bool same(const Mac& a, const Mac& b) {
   return ::sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-SessionKeys agreed_keys(const EphemeralKey& own, Side side, const PublicKey& theirs, const Secret& secret,
+SessionKeys agreed_keys(const KeyPair& own, Side side, const PublicKey& theirs, const Secret& secret,
                         std::span<const std::byte> said) {
   try {
-    return own.session_keys(side, theirs, secret, said);
+    return session_keys(side, own, theirs, secret, said);
   } catch (const MalformedMessage& error) {
     throw HandshakeFailed(error.what());
   }
@@ -104,14 +104,12 @@ constexpr std::string_view from_server = "understudy link: server";
 
 }  // namespace
 
-ServerHandshake::ServerHandshake(const Secret& secret) : secret_(&secret) {}
-
 std::size_t ServerHandshake::wants() const {
   switch (step_) {
     case Step::hello:
       return hello_bytes;
     case Step::key:
-      return public_key_bytes;
+      return client_key_bytes;
     case Step::proof:
       return proof_bytes;
     default:
@@ -148,13 +146,16 @@ void ServerHandshake::take_hello(std::span<const std::byte> message) {
 }
 
 std::vector<std::byte> ServerHandshake::challenge(std::span<const std::byte> their_key) {
-  their_key_ = words_of<PublicKey>(their_key);
-  append(said_, their_key_);
+  const auto [of_session, of_file] = words_of<std::array<PublicKey, 2>>(their_key);
+  their_key_ = of_session;
+  append(said_, of_session);
+  append(said_, of_file);
   Challenge challenge;
   challenge.nonce = fresh_nonce();
   Buffer words = buffer_of(challenge);
   append(words, key_.emplace().public_key());
   said_.insert(said_.end(), words.begin(), words.end());
+  secret_ = credentials_->secret_with_client(*key_, of_session, of_file);
   step_ = Step::proof;
   return words;
 }
@@ -166,7 +167,9 @@ void ServerHandshake::take_proof(std::span<const std::byte> message) {
   if (!same(theirs, proof(*secret_, from_client, said_))) {
     // Without a proof: it shows nothing of the secret to whoever has not got it.
     last_words_ = buffer_of(VerdictWords{std::uint32_t(AdmissionVerdict::wrong_secret)});
-    throw HandshakeFailed("its secret is not the one of --secret-file here: give both machines the same file");
+    throw HandshakeFailed(
+        "its secret is not the one of --secret-file here (give both machines the same file), or its key is not "
+        "among those of --clients");
   }
   if (!connection_request_.plain) session_keys_ = agreed_keys(*key_, Side::server, their_key_, *secret_, said_);
   step_ = Step::proved;
@@ -178,9 +181,9 @@ std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const 
   return buffer_of(words);
 }
 
-ClientHandshake::ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
+ClientHandshake::ClientHandshake(const Credentials& credentials, const ConnectionRequest& connection_request,
                                  std::uint32_t version)
-    : secret_(&secret), version_(version), plain_(connection_request.plain) {
+    : credentials_(&credentials), version_(version), plain_(connection_request.plain) {
   Hello hello;
   hello.version = version;
   hello.to = std::uint8_t(connection_request.to);
@@ -190,6 +193,7 @@ ClientHandshake::ClientHandshake(const Secret& secret, const ConnectionRequest& 
   hello.nonce = fresh_nonce();
   hello_ = buffer_of(hello);
   append(hello_, key_.public_key());
+  append(hello_, credentials_->public_key());
 }
 
 void ClientHandshake::check(std::span<const std::byte> challenge) const {
@@ -209,17 +213,24 @@ std::vector<std::byte> ClientHandshake::answer(std::span<const std::byte> challe
   their_key_ = words_of<PublicKey>(challenge_and_key.subspan(challenge_bytes));
   said_ = hello_;
   said_.insert(said_.end(), challenge_and_key.begin(), challenge_and_key.end());
+  secret_ = credentials_->secret_with_server(key_, their_key_);
   return buffer_of(proof(*secret_, from_client, said_));
 }
 
 void ClientHandshake::finish(std::span<const std::byte> verdict) const {
   const auto words = words_of<VerdictWords>(verdict);
   if (words.verdict == std::uint32_t(AdmissionVerdict::wrong_secret))
-    throw HandshakeFailed("its secret is another one: copy its --secret-file to this machine");
-  if (words.verdict > std::uint32_t(AdmissionVerdict::last) ||
+    throw HandshakeFailed(credentials_->by_key()
+                              ? "it does not know the key of --key, or has another one than that of "
+                                "--server-key: append FILE.pub of "
+                                "this machine to its --clients"
+                              : "its secret is another one: copy its --secret-file to this machine");
+  if (!secret_ || words.verdict > std::uint32_t(AdmissionVerdict::last) ||
       !same(words.proof, proof(*secret_, from_server, said_, words.verdict)))
     throw HandshakeFailed(
-        "it has not the secret of --secret-file itself: do not trust it, look at host and port");
+        credentials_->by_key()
+            ? "it has not the key of --server-key itself: do not trust it, look at host and port"
+            : "it has not the secret of --secret-file itself: do not trust it, look at host and port");
   if (words.verdict == std::uint32_t(AdmissionVerdict::too_many))
     throw HandshakeFailed("as many clients as it takes are there already: try again later");
   if (words.verdict == std::uint32_t(AdmissionVerdict::not_offered))

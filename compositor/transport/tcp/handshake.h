@@ -3,12 +3,13 @@
 // else.
 //
 // The client says its version, what it wants and a random number; the server its version and another one; the
-// client proves that it has the secret, then the server does. A proof is HMAC-SHA-512-256 (libsodium's
-// crypto_auth) of a label for the direction and of all that was said before, so that nobody can use one end's
-// proof at another, at another time or for other wishes. (Challenge and response in both directions: ISO/IEC
-// 9798-4.) Part of what was said are the public keys from which both ends make the keys of the session
-// (session_keys.h), with which all that follows is encrypted and authenticated (record.h). Whether it is, is a
-// wish like others: nobody on the way can change it, and a client is never given less than it wanted.
+// client proves that it has the secret, then the server does. The secret is the one that both have, or what
+// follows from their key files (credentials.h). A proof is HMAC-SHA-512-256 (libsodium's crypto_auth) of a
+// label for the direction and of all that was said before, so that nobody can use one end's proof at another,
+// at another time or for other wishes. (Challenge and response in both directions: ISO/IEC 9798-4.) Part of
+// what was said are the public keys from which both ends make the keys of the session (session_keys.h), with
+// which all that follows is encrypted and authenticated (record.h). Whether it is, is a wish like others:
+// nobody on the way can change it, and a client is never given less than it wanted.
 //
 // Nothing here touches a socket; each step takes one message of a fixed size and gives the next. The first one
 // of both sides ends before the keys, and stays as it is in all versions: so versions that differ are told
@@ -25,7 +26,7 @@
 #include <vector>
 
 #include "compositor/transport/pixel_width.h"
-#include "compositor/transport/tcp/secret.h"
+#include "compositor/transport/tcp/credentials.h"
 #include "compositor/transport/tcp/session_keys.h"
 
 namespace understudy::compositor {
@@ -58,7 +59,9 @@ enum class AdmissionVerdict : std::uint32_t {
 
 constexpr std::size_t hello_bytes = 48;
 constexpr std::size_t challenge_bytes = 48;
-constexpr std::size_t public_key_bytes = sizeof(PublicKey);  ///< behind both
+constexpr std::size_t client_key_bytes =
+    2 * public_key_bytes;                                   ///< behind the hello: of the session, of its file
+constexpr std::size_t server_key_bytes = public_key_bytes;  ///< behind the challenge
 constexpr std::size_t proof_bytes = 32;
 constexpr std::size_t verdict_bytes = 40;
 
@@ -70,7 +73,9 @@ class HandshakeFailed : public std::runtime_error {
 
 class ServerHandshake {
  public:
-  explicit ServerHandshake(const Secret& secret);
+  /// `credentials` must outlive it.
+  explicit ServerHandshake(const Credentials& credentials) : credentials_(&credentials) {}
+  explicit ServerHandshake(Credentials&&) = delete;
 
   /// How many bytes its next message has; 0 when all has been said.
   std::size_t wants() const;
@@ -92,11 +97,12 @@ class ServerHandshake {
   std::vector<std::byte> challenge(std::span<const std::byte> their_key);
   void take_proof(std::span<const std::byte> message);
 
-  const Secret* secret_;
+  const Credentials* credentials_;
   Step step_ = Step::hello;
   ConnectionRequest connection_request_;
   PublicKey their_key_{};
-  std::optional<EphemeralKey> key_;
+  std::optional<KeyPair> key_;
+  std::optional<Secret> secret_;  ///< of the proofs
   std::optional<SessionKeys> session_keys_;
   std::vector<std::byte> said_;  ///< hello and challenge, with the keys behind them
   std::vector<std::byte> last_words_;
@@ -104,8 +110,10 @@ class ServerHandshake {
 
 class ClientHandshake {
  public:
-  ClientHandshake(const Secret& secret, const ConnectionRequest& connection_request,
+  /// `credentials` must outlive it.
+  ClientHandshake(const Credentials& credentials, const ConnectionRequest& connection_request,
                   std::uint32_t version = tcp_protocol_version);
+  ClientHandshake(Credentials&&, const ConnectionRequest&, std::uint32_t = tcp_protocol_version) = delete;
 
   /// With its key behind it.
   const std::vector<std::byte>& hello() const { return hello_; }
@@ -119,11 +127,12 @@ class ClientHandshake {
   std::optional<SessionKeys> session_keys() const;
 
  private:
-  const Secret* secret_;
+  const Credentials* credentials_;
   std::uint32_t version_;
   bool plain_;
-  EphemeralKey key_;
+  KeyPair key_;
   PublicKey their_key_{};
+  std::optional<Secret> secret_;  ///< of the proofs
   std::vector<std::byte> hello_;
   std::vector<std::byte> said_;
 };

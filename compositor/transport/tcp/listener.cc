@@ -26,13 +26,14 @@ bool tell(int socket, std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Listener::Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say)
-    : Listener(address, secret, std::move(admission), std::move(accept), std::move(say),
+Listener::Listener(const TcpAddress& address, const Credentials& credentials, Admission admission,
+                   Accept accept, Say say)
+    : Listener(address, credentials, std::move(admission), std::move(accept), std::move(say),
                {limits::hello_patience, limits::max_pending_clients}) {}
 
-Listener::Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say,
-                   const ListenerLimits& limits)
-    : secret_(secret),
+Listener::Listener(const TcpAddress& address, const Credentials& credentials, Admission admission,
+                   Accept accept, Say say, const ListenerLimits& limits)
+    : credentials_(credentials),
       admission_(std::move(admission)),
       accept_(std::move(accept)),
       say_(std::move(say)),
@@ -84,7 +85,7 @@ void Listener::accept_all() {
     }
     set_connection_options(socket.get());
     if (pending_.size() >= limits_.pending_clients) make_room();
-    pending_.push_back({std::move(socket), Clock::now() + limits_.patience, ServerHandshake(secret_), {}});
+    pending_.push_back({std::move(socket), Clock::now() + limits_.patience, ServerHandshake(credentials_), {}});
   }
 }
 

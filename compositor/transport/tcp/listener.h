@@ -32,12 +32,13 @@ class Listener {
   /// A client that was told that it may.
   using Accept = std::function<void(AuthenticatedSocket client, const ConnectionRequest& connection_request)>;
 
-  /// `secret` must outlive the listener. Who wants no encryption is only asked about where both ends are on
-  /// this machine. `say` gets a line about who was not let in, at most one a second. Throws std::runtime_error
-  /// where nobody can listen.
-  Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say);
-  Listener(const TcpAddress& address, const Secret& secret, Admission admission, Accept accept, Say say,
-           const ListenerLimits& limits);
+  /// `credentials` must outlive the listener. Who wants no encryption is only asked about where both ends are
+  /// on this machine. `say` gets a line about who was not let in, at most one a second. Throws
+  /// std::runtime_error where nobody can listen.
+  Listener(const TcpAddress& address, const Credentials& credentials, Admission admission, Accept accept,
+           Say say);
+  Listener(const TcpAddress& address, const Credentials& credentials, Admission admission, Accept accept,
+           Say say, const ListenerLimits& limits);
 
   /// With the port that was given if any would do.
   const TcpAddress& address() const { return address_; }
@@ -68,7 +69,7 @@ class Listener {
   AdmissionVerdict verdict_on(const PendingClient& pending) const;
   void drop(const PendingClient& pending, const std::string& why);
 
-  const Secret& secret_;
+  const Credentials& credentials_;
   Admission admission_;
   Accept accept_;
   Say say_;

@@ -29,32 +29,56 @@ Secret::~Secret() {
   ::sodium_memzero(key_.data(), key_.size());
 }
 
-Secret read_secret(const std::filesystem::path& file) {
+std::vector<std::byte> read_private_file(const std::filesystem::path& file, std::string_view what,
+                                         std::string_view origin, std::size_t least, std::size_t most) {
   const FileDescriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (!opened || ::fstat(opened.get(), &status) != 0)
     throw std::runtime_error(
-        fmt::format("cannot read the secret '{}': {}; copy the file that understudy serve --secret-file uses "
-                    "on its machine",
-                    file.string(), std::strerror(errno)));
+        fmt::format("cannot read the {} '{}': {}; {}", what, file.string(), std::strerror(errno), origin));
   if (!S_ISREG(status.st_mode))
     throw std::runtime_error(
-        fmt::format("the secret '{}' is no file; name the one that holds it", file.string()));
+        fmt::format("the {} '{}' is no file; name the one that holds it", what, file.string()));
   if (status.st_uid != ::geteuid())
     throw std::runtime_error(
-        fmt::format("the secret '{0}' is user {1}'s, who can change it; use a copy of your own: cp {0} "
-                    "~/understudy.secret",
-                    file.string(), status.st_uid));
+        fmt::format("the {0} '{1}' is user {2}'s, who can change it; use a copy of your own: cp {1} "
+                    "~/understudy.{0}",
+                    what, file.string(), status.st_uid));
   if ((status.st_mode & 077) != 0)
     throw std::runtime_error(
-        fmt::format("others may read the secret '{0}'; keep it to yourself: chmod 600 {0}", file.string()));
-  std::vector<std::byte> contents(limits::max_secret_bytes + 1);
+        fmt::format("others may read the {0} '{1}'; keep it to yourself: chmod 600 {1}", what, file.string()));
+  std::vector<std::byte> contents(most + 1);
   const ssize_t bytes = ::read(opened.get(), contents.data(), contents.size());
-  if (bytes < ssize_t(limits::min_secret_bytes) || bytes > ssize_t(limits::max_secret_bytes))
+  const bool fits = bytes >= ssize_t(least) && bytes <= ssize_t(most);
+  contents.resize(fits ? std::size_t(bytes) : 0);
+  return contents;
+}
+
+bool make_private_file(const std::filesystem::path& file, std::string_view what,
+                       std::span<const std::byte> contents) {
+  std::string fresh = file.string() + ".XXXXXX";
+  const FileDescriptor opened(::mkostemp(fresh.data(), O_CLOEXEC));
+  const bool written =
+      opened && ::write(opened.get(), contents.data(), contents.size()) == ssize_t(contents.size());
+  // Appears at its place whole or not at all, and takes nobody's place.
+  const bool made = written && ::link(fresh.c_str(), file.c_str()) == 0;
+  const int reason = errno;
+  if (opened) ::unlink(fresh.c_str());
+  if (!made && (!written || reason != EEXIST))
+    throw std::runtime_error(fmt::format("cannot make the {} '{}': {}; name a file in a folder that is yours",
+                                         what, file.string(), std::strerror(reason)));
+  return made;
+}
+
+Secret read_secret(const std::filesystem::path& file) {
+  std::vector<std::byte> contents =
+      read_private_file(file, "secret", "copy the file that understudy serve --secret-file uses on its machine",
+                        limits::min_secret_bytes, limits::max_secret_bytes);
+  if (contents.empty())
     throw std::runtime_error(
         fmt::format("the secret '{}' has not {} to {} bytes; remove it, and understudy serve makes a new one",
                     file.string(), limits::min_secret_bytes, limits::max_secret_bytes));
-  const Secret secret(std::span<const std::byte>(contents).first(std::size_t(bytes)));
+  const Secret secret(contents);
   ::sodium_memzero(contents.data(), contents.size());
   return secret;
 }
@@ -63,23 +87,10 @@ Secret read_or_make_secret(const std::filesystem::path& file, bool& made) {
   made = false;
   if (::access(file.c_str(), F_OK) == 0) return read_secret(file);
   if (::sodium_init() < 0) throw std::runtime_error("this machine has no random numbers for secrets");
-  std::string fresh = file.string() + ".XXXXXX";
-  const FileDescriptor opened(::mkostemp(fresh.data(), O_CLOEXEC));
   std::array<unsigned char, 32> contents{};
   ::randombytes_buf(contents.data(), contents.size());
-  bool written = opened && ::write(opened.get(), contents.data(), contents.size()) == ssize_t(contents.size());
+  made = make_private_file(file, "secret", std::as_bytes(std::span(contents)));
   ::sodium_memzero(contents.data(), contents.size());
-  // Appears at its place whole or not at all, and takes nobody's place.
-  if (written && ::link(fresh.c_str(), file.c_str()) == 0)
-    made = true;
-  else
-    written = written && errno == EEXIST;
-  const int reason = errno;
-  if (opened) ::unlink(fresh.c_str());
-  if (!written)
-    throw std::runtime_error(
-        fmt::format("cannot make the secret '{}': {}; name a file in a folder that is yours", file.string(),
-                    std::strerror(reason)));
   return read_secret(file);
 }
 

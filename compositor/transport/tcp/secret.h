@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace understudy::compositor {
 
@@ -14,7 +16,7 @@ class Secret {
  public:
   explicit Secret(std::span<const std::byte> contents);
   Secret(const Secret&) = default;
-  Secret& operator=(const Secret&) = delete;
+  Secret& operator=(const Secret&) = default;
   ~Secret();
 
   /// 32 bytes, derived from all of the contents.
@@ -23,6 +25,16 @@ class Secret {
  private:
   std::array<unsigned char, 32> key_{};
 };
+
+/// What is in a file that must be the user's own, with mode 0600; empty where it has not `least` to `most`
+/// bytes. `what` it is, and where one comes from (`origin`), is said in errors. Throws std::runtime_error.
+std::vector<std::byte> read_private_file(const std::filesystem::path& file, std::string_view what,
+                                         std::string_view origin, std::size_t least, std::size_t most);
+
+/// Makes a file with mode 0600, whole or not at all. False where there is one already. Throws
+/// std::runtime_error.
+bool make_private_file(const std::filesystem::path& file, std::string_view what,
+                       std::span<const std::byte> contents);
 
 /// Throws std::runtime_error, with what to do: no such file, another user's, others may read it, too short to
 /// be a secret.

@@ -13,7 +13,6 @@ namespace {
 
 using Key = std::array<unsigned char, session_key_bytes>;
 static_assert(crypto_kx_SESSIONKEYBYTES == session_key_bytes);
-static_assert(crypto_kx_PUBLICKEYBYTES == sizeof(PublicKey));
 
 constexpr std::string_view label = "understudy session key";
 
@@ -34,20 +33,12 @@ SessionKeys::~SessionKeys() {
   ::sodium_memzero(send.data(), send.size());
 }
 
-EphemeralKey::EphemeralKey() {
-  static_assert(crypto_kx_SECRETKEYBYTES == sizeof private_);
-  ::crypto_kx_keypair(public_.data(), private_.data());
-}
-
-EphemeralKey::~EphemeralKey() {
-  ::sodium_memzero(private_.data(), private_.size());
-}
-
-SessionKeys EphemeralKey::session_keys(Side side, const PublicKey& theirs, const Secret& secret,
-                                       std::span<const std::byte> said) const {
+SessionKeys session_keys(Side side, const KeyPair& own, const PublicKey& theirs, const Secret& secret,
+                         std::span<const std::byte> said) {
   SessionKeys keys;
   const auto agree = side == Side::client ? &::crypto_kx_client_session_keys : &::crypto_kx_server_session_keys;
-  if (agree(keys.receive.data(), keys.send.data(), public_.data(), private_.data(), theirs.data()) != 0)
+  if (agree(keys.receive.data(), keys.send.data(), own.public_key().data(), own.private_key().data(),
+            theirs.data()) != 0)
     throw MalformedMessage("its key for the session is none");
   bind(keys.receive, secret, said);
   bind(keys.send, secret, said);

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresh keys for each session over TCP. Each end makes a pair of X25519 keys for this session alone and says
-// the public one in the handshake, whose proofs cover both. What the two agree on (libsodium's crypto_kx), the
-// secret and all that the handshake said make one key for each direction (BLAKE2b). So whoever learns the
-// secret later cannot read what he has recorded (Diffie, Oorschot, Wiener 1992: authenticated key exchange,
-// forward secrecy).
+// Fresh keys for each session over TCP. Each end makes a pair of keys for this session alone and says the
+// public one in the handshake, whose proofs cover both. What the two agree on (libsodium's crypto_kx), the
+// secret of the proofs and all that the handshake said make one key for each direction (BLAKE2b). So whoever
+// learns the secret later cannot read what he has recorded (Diffie, van Oorschot, Wiener 1992: authenticated
+// key exchange, forward secrecy).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <span>
 
+#include "compositor/transport/tcp/key_pair.h"
 #include "compositor/transport/tcp/secret.h"
 
 namespace understudy::compositor {
 
 constexpr std::size_t session_key_bytes = 32;
-
-using PublicKey = std::array<unsigned char, 32>;
 
 /// Those of one end: it receives with the key that the other end sends with. Wiped when they go.
 struct SessionKeys {
@@ -31,23 +30,9 @@ struct SessionKeys {
 
 enum class Side { client, server };
 
-/// The pair of keys of one end for one session. Wiped when it goes.
-class EphemeralKey {
- public:
-  EphemeralKey();
-  EphemeralKey(const EphemeralKey&) = default;
-  EphemeralKey& operator=(const EphemeralKey&) = default;
-  ~EphemeralKey();
-
-  const PublicKey& public_key() const { return public_; }
-  /// `said`: the handshake up to the proofs, both public keys among it. Throws MalformedMessage where `theirs`
-  /// is no key.
-  SessionKeys session_keys(Side side, const PublicKey& theirs, const Secret& secret,
-                           std::span<const std::byte> said) const;
-
- private:
-  PublicKey public_{};
-  std::array<unsigned char, 32> private_{};
-};
+/// `said`: the handshake up to the proofs, both public keys among it. Throws MalformedMessage where `theirs` is
+/// no key.
+SessionKeys session_keys(Side side, const KeyPair& own, const PublicKey& theirs, const Secret& secret,
+                         std::span<const std::byte> said);
 
 }  // namespace understudy::compositor

@@ -52,7 +52,7 @@ void write_all(int socket, std::span<const std::byte> bytes) {
     throw WentEarly("it closed the connection without a word: look at host and port");
 }
 
-AuthenticatedSocket prove(const TcpAddress& address, const Secret& secret,
+AuthenticatedSocket prove(const TcpAddress& address, const Credentials& credentials,
                           const ConnectionRequest& connection_request, Deadline deadline) {
   FileDescriptor socket = connect_to(address, deadline);
   if (connection_request.plain && !is_within_machine(socket.get()))
@@ -60,11 +60,11 @@ AuthenticatedSocket prove(const TcpAddress& address, const Secret& secret,
         fmt::format("--plain is for connections within one machine, and {} is another: leave --plain out, "
                     "and all is encrypted",
                     address.text()));
-  ClientHandshake handshake(secret, connection_request);
+  ClientHandshake handshake(credentials, connection_request);
   write_all(socket.get(), handshake.hello());
   std::vector<std::byte> challenge = read_exactly(socket.get(), challenge_bytes, deadline);
   handshake.check(challenge);
-  const std::vector<std::byte> key = read_exactly(socket.get(), public_key_bytes, deadline);
+  const std::vector<std::byte> key = read_exactly(socket.get(), server_key_bytes, deadline);
   challenge.insert(challenge.end(), key.begin(), key.end());
   write_all(socket.get(), handshake.answer(challenge));
   handshake.finish(read_exactly(socket.get(), verdict_bytes, deadline));
@@ -73,12 +73,12 @@ AuthenticatedSocket prove(const TcpAddress& address, const Secret& secret,
 
 }  // namespace
 
-AuthenticatedSocket connect_tcp(const TcpAddress& address, const Secret& secret,
+AuthenticatedSocket connect_tcp(const TcpAddress& address, const Credentials& credentials,
                                 const ConnectionRequest& connection_request, Deadline deadline) {
   constexpr int tries = 5;
   for (int attempt = 1;; ++attempt) {
     try {
-      return prove(address, secret, connection_request, deadline);
+      return prove(address, credentials, connection_request, deadline);
     } catch (const WentEarly& error) {
       if (attempt == tries || Clock::now() >= deadline)
         throw std::runtime_error(fmt::format("whoever listens at {}: {}", address.text(), error.what()));

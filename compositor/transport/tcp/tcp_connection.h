@@ -102,7 +102,7 @@ class TcpConnection {
 
 /// Connects, and has both sides prove themselves. Throws std::runtime_error: what is wrong at `address`, and
 /// what to do there.
-AuthenticatedSocket connect_tcp(const TcpAddress& address, const Secret& secret,
+AuthenticatedSocket connect_tcp(const TcpAddress& address, const Credentials& credentials,
                                 const ConnectionRequest& connection_request, Deadline deadline);
 
 }  // namespace understudy::compositor

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "compositor/transport/tcp/address.h"
+#include "compositor/transport/tcp/key_file.h"
 #include "compositor/transport/tcp/secret.h"
 #include "compositor/transport/wire.h"
 #include "tests/compositor/scratch_folder.h"
@@ -38,7 +39,7 @@ std::string failure(const std::function<void()>& step) {
 const ConnectionRequest some_wishes = {Destination::gl_server, Layout::rgba8, 75, true, true};
 
 TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
   ServerHandshake server(secret);
   ASSERT_EQ(server.wants(), hello_bytes);
@@ -65,7 +66,7 @@ TEST(Handshake, BothSidesProveThemselvesAndTheWishesArrive) {
 }
 
 TEST(Handshake, EachSessionHasKeysOfItsOwnAndOneForEachDirection) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   std::set<std::array<unsigned char, session_key_bytes>> all;
   for (int session = 0; session < 3; ++session) {
     const auto [client, server] = testing::keys_of_session(secret);
@@ -78,29 +79,126 @@ TEST(Handshake, EachSessionHasKeysOfItsOwnAndOneForEachDirection) {
 
 /// Whoever is on the way takes the place of both ends and has no secret: he has keys with each, and no proof.
 TEST(Handshake, KeysThatWereExchangedOnTheWayAreNotBelieved) {
-  const Secret secret = secret_of("sixteen bytes or more");
-  const EphemeralKey of_somebody;
-  const auto with_their_key = [&](std::vector<std::byte> words) {
-    std::ranges::copy(std::as_bytes(std::span(of_somebody.public_key())), words.end() - public_key_bytes);
+  const Credentials secret = secret_of("sixteen bytes or more");
+  const KeyPair of_somebody;
+  const auto with_their_key = [&](std::vector<std::byte> words, std::size_t at) {
+    std::ranges::copy(std::as_bytes(std::span(of_somebody.public_key())), words.begin() + std::ptrdiff_t(at));
     return words;
   };
   ClientHandshake client(secret, {});
   ServerHandshake server(secret);
-  const auto challenge = challenge_to(server, with_their_key(client.hello()));
-  EXPECT_THROW(server.answer(client.answer(with_their_key(challenge))), HandshakeFailed);
+  const auto challenge = challenge_to(server, with_their_key(client.hello(), hello_bytes));
+  EXPECT_THROW(server.answer(client.answer(with_their_key(challenge, challenge_bytes))), HandshakeFailed);
   EXPECT_FALSE(server.session_keys().has_value());
 }
 
 TEST(Handshake, AKeyThatGivesAKnownSecretIsNone) {
-  const Secret secret = secret_of("sixteen bytes or more");
-  EXPECT_THROW(EphemeralKey().session_keys(Side::server, PublicKey{}, secret, {}), MalformedMessage);
+  const Secret secret(std::as_bytes(std::span("sixteen bytes or more")));
   PublicKey one{};
   one[0] = 1;  // of order 1
-  EXPECT_THROW(EphemeralKey().session_keys(Side::client, one, secret, {}), MalformedMessage);
+  for (const PublicKey& weak : {PublicKey{}, one}) {
+    EXPECT_THROW(session_keys(Side::server, KeyPair(), weak, secret, {}), MalformedMessage);
+    EXPECT_FALSE(KeyPair().shared_with(weak).has_value());
+  }
+}
+
+/// A client and a server with key files, and whether the one is let in at the other.
+struct ByKeys {
+  KeyPair client;
+  KeyPair server;
+
+  static bool let_in(const Credentials& of_client, const Credentials& of_server) {
+    ClientHandshake client(of_client, {});
+    ServerHandshake server(of_server);
+    try {
+      server.answer(client.answer(challenge_to(server, client.hello())));
+      client.finish(server.verdict(AdmissionVerdict::accepted));
+    } catch (const HandshakeFailed&) {
+      return false;
+    }
+    EXPECT_EQ(client.session_keys().value().send, server.session_keys().value().receive);
+    return true;
+  }
+};
+
+TEST(Handshake, KeysServeInPlaceOfASecret) {
+  const ByKeys keys;
+  const KeyPair other;
+  const Credentials client(keys.client, {keys.server.public_key()});
+  EXPECT_TRUE(ByKeys::let_in(client, {keys.server, {other.public_key(), keys.client.public_key()}}));
+  // One of the keys is another.
+  EXPECT_FALSE(ByKeys::let_in(client, {keys.server, {other.public_key()}}));
+  EXPECT_FALSE(ByKeys::let_in(client, {other, {keys.client.public_key()}}));
+  EXPECT_FALSE(ByKeys::let_in({other, {keys.server.public_key()}}, {keys.server, {keys.client.public_key()}}));
+  EXPECT_FALSE(ByKeys::let_in({keys.client, {other.public_key()}}, {keys.server, {keys.client.public_key()}}));
+  // Neither end's public key alone is of use, nor is no key.
+  EXPECT_FALSE(ByKeys::let_in(secret_of("what somebody made up"), {keys.server, {keys.client.public_key()}}));
+  EXPECT_FALSE(ByKeys::let_in(client, secret_of("sixteen bytes or more")));
+}
+
+TEST(Handshake, AServerMayHaveKeysAndASecret) {
+  const ByKeys keys;
+  const std::string text = "sixteen bytes or more";
+  const Credentials server(keys.server, {keys.client.public_key()}, Secret(std::as_bytes(std::span(text))));
+  EXPECT_TRUE(ByKeys::let_in(secret_of(text), server));
+  EXPECT_TRUE(ByKeys::let_in({keys.client, {keys.server.public_key()}}, server));
+  EXPECT_FALSE(ByKeys::let_in(secret_of("what somebody made up"), server));
+}
+
+/// Whoever has stolen a server's key is not taken for its clients.
+TEST(Handshake, AStolenKeyOfAServerMakesNoClient) {
+  const ByKeys keys;
+  const Credentials thief(keys.server, {keys.server.public_key()});
+  ClientHandshake client(thief, {});
+  std::vector<std::byte> hello = client.hello();
+  std::ranges::copy(std::as_bytes(std::span(keys.client.public_key())), hello.end() - public_key_bytes);
+  const Credentials credentials(keys.server, {keys.client.public_key()});
+  ServerHandshake server(credentials);
+  EXPECT_THROW(server.answer(client.answer(challenge_to(server, hello))), HandshakeFailed);
+}
+
+TEST(KeyFile, IsMadeForItsOwnerAloneAndReadAgain) {
+  const ScratchFolder folder;
+  const std::string file = folder / "key";
+  const KeyPair key = make_key_file(file);
+  struct stat status {};
+  ASSERT_EQ(::stat(file.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600U);
+  EXPECT_EQ(read_key_file(file).public_key(), key.public_key());
+  EXPECT_EQ(read_public_keys(file + ".pub"), std::vector{key.public_key()});
+  // Nobody's key is lost.
+  EXPECT_THROW(make_key_file(file), std::runtime_error);
+  std::filesystem::remove(file + ".pub");
+  EXPECT_THROW(make_key_file(file), std::runtime_error);
+  EXPECT_EQ(read_key_file(file).public_key(), key.public_key());
+  ::chmod(file.c_str(), 0644);
+  EXPECT_THROW(read_key_file(file), std::runtime_error);
+}
+
+TEST(KeyFile, OfManyClientsHasALineForEach) {
+  const ScratchFolder folder;
+  const std::string file = folder / "clients";
+  const std::vector<PublicKey> keys = {KeyPair().public_key(), KeyPair().public_key()};
+  std::ofstream(file) << "# who may come in\n\n"
+                      << line_of(keys[0]) << " the first\n"
+                      << line_of(keys[1]) << "\n";
+  EXPECT_EQ(read_public_keys(file), keys);
+  const auto refused = [&](const std::string& contents) {
+    std::ofstream(file) << contents;
+    EXPECT_THROW(read_public_keys(file), std::runtime_error) << contents;
+  };
+  refused("");
+  refused("# nobody\n");
+  refused("understudy-key\n");
+  refused("understudy-key AAAA\n");
+  refused(line_of(keys[0]).substr(1) + "\n");
+  refused(line_of(keys[0]) + "\nsomething else\n");
+  EXPECT_THROW(read_public_keys(folder / "missing"), std::runtime_error);
+  EXPECT_THROW(read_key_file(file), std::runtime_error);
 }
 
 TEST(Handshake, AWishForNoEncryptionIsNotPutInOnTheWay) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, {});
   std::vector<std::byte> changed = client.hello();
   changed[15] |= std::byte(2);
@@ -111,8 +209,8 @@ TEST(Handshake, AWishForNoEncryptionIsNotPutInOnTheWay) {
 }
 
 TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
-  const Secret theirs = secret_of("one secret of a client");
-  const Secret ours = secret_of("another one, of a server");
+  const Credentials theirs = secret_of("one secret of a client");
+  const Credentials ours = secret_of("another one, of a server");
   ClientHandshake client(theirs, {});
   ServerHandshake server(ours);
   const auto proof = client.answer(challenge_to(server, client.hello()));
@@ -126,8 +224,8 @@ TEST(Handshake, AnotherSecretIsToldSoAndLearnsNothing) {
 }
 
 TEST(Handshake, AServerWithoutTheSecretIsNotTrusted) {
-  const Secret ours = secret_of("the secret of a client");
-  const Secret theirs = secret_of("what somebody made up");
+  const Credentials ours = secret_of("the secret of a client");
+  const Credentials theirs = secret_of("what somebody made up");
   ClientHandshake client(ours, {});
   ServerHandshake impostor(theirs);
   client.answer(challenge_to(impostor, client.hello()));
@@ -136,7 +234,7 @@ TEST(Handshake, AServerWithoutTheSecretIsNotTrusted) {
 }
 
 TEST(Handshake, ProofsServeOnce) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, {});
   ServerHandshake first(secret);
   const auto proof = client.answer(challenge_to(first, client.hello()));
@@ -153,7 +251,7 @@ TEST(Handshake, ProofsServeOnce) {
 }
 
 TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   ClientHandshake client(secret, some_wishes);
   for (std::size_t at = 0; at < client.hello().size(); ++at) {
     std::vector<std::byte> changed = client.hello();
@@ -169,7 +267,7 @@ TEST(Handshake, OtherWishesThanProvedAreNotBelieved) {
 }
 
 TEST(Handshake, OtherVersionsAreToldOnBothSides) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   ClientHandshake newer(secret, {}, tcp_protocol_version + 1);
   ServerHandshake server(secret);
   EXPECT_THAT(failure([&] { challenge_to(server, newer.hello()); }), HasSubstr("one version of Understudy"));
@@ -178,7 +276,7 @@ TEST(Handshake, OtherVersionsAreToldOnBothSides) {
 }
 
 TEST(Handshake, GarbageIsNeverBelieved) {
-  const Secret secret = secret_of("sixteen bytes or more");
+  const Credentials secret = secret_of("sixteen bytes or more");
   std::mt19937 random(7);
   const auto garbage = [&](std::size_t size) {
     std::vector<std::byte> bytes(size);
@@ -193,7 +291,7 @@ TEST(Handshake, GarbageIsNeverBelieved) {
     ServerHandshake server(secret);
     challenge_to(server, client.hello());
     EXPECT_THROW(server.answer(garbage(proof_bytes)), HandshakeFailed);
-    EXPECT_THROW(client.answer(garbage(challenge_bytes + public_key_bytes)), HandshakeFailed);
+    EXPECT_THROW(client.answer(garbage(challenge_bytes + server_key_bytes)), HandshakeFailed);
     EXPECT_THROW(client.finish(garbage(verdict_bytes)), HandshakeFailed);
   }
 }

@@ -73,7 +73,7 @@ class ListenerTest : public ::testing::Test {
     return wait_until_ready(socket.get(), POLLIN, soon()) && ::recv(socket.get(), &byte, 1, 0) <= 0;
   }
 
-  const Secret secret_ = secret_of("sixteen bytes or more");
+  const Credentials secret_ = secret_of("sixteen bytes or more");
   std::atomic<AdmissionVerdict> verdict_ = AdmissionVerdict::accepted;
   std::mutex mutex_;
   std::vector<AuthenticatedSocket> accepted_;
@@ -138,7 +138,7 @@ TEST_F(ListenerTest, NoEncryptionIsAWishThatBothEndsMustHave) {
 
 TEST_F(ListenerTest, AWrongSecretIsSaidOnBothSides) {
   open();
-  const Secret other = secret_of("what somebody made up");
+  const Credentials other = secret_of("what somebody made up");
   try {
     connect_tcp(address_, other, {}, soon());
     ADD_FAILURE() << "was let in";

@@ -62,7 +62,7 @@ class RecordTest : public ::testing::Test {
     return {};
   }
 
-  const Secret secret_ = secret_of("sixteen bytes or more");
+  const Credentials secret_ = secret_of("sixteen bytes or more");
   const std::pair<SessionKeys, SessionKeys> keys_ = keys_of_session(secret_);
   RecordSealer sealer_{keys_.first.send};
   RecordOpener opener_{keys_.second.receive};

@@ -68,7 +68,7 @@ class RelayTest : public NodeGroupTest {
   milliseconds connection_patience_ = limits::connection_patience;
   /// Of the far end, if it is another.
   std::optional<milliseconds> far_patience_;
-  const Secret secret_ = Secret(std::as_bytes(std::span("sixteen bytes or more")));
+  const Credentials secret_{Secret(std::as_bytes(std::span("sixteen bytes or more")))};
   std::vector<std::jthread> carriers_;
   Listener listener_ = Listener(
       TcpAddress{"127.0.0.1", 0}, secret_, [](const ConnectionRequest&) { return AdmissionVerdict::accepted; },

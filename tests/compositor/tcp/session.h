@@ -16,8 +16,8 @@
 
 namespace understudy::compositor::testing {
 
-inline Secret secret_of(const std::string& text) {
-  return Secret(std::as_bytes(std::span(text)));
+inline Credentials secret_of(const std::string& text) {
+  return Credentials(Secret(std::as_bytes(std::span(text))));
 }
 
 /// What the server answers to a client's first words.
@@ -27,12 +27,17 @@ inline std::vector<std::byte> challenge_to(ServerHandshake& server, std::span<co
 }
 
 /// Of the client, and of the server.
-inline std::pair<SessionKeys, SessionKeys> keys_of_session(const Secret& secret) {
-  ClientHandshake client(secret, {});
-  ServerHandshake server(secret);
+inline std::pair<SessionKeys, SessionKeys> keys_of_session(const Credentials& of_client,
+                                                           const Credentials& of_server) {
+  ClientHandshake client(of_client, {});
+  ServerHandshake server(of_server);
   server.answer(client.answer(challenge_to(server, client.hello())));
   client.finish(server.verdict(AdmissionVerdict::accepted));
   return {client.session_keys().value(), server.session_keys().value()};
+}
+
+inline std::pair<SessionKeys, SessionKeys> keys_of_session(const Credentials& of_both) {
+  return keys_of_session(of_both, of_both);
 }
 
 /// Two ends of one connection.

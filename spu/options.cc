@@ -137,7 +137,7 @@ constexpr std::array rows{
          "a compared image below this PSNR is refused, beside the bound that every tile must keep"},
         set_number<&Options::verify_psnr, 0, 200>},
     Row{{"--speed-guard", "UNDERSTUDY_SPEED_GUARD", "WHEN", "on",
-         "let the viewer draw its volume itself where that was faster over a second: on or off"},
+         "let the viewer draw its volume itself where that is faster: on or off"},
         set_switch<&Options::speed_guard>},
     Row{{"--report", "UNDERSTUDY_REPORT", "FILE", "", "write the figures of this run as JSON"},
         set_text<&Options::report>},

@@ -66,7 +66,9 @@ bool VolumeUnit::substitutes(std::unique_ptr<Run>& run) {
   FrameAccount& account = stages().account;
   const FrameShares spent = account.clock().take();
   account.note([&](FrameRecord& frame) { frame.spent_ms += spent; });
-  if (shown) count_speed(volumes_.of(texture), spent, session_->options());
+  // A stack of textures that turned out to be none is no volume.
+  if (KnownVolume* const volume = volumes_.find(texture))
+    count_speed(*volume, shown, spent, session_->options());
   return shown;
 }
 
@@ -84,7 +86,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
     return false;
   }
   try {
-    if (auto refusal = volumes_.standing_refusal(texture)) throw Refusal{std::move(*refusal)};
+    if (auto refusal = volumes_.standing_refusal(run->pipeline())) throw Refusal{std::move(*refusal)};
     substitute(run);
     return true;
   } catch (const Refusal& refusal) {

@@ -16,6 +16,12 @@ namespace {
 /// Frames until a volume is tried again, by lost comparisons in a row.
 constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 
+/// Stands for the program and the volume's contents.
+std::uint64_t state_of(const Pipeline& pipeline, const ShareGroup& group) {
+  constexpr std::uint64_t prime = 0x100000001b3;
+  return (group.texture_version(pipeline.volume.texture) * prime) ^ pipeline.program;
+}
+
 }  // namespace
 
 KnownVolumes::KnownVolumes(ShareGroup& group, std::shared_ptr<RenderSession> session)
@@ -40,15 +46,18 @@ KnownVolume* KnownVolumes::find(GLuint texture) {
   return found == volumes_.end() ? nullptr : &found->second;
 }
 
-std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture) {
-  const KnownVolume& volume = of(texture);
+std::optional<Refusal> KnownVolumes::standing_refusal(const Pipeline& pipeline) {
+  const GLuint texture = pipeline.volume.texture;
+  KnownVolume& volume = of(texture);
   const RefusalHistory& history = volume.refusals;
   if (!history.handed_back.empty()) return Refusal{history.handed_back};
   if (session_->ledger().frames() < history.next_try && !history.last_reason.empty())
     return Refusal{history.last_reason};
-  std::string slower = volume.speed.reason(SpeedGuard::Clock::now());
-  if (slower.empty()) return std::nullopt;
-  return Refusal{std::move(slower), {}, "--speed-guard off substitutes it all the same"};
+  const auto now = SpeedGuard::Clock::now();
+  volume.speed.about_to_draw(state_of(pipeline, group_), now);
+  if (!volume.speed.pauses(now)) return std::nullopt;
+  if (volume.speed.slower().empty()) return Refusal{history.last_reason};
+  return Refusal{volume.speed.slower(), {}, "--speed-guard off substitutes it all the same"};
 }
 
 void KnownVolumes::refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say) {
@@ -99,12 +108,16 @@ void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, F
   });
 }
 
-void count_speed(KnownVolume& volume, const FrameShares& spent, const Options& options) {
-  const auto native_ms = volume.verified.schedule.native_ms();
-  if (!options.speed_guard || options.debug_tint || !native_ms) return;
-  // Waiting for what was drawn before, and comparing, are not what the volume costs.
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options) {
+  if (!options.speed_guard || options.debug_tint) return;
+  // Waiting for what was drawn before is not what the volume costs.
   const double ours_ms = spent.recognition + spent.upload + spent.render + spent.presentation + spent.budget;
-  volume.speed.substituted(ours_ms, *native_ms, SpeedGuard::Clock::now());
+  const auto now = SpeedGuard::Clock::now();
+  if (!shown) {
+    volume.speed.refused(ours_ms + spent.verification, now);
+  } else if (const auto native_ms = volume.verified.schedule.native_ms()) {
+    volume.speed.shown({ours_ms, spent.verification, *native_ms}, now);
+  }
 }
 
 void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& volume, std::uint64_t frame) {
@@ -119,6 +132,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   Refusal refusal = refusal_of(comparison->difference);
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
     volume.refusals.next_try = frame + 1;
+    volume.speed.allow_another();
     schedule.ask_for_whole();
     refusal.reason += "; tried again with samples rounded to 8 bits";
     throw Refusal{std::move(refusal)};

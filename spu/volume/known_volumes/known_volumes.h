@@ -29,7 +29,7 @@ class KnownVolumes {
   bool empty() const { return volumes_.empty(); }
 
   /// Why the application draws the volume before anything is known of the draw; null: there is no reason.
-  std::optional<Refusal> standing_refusal(GLuint texture);
+  std::optional<Refusal> standing_refusal(const Pipeline& pipeline);
   /// The application draws the volume of `texture`: counted, and said on stderr where the reason is a new one
   /// and `say` is set.
   void refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);
@@ -52,8 +52,8 @@ class KnownVolumes {
 /// The run was substituted.
 void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, FrameAccount& account);
 
-/// A run was substituted in this time: the speed guard is told.
-void count_speed(KnownVolume& volume, const FrameShares& spent, const Options& options);
+/// An attempt to substitute a run took this time: the speed guard is told.
+void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options);
 
 /// What follows of a comparison in `frame`. Where it was lost the application draws, and the volume is measured
 /// anew: throws the refusal.

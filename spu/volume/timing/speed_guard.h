@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Never slower than the viewer: what substituting a volume costs is held against what the application's own
-// drawing costs, which is measured whenever an image is compared whole. Where substituting was slower over a
-// second, the application draws; it is tried again after a pause, which grows as long as nothing has changed.
+// Never slower than the viewer: an account of time bounds what trying to substitute a volume may cost.
+//
+// What an attempt takes is paid from the account: all of it where it ended in a refusal, what it took longer
+// than the application's own drawing where it was shown; an image that was faster pays in. While the account is
+// in debt the application draws, and a fiftieth of the time that passes is paid in. So attempts that gain
+// nothing take at most 2 % of the time, however often and for whatever reason they fail, after a first look
+// that is short.
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <cstdint>
 #include <string>
 
 namespace understudy::spu {
@@ -14,30 +18,56 @@ class SpeedGuard {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A run was substituted in `ours_ms`, where the application's own drawing takes about `native_ms`.
-  void substituted(double ours_ms, double native_ms, Clock::time_point now);
+  /// What a run that was shown took, in milliseconds.
+  struct Shown {
+    double ours_ms = 0;        ///< of everything but comparisons
+    double comparison_ms = 0;  ///< of comparing it with the application's own drawing
+    double native_ms = 0;      ///< what the application's own drawing would have taken
+  };
 
-  /// Why the application draws now; empty: the volume is substituted.
-  std::string reason(Clock::time_point now) const;
+  /// A run of the volume is about to be drawn. `state` stands for what the verdict may depend on: the program
+  /// and the volume's contents. Where that is another, the volume is looked at again, at most every
+  /// state_pause.
+  void about_to_draw(std::uint64_t state, Clock::time_point now);
+  /// Whether the application draws.
+  bool pauses(Clock::time_point now) const;
+
+  /// An attempt ended in a refusal, after so many milliseconds.
+  void refused(double ms, Clock::time_point now);
+  void shown(const Shown& costs, Clock::time_point now);
+  /// The next attempt is likely to succeed, and is made whatever the account says.
+  void allow_another() { allowed_ = true; }
+
+  /// The sentence where images were shown and took longer; empty: it was for another reason that attempts
+  /// ended.
+  const std::string& slower() const { return slower_; }
+
+  static constexpr double share_for_attempts = 0.02;
+  /// A viewer's first frames may show nothing yet, or a volume that is still being loaded.
+  static constexpr int first_attempts = 3;
+  /// Refusals that took longer in all end the first look.
+  static constexpr double first_look_ms = 300;
+  /// So many images are compared whole at no charge, as the volume is new.
+  static constexpr double free_comparisons = 8;
+  /// The account holds at most this many frames of the application's: what was gained long ago does not excuse
+  /// being slower now.
+  static constexpr double most_saved_frames = 4;
+  static constexpr auto state_pause = std::chrono::seconds(5);
 
  private:
-  static constexpr auto shortest_window = std::chrono::seconds(1);
-  /// The first runs pay for what is measured once.
-  static constexpr int fewest_runs = 8;
-  /// Measurements of both sides scatter by some percent.
-  static constexpr double slower = 1.05;
-  static constexpr auto first_pause = std::chrono::seconds(5);
-  static constexpr auto longest_pause = std::chrono::seconds(80);
+  double account_ms(Clock::time_point now) const;
+  void pay(double ms, Clock::time_point now);
 
-  void begin_window(Clock::time_point now);
-
-  std::optional<Clock::time_point> window_began_;
-  int runs_ = 0;
-  double ours_ms_ = 0;
-  double native_ms_ = 0;
-  Clock::time_point native_until_{};
-  Clock::duration pause_ = first_pause;
-  std::string reason_;
+  double account_ms_ = 0;  ///< at paid_
+  Clock::time_point paid_{};
+  std::uint64_t state_ = 0;
+  Clock::time_point state_since_{};
+  int attempts_ = 0;
+  double refused_ms_ = 0;
+  double compared_frames_ = 0;
+  bool ever_shown_ = false;
+  bool allowed_ = false;
+  std::string slower_;
 };
 
 }  // namespace understudy::spu

@@ -52,11 +52,15 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
   dense_ = !changed.empty();
   footprint_ = footprint;
   grown_ = double(footprint) > grown_footprint * double(right_footprint_);
-  if (native_ms_) {
+  if (const auto native = native_ms()) {
     const double share = dense_ ? dense_sentinel_share : sentinel_share;
-    credit_ms_ =
-        std::min(credit_ms_ + share * *native_ms_, most_credited_images * sentinel_share * *native_ms_);
+    credit_ms_ = std::min(credit_ms_ + share * *native, most_credited_images * sentinel_share * *native);
   }
+}
+
+std::optional<double> VerificationSchedule::native_ms() const {
+  if (!measured_ms_ || measured_footprint_ == 0) return measured_ms_;
+  return *measured_ms_ * double(footprint_) / double(measured_footprint_);
 }
 
 int VerificationSchedule::sentinels() const {
@@ -64,7 +68,9 @@ int VerificationSchedule::sentinels() const {
 }
 
 void VerificationSchedule::whole_was_right(bool anything_visible, double native_ms) {
-  native_ms_ = native_ms_ ? 0.5 * (*native_ms_ + native_ms) : native_ms;
+  const auto expected = this->native_ms();
+  measured_ms_ = expected ? 0.5 * (*expected + native_ms) : native_ms;
+  measured_footprint_ = footprint_;
   // An image of nothing proves nothing.
   if (!anything_visible) return;
   if (--to_prove_ <= 0) {

@@ -66,8 +66,9 @@ class VerificationSchedule {
     return lost_in_a_row_ >= max_lost_comparisons || lost_ever_ >= max_lost_comparisons_ever;
   }
   int lost_in_a_row() const { return lost_in_a_row_; }
-  /// Of the application's own drawing; empty: not known yet.
-  std::optional<double> native_ms() const { return native_ms_; }
+  /// What the application's own drawing of the image that is begun would take, as far as time goes by the
+  /// pixels that a volume covers; empty: not known yet.
+  std::optional<double> native_ms() const;
 
  private:
   /// An input that changes again and again.
@@ -89,7 +90,8 @@ class VerificationSchedule {
   int to_prove_ = 1;  ///< so many images that show something must be right yet
   int lost_in_a_row_ = 0;
   int lost_ever_ = 0;
-  std::optional<double> native_ms_;
+  std::optional<double> measured_ms_;  ///< of the application's own drawing
+  std::size_t measured_footprint_ = 0;
   double credit_ms_ = 0;  ///< that sentinels may take
   double ms_a_sentinel_ = 1;
 };

@@ -11,44 +11,108 @@ using namespace std::chrono_literals;
 
 constexpr SpeedGuard::Clock::time_point start{1h};
 
-/// Substitutes 20 runs a second for `seconds`; returns when that ended.
-SpeedGuard::Clock::time_point substitute(SpeedGuard& guard, double ours_ms, double native_ms, int seconds,
-                                         SpeedGuard::Clock::time_point now = start) {
-  for (int run = 0; run < 20 * seconds && guard.reason(now).empty(); ++run) {
-    guard.substituted(ours_ms, native_ms, now);
-    now += 50ms;
+constexpr auto frame = 100ms;
+
+/// A viewer that shows a frame every 100 ms for some time.
+struct Viewer {
+  SpeedGuard guard;
+  SpeedGuard::Clock::time_point now = start;
+  std::uint64_t state = 1;
+  int attempts = 0;
+
+  /// What an attempt costs; nothing to tell the guard: it was shown.
+  template <class Attempt>
+  int attempts_in(std::chrono::seconds time, Attempt attempt) {
+    attempts = 0;
+    for (const auto end = now + time; now < end; now += frame) {
+      guard.about_to_draw(state, now);
+      if (guard.pauses(now)) continue;
+      ++attempts;
+      attempt();
+    }
+    return attempts;
   }
-  return now;
-}
+  int shown(std::chrono::seconds time, SpeedGuard::Shown costs) {
+    return attempts_in(time, [&] { guard.shown(costs, now); });
+  }
+  int refused(std::chrono::seconds time, double ms) {
+    return attempts_in(time, [&] { guard.refused(ms, now); });
+  }
+};
 
 TEST(SpeedGuard, SubstitutesWhatIsFaster) {
-  SpeedGuard guard;
-  const auto now = substitute(guard, 10, 30, 10);
-  EXPECT_EQ(guard.reason(now), "");
+  Viewer viewer;
+  EXPECT_EQ(viewer.shown(10s, {.ours_ms = 10, .native_ms = 30}), 100);
 }
 
-TEST(SpeedGuard, LeavesWhatIsSlowerAfterASecond) {
-  SpeedGuard guard;
-  const auto now = substitute(guard, 30, 10, 10);
-  EXPECT_LE(now - start, 1100ms);
-  EXPECT_NE(guard.reason(now).find("30 ms"), std::string::npos);
-  EXPECT_NE(guard.reason(now).find("10 ms"), std::string::npos);
+TEST(SpeedGuard, LeavesWhatIsSlowerAfterThreeImages) {
+  Viewer viewer;
+  EXPECT_EQ(viewer.shown(1s, {.ours_ms = 30, .native_ms = 10}), 3);
+  EXPECT_NE(viewer.guard.slower().find("30 ms"), std::string::npos);
+  EXPECT_NE(viewer.guard.slower().find("10 ms"), std::string::npos);
 }
 
-TEST(SpeedGuard, TriesAgainAfterPausesThatGrow) {
-  SpeedGuard guard;
-  auto now = substitute(guard, 30, 10, 10);
-  EXPECT_EQ(guard.reason(now + 5s), "");
-  now = substitute(guard, 30, 10, 10, now + 5s);
-  EXPECT_NE(guard.reason(now + 5s), "");
-  EXPECT_EQ(guard.reason(now + 10s), "");
+TEST(SpeedGuard, AttemptsThatGainNothingTakeAFiftiethOfTheTime) {
+  Viewer viewer;
+  const int first = viewer.shown(1s, {.ours_ms = 150, .native_ms = 100});
+  const int attempts = first + viewer.shown(100s, {.ours_ms = 150, .native_ms = 100});
+  EXPECT_LE(50.0 * attempts, 0.02 * 101'000 + 3 * 50.0);
+  EXPECT_GE(attempts, 30);
+}
+
+TEST(SpeedGuard, RefusalsTakeAFiftiethOfTheTime) {
+  Viewer viewer;
+  EXPECT_EQ(viewer.refused(1s, 50), 3);
+  EXPECT_LE(50.0 * viewer.refused(100s, 50), 0.02 * 101'000 + 50.0);
+  EXPECT_TRUE(viewer.guard.slower().empty());
+}
+
+TEST(SpeedGuard, ALongRefusalEndsTheFirstLook) {
+  Viewer viewer;
+  EXPECT_EQ(viewer.refused(10s, 2000), 1);
+}
+
+TEST(SpeedGuard, TheFirstImagePaysForWhatIsMeasuredOnce) {
+  Viewer viewer;
+  viewer.refused(0s, 0);
+  viewer.guard.refused(200, viewer.now);
+  viewer.guard.shown({.ours_ms = 900, .native_ms = 100}, viewer.now);
+  EXPECT_EQ(viewer.shown(10s, {.ours_ms = 90, .native_ms = 100}), 100);
 }
 
 TEST(SpeedGuard, ForgivesOneSlowImage) {
-  SpeedGuard guard;
-  guard.substituted(200, 30, start);
-  const auto now = substitute(guard, 10, 30, 5, start + 50ms);
-  EXPECT_EQ(guard.reason(now), "");
+  Viewer viewer;
+  viewer.shown(1s, {.ours_ms = 50, .native_ms = 100});
+  viewer.guard.shown({.ours_ms = 450, .native_ms = 100}, viewer.now);
+  EXPECT_EQ(viewer.shown(1s, {.ours_ms = 50, .native_ms = 100}), 10);
+}
+
+TEST(SpeedGuard, WhatWasGainedLongAgoDoesNotExcuseBeingSlower) {
+  Viewer viewer;
+  viewer.shown(60s, {.ours_ms = 10, .native_ms = 100});
+  EXPECT_LE(viewer.shown(5s, {.ours_ms = 150, .native_ms = 100}), 10);
+}
+
+TEST(SpeedGuard, ANewVolumesComparisonsAreNotHeldAgainstIt) {
+  Viewer viewer;
+  EXPECT_EQ(viewer.shown(1s, {.ours_ms = 99, .comparison_ms = 100, .native_ms = 100}), 9);
+  EXPECT_LE(viewer.shown(5s, {.ours_ms = 99, .comparison_ms = 100, .native_ms = 100}), 2);
+}
+
+TEST(SpeedGuard, LooksAgainWhereTheProgramIsAnother) {
+  Viewer viewer;
+  viewer.refused(10s, 400);
+  viewer.state = 2;
+  EXPECT_EQ(viewer.refused(1s, 50), 3);
+  viewer.state = 3;
+  EXPECT_EQ(viewer.refused(1s, 50), 0);  // so soon
+}
+
+TEST(SpeedGuard, MakesAnAttemptThatIsLikelyToSucceed) {
+  Viewer viewer;
+  viewer.refused(1s, 400);
+  viewer.guard.allow_another();
+  EXPECT_EQ(viewer.refused(1s, 400), 1);
 }
 
 }  // namespace

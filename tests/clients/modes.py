@@ -1,0 +1,232 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""./run modes [NAME…]: packaged viewers in the modes that people use, bare and under `understudy run`, as a table.
+
+The script at UNDERSTUDY_VIEWER_MODES (../shared/clients/modes/run beside the checkout, if the variable is not set) is
+asked as
+
+    [WITH="command…"] run VIEWER DATA MODES IMAGE.png FRAMES
+
+It leaves a first, a middle and a last image (IMAGE.a.png, IMAGE.b.png, IMAGE.png) and prints a line "FRAME ms median X".
+Bare and substituted runs follow each other, in the other order in every second round; a ratio is of two runs beside each
+other. The interval of the ratio is that of Student's t over the logarithms. Everything is as users have it: the speed
+guard is on.
+
+An image is held against the bare viewer's of the same round in tiles of 16 × 16 pixels, as docs/verification.md says:
+by how far a pixel lies outside of the colours that the other image has within one pixel of it, on average over the worst
+tile, in 1/255.
+
+Images, reports and the viewers' words are kept in out/modes, and with them table.json and table.md.
+"""
+
+import argparse
+import json
+import math
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy
+
+from viewers import ROOT, UNDERSTUDY, missing, run_group, say
+
+OUT = ROOT / "out" / "modes"
+TILE = 16
+# The bound of docs/verification.md on a tile's average, in 1/255.
+BOUND = 3.0
+# Two-sided 95 % quantiles of Student's t by degrees of freedom; with more than ten, as with ten.
+T_95 = (None, 12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23)
+
+VTK = ["plain", "mip", "minip", "avg", "add", "iso", "slice", "shade", "gradop", "shade,gradop", "clip", "crop", "fence",
+       "inter", "inter,shade", "inside", "rgba", "comp2", "nearest", "tf2d", "mask", "cell", "rot", "two", "multi",
+       "tfedit", "outline,text", "surf", "transl", "peel,transl", "para", "jitter", "sd1", "noadj", "fxaa", "marker", "smart", "mb",
+       "gray", "unitdist", "ssao", "ms0"]
+ROWS = (
+    [("vtk", "engine", mode) for mode in VTK]
+    + [("vtk", data, mode) for data in ("cthead", "hu", "ct16", "tooth50", "f:brain", "bonsai") for mode in ("plain", "mip")]
+    + [("vtk", "cthead", "inter"), ("vtk", "cthead", "shade"), ("vtk", "aneurism", "avg")]
+    + [("vispy", "engine", mode) for mode in ("mip", "translucent", "additive", "iso", "translucent,fire", "mip,gray",
+                                             "translucent,gray", "mip,ortho", "translucent,axis", "mip,two", "translucent,emu")]
+    + [("vispy", "cthead", "mip"), ("vispy", "brain", "translucent"), ("vispy", "f:brain", "mip")]
+    + [("vispy-turn", "brain", "hot"), ("vispy-turn", "engine", "fire"), ("vispy-turn", "brain", "grays"),
+       ("vispy-grid", "brain", "200"), ("vispy-grid", "brain", "600")]
+    + [("pyqtgraph", data, mode) for data, mode in (("psi", "plain"), ("psi", "additive"), ("psi", "dense"), ("psi", "rough"),
+                                                   ("psi", "axis,scatter,lines"), ("engine", "plain"), ("brain", "nogrid"))]
+    + [("pymol", "engine", mode) for mode in ("plain", "ramp", "rainbow", "ramp,mol", "ramp,layers", "ramp,bg", "ramp,isos", "multi")]
+    + [("mayavi", data, mode) for data, mode in (("brain", "plain"), ("brain", "mapper"), ("engine", "vm,axes"))]
+    + [("vedo", data, mode) for data, mode in (("brain", "plain"), ("brain", "mip"), ("engine", "c"), ("brain", "jitter"))]
+    + [("paraview", data, mode) for data, mode in (("engine", "plain"), ("engine", "mip"), ("cthead", "plain"),
+                                                  ("engine", "inter"), ("engine", "shade"))]
+)
+
+
+def script():
+    path = Path(os.environ.get("UNDERSTUDY_VIEWER_MODES", ROOT.parent / "shared" / "clients" / "modes" / "run"))
+    if not os.access(path, os.X_OK):
+        sys.exit(f"modes: there is no script at {path} that runs viewers; set UNDERSTUDY_VIEWER_MODES to one "
+                 "(tests/clients/modes.py says how it is asked)")
+    return path
+
+
+def pixels(path):
+    """height x width x 3, 0 to 255."""
+    text = subprocess.run(["convert", path, "-alpha", "off", "-depth", "8", "ppm:-"], stdout=subprocess.PIPE, check=True).stdout
+    width, height = (int(number) for number in re.match(rb"P6\s+(\d+)\s+(\d+)\s+255\s", text).groups())
+    return numpy.frombuffer(text[-3 * width * height:], numpy.uint8).reshape(height, width, 3).astype(numpy.int16)
+
+
+def beyond_neighbours(of, other):
+    """How far each pixel of one image lies outside of what the other has within one pixel of it."""
+    padded = numpy.pad(other, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    height, width = other.shape[:2]
+    near = numpy.stack([padded[y:y + height, x:x + width] for y in range(3) for x in range(3)])
+    low, high = near.min(axis=0), near.max(axis=0)
+    return numpy.maximum(numpy.maximum(low - of, of - high), 0).max(axis=2)
+
+
+def worst_tile(a, b):
+    """The worst tile's average in 1/255; none where an image is missing; infinite where sizes differ."""
+    if not (a.exists() and b.exists()):
+        return None
+    a, b = pixels(a), pixels(b)
+    if a.shape != b.shape:
+        return math.inf
+    difference = numpy.maximum(beyond_neighbours(a, b), beyond_neighbours(b, a)).astype(float)
+    height, width = (max(1, side // TILE) for side in difference.shape)
+    tiles = difference[:height * TILE, :width * TILE].reshape(height, TILE, width, TILE).mean(axis=(1, 3))
+    return float(tiles.max())
+
+
+class Run:
+    """One row, one way, once."""
+
+    def __init__(self, row, way, frames, seconds):
+        viewer, data, modes = row
+        stem = re.sub(r"[^A-Za-z0-9.-]+", "_", f"{viewer}.{data}.{modes}.{way}")
+        image, report, log = OUT / f"{stem}.png", OUT / f"{stem}.json", OUT / f"{stem}.log"
+        self.images = [OUT / f"{stem}.a.png", OUT / f"{stem}.b.png", image]
+        for old in (*self.images, report):
+            old.unlink(missing_ok=True)
+        environment = dict(os.environ, WITH="" if way == "bare" else f"{UNDERSTUDY} run --report {report} --")
+        status = run_group([str(script()), viewer, data, modes, str(image), str(frames)], environment, log, seconds)
+        words = log.read_text(encoding="utf-8", errors="replace")
+        self.report = json.loads(report.read_text(encoding="utf-8")) if report.exists() else None
+        measured = re.search(r"^FRAME ms median ([0-9.]+)", words, re.MULTILINE)
+        self.frame_ms = float(measured.group(1)) if measured else None
+        self.trouble = ("" if image.exists() else f"no end after {seconds} s" if status is None
+                        else f"no image (exit status {status}): see {log.relative_to(ROOT)}")
+
+    def draws(self, kind):
+        return sum(volume["draws"][kind] for volume in self.report["volumes"]) if self.report else 0
+
+    def reason(self):
+        """The commonest reason why something was left to the viewer."""
+        counts = {}
+        for volume in self.report["volumes"] if self.report else []:
+            for reason, count in volume["left_because"].items():
+                counts[reason] = counts.get(reason, 0) + count
+        return max(counts, key=counts.get) if counts else ""
+
+
+def interval(ratios):
+    """Median and 95 % interval of ratios."""
+    if not ratios:
+        return None, None, None
+    logs = [math.log(ratio) for ratio in ratios]
+    if len(logs) < 2:
+        return ratios[0], None, None
+    half = T_95[min(len(logs) - 1, 10)] * statistics.stdev(logs) / math.sqrt(len(logs))
+    middle = statistics.fmean(logs)
+    return statistics.median(ratios), math.exp(middle - half), math.exp(middle + half)
+
+
+def row_of(row, arguments):
+    runs = {"bare": [], "substituted": []}
+    ratios, tiles = [], [None, None, None]
+    for number in range(arguments.rounds):
+        pair = {}
+        for way in ("bare", "substituted") if number % 2 == 0 else ("substituted", "bare"):
+            pair[way] = Run(row, way, arguments.frames, arguments.seconds)
+            runs[way].append(pair[way])
+        if pair["bare"].trouble:
+            return {"row": row, "trouble": f"the bare viewer: {pair['bare'].trouble}"}
+        if pair["substituted"].trouble:
+            return {"row": row, "trouble": pair["substituted"].trouble}
+        if pair["bare"].frame_ms and pair["substituted"].frame_ms:
+            ratios.append(pair["bare"].frame_ms / pair["substituted"].frame_ms)
+        for place, (a, b) in enumerate(zip(pair["bare"].images, pair["substituted"].images)):
+            tile = worst_tile(a, b)
+            if tile is not None:
+                tiles[place] = max(tile, tiles[place] or 0.0)
+    last = runs["substituted"][-1]
+    ratio, low, high = interval(ratios)
+    return {"row": row, "ratio": ratio, "low": low, "high": high, "rounds": len(ratios), "tiles": tiles,
+            "bare_ms": statistics.median(run.frame_ms for run in runs["bare"]) if ratios else None,
+            "substituted": last.draws("substituted"), "left": last.draws("left"), "reason": last.reason()}
+
+
+def ratio_cell(row):
+    if row["ratio"] is None:
+        return "–"
+    span = f" ({row['low']:.2f} to {row['high']:.2f})" if row["low"] is not None else ""
+    return f"{row['ratio']:.2f}×{span}"
+
+
+def markdown(rows):
+    lines = ["| viewer | data | modes | draws substituted, left | ms bare | bare / Understudy (95 % interval) "
+             "| worst tile: first, middle, last (3 allowed) | left because |", "|---|---|---|---|---|---|---|---|"]
+    for row in rows:
+        name = " | ".join(row["row"])
+        if "trouble" in row:
+            lines.append(f"| {name} | – | – | – | – | {row['trouble']} |")
+            continue
+        tiles = ", ".join("–" if tile is None else f"{tile:.2g}" for tile in row["tiles"])
+        bare = f"{row['bare_ms']:.1f}" if row["bare_ms"] else "–"
+        lines.append(f"| {name} | {row['substituted']}, {row['left']} | {bare} | {ratio_cell(row)} | {tiles} | {row['reason'] or '–'} |")
+    return "\n".join(lines) + "\n"
+
+
+def verdicts(rows):
+    """What a user would complain about."""
+    for row in rows:
+        if "trouble" in row:
+            continue
+        if row["ratio"] is not None and (row["ratio"] < 0.97 or (row["high"] is not None and row["high"] < 1.0)):
+            yield f"slower: {' '.join(row['row'])}: {ratio_cell(row)}"
+        if any(tile is not None and tile > BOUND for tile in row["tiles"]):
+            yield f"different: {' '.join(row['row'])}: {row['tiles']}"
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./run modes", description=__doc__.split("\n\n", maxsplit=1)[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help="rows whose VIEWER:DATA:MODES contains this; without a name all")
+    parser.add_argument("--rounds", type=int, default=5, help="how often bare and substituted runs follow each other (5)")
+    parser.add_argument("--frames", type=int, default=12, help="frames that a viewer shows (12)")
+    parser.add_argument("--seconds", type=int, default=120, help="after these one run of a viewer is given up (120)")
+    arguments = parser.parse_args()
+    if not UNDERSTUDY.exists():
+        sys.exit("modes: build/bin/understudy is not built; run ./run build")
+    wanted = [row for row in ROWS if not arguments.names or any(name in ":".join(row) for name in arguments.names)]
+    if not wanted:
+        sys.exit("modes: no row has such a name; tests/clients/modes.py lists them")
+    shutil.rmtree(OUT, ignore_errors=True)
+    OUT.mkdir(parents=True)
+    rows = []
+    for row in wanted:
+        absent = missing(row[0])
+        rows.append({"row": row, "trouble": absent} if absent else row_of(row, arguments))
+        say(markdown(rows[-1:]).splitlines()[-1])
+        (OUT / "table.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+        (OUT / "table.md").write_text(markdown(rows), encoding="utf-8")
+    complaints = list(verdicts(rows))
+    print(markdown(rows), end="")
+    print("\n".join(complaints) if complaints else "none slower than the bare viewer, none different")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

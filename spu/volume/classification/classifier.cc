@@ -75,8 +75,9 @@ struct Classifier::Key {
   VerificationSchedule::Inputs inputs;
 
   /// Takes over as inputs what was appended to `values` since there were so many.
-  void take_inputs_from(std::size_t first) {
-    for (std::size_t i = first; i < values.size(); ++i) inputs.push_back({values[i]});
+  void take_inputs_from(std::size_t first,
+                        VerificationSchedule::Effect effect = VerificationSchedule::Effect::measured) {
+    for (std::size_t i = first; i < values.size(); ++i) inputs.push_back({values[i], effect});
   }
 };
 
@@ -125,7 +126,9 @@ Classifier::Key Classifier::key_of(const Pipeline& pipeline, const RecognisedRun
   }
   const std::size_t without_tables = key.values.size();
   append_tables(pipeline, key);
-  key.take_inputs_from(without_tables);
+  // Of a program that is not refused, samples alone address the tables.
+  key.take_inputs_from(without_tables, run.fragment.record != nullptr ? VerificationSchedule::Effect::predicted
+                                                                      : VerificationSchedule::Effect::measured);
   return key;
 }
 

@@ -111,12 +111,13 @@ void count_substituted(KnownVolume& volume, const volume::FrameCounts& counts, F
 void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, const Options& options) {
   if (!options.speed_guard || options.debug_tint) return;
   // Waiting for what was drawn before is not what the volume costs.
-  const double ours_ms = spent.recognition + spent.upload + spent.render + spent.presentation + spent.budget;
+  const double ours_ms =
+      spent.recognition + spent.upload + spent.render + spent.verification + spent.presentation + spent.budget;
   const auto now = SpeedGuard::Clock::now();
   if (!shown) {
-    volume.speed.refused(ours_ms + spent.verification, now);
+    volume.speed.refused(ours_ms, now);
   } else if (const auto native_ms = volume.verified.schedule.native_ms()) {
-    volume.speed.shown({ours_ms, spent.verification, *native_ms}, now);
+    volume.speed.shown(ours_ms, *native_ms, now);
   }
 }
 

@@ -2,6 +2,7 @@
 #include "spu/volume/program/ray_caster.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace understudy::spu::program {
@@ -47,6 +48,35 @@ void sort_fetches(const StageFacts& facts, const std::vector<std::size_t>& fetch
   }
 }
 
+/// Whether all that reaches the fetch's coordinate is texels of the volume, by way of other tables perhaps, and
+/// what is the same for the whole draw.
+bool is_addressed_by_samples(const StageFacts& facts, const Fetch& fetch, std::span<const std::string> volumes,
+                             int tables_deep = 0) {
+  constexpr int most_tables_deep = 4;
+  if (tables_deep > most_tables_deep) return false;
+  const auto allowed = [&](const Dependence& on) {
+    const Source& source = facts.sources[on.source];
+    if (source.kind != SourceKind::texel) return is_fixed(source.kind);
+    return std::ranges::find(volumes, source.name) != volumes.end() ||
+           is_addressed_by_samples(facts, facts.fetches[source.number], volumes, tables_deep + 1);
+  };
+  return std::ranges::all_of(fetch.modifiers, allowed) &&
+         std::ranges::all_of(fetch.coordinate, [&](const Dependences& component) {
+           return std::ranges::all_of(component, allowed);
+         });
+}
+
+std::vector<std::string> tables_of_samples(const StageFacts& facts, const std::set<std::string>& tables,
+                                           std::span<const std::string> volumes) {
+  std::vector<std::string> found;
+  std::ranges::copy_if(tables, std::back_inserter(found), [&](const std::string& table) {
+    return std::ranges::all_of(facts.fetches, [&](const Fetch& fetch) {
+      return fetch.sampler != table || is_addressed_by_samples(facts, fetch, volumes);
+    });
+  });
+  return found;
+}
+
 void add_once(std::vector<std::string>& reasons, std::string reason) {
   if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(std::move(reason));
 }
@@ -85,6 +115,7 @@ RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> 
   finding.uniforms = uniform_uses(fragment, all);
   finding.side_effects = !fragment.side_effects.empty();
   finding.tables.assign(tables.begin(), tables.end());
+  finding.tables_of_samples = tables_of_samples(fragment, tables, volumes);
   finding.reasons = reasons_of(fragment, finding);
   return finding;
 }

@@ -25,6 +25,8 @@ struct RayFinding {
   std::vector<Influence> coordinates;  ///< of the volume's coordinate, other than uniforms
   std::vector<UniformUse> uniforms;
   std::vector<std::string> tables;  ///< samplers, other than the volume's, whose texels reach anything
+  std::vector<std::string>
+      tables_of_samples;  ///< of these, the ones that are addressed by texels of the volume alone
   bool writes_depth = false;
   bool side_effects = false;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/proxy/march_inputs.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "spu/volume/proxy/cuts.h"
@@ -44,7 +45,8 @@ std::size_t components(GLenum type) {
 
 }  // namespace
 
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) {
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
+                         std::span<const std::string> tables_of_samples) {
   const DispatchTable& gl = *measured.context.gl;
   const Pipeline& pipeline = measured.run.pipeline();
   MarchInputs inputs;
@@ -69,6 +71,10 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group) 
       inputs.varying.push_back(never_equal);
       continue;
     }
+    const bool of_samples = std::ranges::any_of(tables_of_samples, [&](const std::string& name) {
+      return gl.GetUniformLocation(pipeline.program, name.c_str()) == other.sampler_location;
+    });
+    if (of_samples) inputs.tables.insert(inputs.tables.end(), {inputs.fixed.size(), inputs.fixed.size() + 1});
     inputs.fixed.push_back(float(other.texture));
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
   }

@@ -2,6 +2,9 @@
 // What the measurement of a ray caster depends on.
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "spu/track/share_group.h"
@@ -13,10 +16,14 @@ namespace understudy::spu {
 /// is among the inputs that vary.
 struct MarchInputs {
   std::vector<float> fixed;
+  std::vector<std::size_t>
+      tables;  ///< of `fixed`, names and contents of tables that samples address: measured anew
   std::vector<float> varying;
   bool operator==(const MarchInputs&) const = default;
 };
 
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group);
+/// `tables_of_samples` names samplers (program::RayFinding).
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
+                         std::span<const std::string> tables_of_samples);
 
 }  // namespace understudy::spu

@@ -64,6 +64,7 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, bool turned) {
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs all;
   for (const float value : inputs.fixed) all.push_back({value});
+  for (const std::size_t table : inputs.tables) all[table].effect = Effect::predicted;
   for (const float value : inputs.varying) {
     // Not a number: the depth of opaque geometry, which is drawn in every frame.
     all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
@@ -156,15 +157,15 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   Draw draw{context_, run, seen, programs_.stages(pipeline.program), known};
   known.sent.texture = uploader_.describe(pipeline, 0);
   count_texture(known.counters, known.sent.texture);
+  const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
+  const ProgramFindings& says = programs_.findings(pipeline, values, Subject::ray_caster);
+  if (auto refusal = refusal_of_ray_caster(says)) throw Refusal{std::move(*refusal)};
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
   // Says what values there are.
   uploader_.upload({pipeline, {}, seen.texture_version, box.region, {}}, known.sent, known.counters, service);
 
-  MarchInputs inputs = march_inputs(draw.measured(), group_);
-  const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
-  if (auto refusal = refusal_of_ray_caster(programs_.findings(pipeline, values, Subject::ray_caster)))
-    throw Refusal{std::move(*refusal)};
+  MarchInputs inputs = march_inputs(draw.measured(), group_, says.ray->tables_of_samples);
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, known.march.camera != box.camera.texture_to_clip);
   known.march.camera = box.camera.texture_to_clip;
   follow_inside(draw, box, inputs);

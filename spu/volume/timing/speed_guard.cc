@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace understudy::spu {
 
@@ -24,7 +23,7 @@ void SpeedGuard::about_to_draw(std::uint64_t state, Clock::time_point now) {
   state_ = state;
   state_since_ = now;
   attempts_ = 0;
-  refused_ms_ = compared_frames_ = 0;
+  refused_ms_ = 0;
 }
 
 bool SpeedGuard::pauses(Clock::time_point now) const {
@@ -40,28 +39,24 @@ void SpeedGuard::refused(double ms, Clock::time_point now) {
   pay(ms, now);
 }
 
-void SpeedGuard::shown(const Shown& costs, Clock::time_point now) {
+void SpeedGuard::shown(double ours_ms, double native_ms, Clock::time_point now) {
   ++attempts_;
   allowed_ = false;
-  double longer_ms = costs.ours_ms - costs.native_ms;
-  if (costs.native_ms > 0 && compared_frames_ < free_comparisons) {
-    compared_frames_ += costs.comparison_ms / costs.native_ms;
+  if (ever_shown_) {
+    pay(ours_ms - native_ms, now);
   } else {
-    longer_ms += costs.comparison_ms;
-  }
-  if (!std::exchange(ever_shown_, true)) {
     // The first image pays for what is measured once, and redeems the attempts before it.
     account_ms_ = 0;
-    longer_ms = std::min(longer_ms, 0.0);
   }
-  pay(longer_ms, now);
-  account_ms_ = std::min(account_ms_, most_saved_frames * costs.native_ms);
-  slower_ = account_ms_ >= 0
-                ? std::string()
-                : fmt::format(
-                      "substituting it takes {:.3g} ms, the viewer's own drawing {:.3g} ms (--speed-guard off "
-                      "substitutes it all the same)",
-                      costs.native_ms + longer_ms, costs.native_ms);
+  ever_shown_ = true;
+  account_ms_ = std::min(account_ms_, most_saved_frames * native_ms);
+  slower_.clear();
+  if (account_ms_ >= 0) return;
+  slower_ = fmt::format(
+      "substituting it takes {:.3g} ms, the viewer's own drawing {:.3g} ms (--speed-guard off substitutes it "
+      "all "
+      "the same)",
+      ours_ms, native_ms);
 }
 
 }  // namespace understudy::spu

@@ -18,13 +18,6 @@ class SpeedGuard {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What a run that was shown took, in milliseconds.
-  struct Shown {
-    double ours_ms = 0;        ///< of everything but comparisons
-    double comparison_ms = 0;  ///< of comparing it with the application's own drawing
-    double native_ms = 0;      ///< what the application's own drawing would have taken
-  };
-
   /// A run of the volume is about to be drawn. `state` stands for what the verdict may depend on: the program
   /// and the volume's contents. Where that is another, the volume is looked at again, at most every
   /// state_pause.
@@ -34,7 +27,9 @@ class SpeedGuard {
 
   /// An attempt ended in a refusal, after so many milliseconds.
   void refused(double ms, Clock::time_point now);
-  void shown(const Shown& costs, Clock::time_point now);
+  /// A run was shown in `ours_ms`, with all comparisons; the application's own drawing would have taken
+  /// `native_ms`.
+  void shown(double ours_ms, double native_ms, Clock::time_point now);
   /// The next attempt is likely to succeed, and is made whatever the account says.
   void allow_another() { allowed_ = true; }
 
@@ -47,8 +42,6 @@ class SpeedGuard {
   static constexpr int first_attempts = 3;
   /// Refusals that took longer in all end the first look.
   static constexpr double first_look_ms = 300;
-  /// So many images are compared whole at no charge, as the volume is new.
-  static constexpr double free_comparisons = 8;
   /// The account holds at most this many frames of the application's: what was gained long ago does not excuse
   /// being slower now.
   static constexpr double most_saved_frames = 4;
@@ -64,7 +57,6 @@ class SpeedGuard {
   Clock::time_point state_since_{};
   int attempts_ = 0;
   double refused_ms_ = 0;
-  double compared_frames_ = 0;
   bool ever_shown_ = false;
   bool allowed_ = false;
   std::string slower_;

@@ -26,6 +26,7 @@ std::vector<std::size_t> changes(const VerificationSchedule::Inputs& before,
 }  // namespace
 
 bool VerificationSchedule::is_trusted(std::size_t index) const {
+  if (inputs_[index].effect == Effect::predicted) return true;
   return inputs_[index].effect != Effect::unknown &&
          std::any_of(changing_.begin(), changing_.end(), [&](const ChangingInput& input) {
            return input.index == index && input.right >= trusted_changes;

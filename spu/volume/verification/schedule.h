@@ -35,9 +35,11 @@ class VerificationSchedule {
  public:
   /// What a change of an input does.
   enum class Effect : std::uint8_t {
-    unknown,   ///< it may decide about fragments: the next image is compared whole
-    measured,  ///< it is measured anew, as a table's colours: compared whole until that was right a few times
-    followed,  ///< it moves with what is observed in every frame, as the camera: sentinels suffice
+    unknown,    ///< it may decide about fragments: the next image is compared whole
+    measured,   ///< it is measured anew, as a table's colours: compared whole until that was right a few times
+    predicted,  ///< a table of which the text says that samples alone address it: measured anew, and sentinels
+                ///< suffice, more of them
+    followed,   ///< it moves with what is observed in every frame, as the camera: sentinels suffice
   };
   /// What an image depends on, input by input: the program, textures and their contents, uniforms. Where the
   /// number of inputs changes, all have changed.

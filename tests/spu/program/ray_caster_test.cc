@@ -127,6 +127,22 @@ TEST(RayCasters, WithGlobalVariablesAndFunctionsAreFollowed) {
               Contains("gl_FragCoord.xz decides which fragments are discarded"));
 }
 
+TEST(RayCasters, TellTablesOfSamplesFromMasks) {
+  EXPECT_THAT(caster("").finding.tables_of_samples, ElementsAre("table"));
+  EXPECT_THAT(caster("v *= texture(table, v.a);").finding.tables_of_samples, ElementsAre("table"));
+  const std::string mask = "uniform sampler2D mask;\n";
+  EXPECT_THAT(caster("if (texture(mask, p.xy).r < 0.5) v = vec4(0);", "", mask).finding.tables_of_samples,
+              ElementsAre("table"));
+  EXPECT_THAT(
+      caster("if (texture(mask, gl_FragCoord.xy).r < 0.5) discard;", "", mask).finding.tables_of_samples,
+      ElementsAre("table"));
+  EXPECT_THAT(caster("v *= texture(mask, vec2(v.a, float(i)));", "", mask).finding.tables_of_samples,
+              ElementsAre("table"));
+  EXPECT_THAT(caster("v *= texture(table, p.x);").finding.tables_of_samples, IsEmpty());
+  EXPECT_THAT(caster("v *= texture(mask, v.ra * u.xy);", "", mask).finding.tables_of_samples,
+              ElementsAre("mask", "table"));
+}
+
 TEST(RayCasters, WithoutALoopAreNone) {
   const std::vector<std::string> volumes{"volume"};
   const RayFinding finding = ray_finding(facts_of(shader("colour = texture(volume, a.xyz);")), volumes);

@@ -57,6 +57,24 @@ TEST(VerificationSchedule, TrustsWhatIsMeasuredAfterItWasRightAFewTimes) {
   EXPECT_EQ(whole, trusted_changes);
 }
 
+TEST(VerificationSchedule, DrawsMoreSentinelsWhereATableOfSamplesChanges) {
+  VerificationSchedule schedule;
+  compared(schedule, {{0, Effect::predicted}});
+  int quiet = 0;
+  for (int image = 0; image < 50; ++image) {
+    compared(schedule, {{0, Effect::predicted}});
+    quiet += schedule.sentinels();
+    schedule.sentinels_took(schedule.sentinels(), schedule.sentinels());
+  }
+  int edited = 0;
+  for (int image = 1; image <= 50; ++image) {
+    EXPECT_FALSE(compared(schedule, {{float(image), Effect::predicted}}));
+    edited += schedule.sentinels();
+    schedule.sentinels_took(schedule.sentinels(), schedule.sentinels());
+  }
+  EXPECT_GT(edited, 5 * quiet);
+}
+
 TEST(VerificationSchedule, NeverTrustsWhatMayDecideAboutFragments) {
   VerificationSchedule schedule;
   compared(schedule, {{0, Effect::unknown}});

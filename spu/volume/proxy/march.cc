@@ -268,7 +268,8 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  const double wanted = march.extreme ? 3 : 0.5 + (march.steps.divided ? 0.5 : march.steps.first);
+  // A ray of one sample may just miss its pixel at the box's silhouette.
+  const double wanted = march.extreme ? 3 : 2.5 + (march.steps.divided ? 0.5 : march.steps.first);
   const Ray shortest = ray_of_length(rays, march.steps, wanted);
   constexpr int looked_at = 16;
   std::vector<float> values;

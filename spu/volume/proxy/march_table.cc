@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/proxy/march_table.h"
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
+#include <vector>
 
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
@@ -14,47 +17,131 @@ namespace {
 
 /// Multiples of 1/255 fall on entries.
 constexpr int table_entries = 4 * 255 + 1;
+/// A ray that lets through less than this tells little of one sample.
+constexpr float opaque = 0.6F;
+
+const Refusal no_short_ray{"no short ray is in view: the opacity of one sample cannot be told"};
+
+/// The colours of one ray over fields of all values of the table.
+struct RayOfTable {
+  double samples = 0;
+  std::vector<Rgba> colours;  ///< premultiplied
+
+  bool shows_anything() const {
+    return std::ranges::any_of(colours, [](const Rgba& colour) {
+      return std::ranges::any_of(colour, [](float component) { return component > 0; });
+    });
+  }
+};
+
+/// Looks at rays for the table of one march.
+class TableRays {
+ public:
+  TableRays(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
+            const volume::RaySteps& rule, const March& march)
+      : probe_(probe),
+        rays_(rays),
+        rule_(rule),
+        march_(march),
+        premultiplied_(measured.run.pipeline().blending.premultiplied) {
+    values_.reserve(table_entries);
+    for (int i = 0; i < table_entries; ++i)
+      values_.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
+  }
+
+  /// The ray in view whose number of samples comes closest; `within` a step, where in the step it ends.
+  std::variant<RayOfTable, Refusal> of_samples(double samples, double within = 0.5) {
+    const double wanted = march_.extreme ? 3.0 : samples - 1 + within + (rule_.divided ? 0.5 : rule_.first);
+    const Ray ray = ray_of_length(rays_, rule_, wanted);
+    RayOfTable seen{march_.extreme ? 1 : samples_of_length(rule_, ray.length), {}};
+    if (seen.samples < 1) return no_short_ray;
+    const auto fragments = probe_.at(ray.x, ray.y, values_);
+    if (!finite(fragments)) return Refusal{"the fragment stage gives colours that are not finite"};
+    for (const Rgba& fragment : fragments) seen.colours.push_back(premultiplied(fragment, premultiplied_));
+    return seen;
+  }
+
+ private:
+  FieldProbe& probe_;
+  const RaysThroughBox& rays_;
+  const volume::RaySteps& rule_;
+  const March& march_;
+  bool premultiplied_;
+  std::vector<float> values_;
+};
+
+/// The opacities of one sample that two rays tell are the same where both can tell them.
+bool agree(const March& march, const RayOfTable& shorter, const RayOfTable& longer) {
+  constexpr float tells = 0.01F;
+  constexpr float tolerance = 0.05F;
+  std::size_t told = 0;
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < shorter.colours.size(); ++i) {
+    const float seen = amount(march, shorter.colours[i]);
+    const float through_longer = amount(march, longer.colours[i]);
+    // What does not grow with the way is a floor of the program's, and says nothing of a sample.
+    if (through_longer < tells || through_longer > opaque || through_longer < 1.5F * seen) continue;
+    ++told;
+    const float one = amount(march, sample_of(march, shorter.colours[i], shorter.samples));
+    const float other = amount(march, sample_of(march, longer.colours[i], longer.samples));
+    different += std::abs(one - other) > tolerance * std::max(one, other) ? 1 : 0;
+  }
+  return 2 * different <= told;
+}
+
+/// The shortest ray that shows anything, and agrees with `longer` where that tells of a sample. At the box's
+/// silhouette, where rays are shortest, the one that was looked for may just miss its pixel.
+std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& march,
+                                               const std::optional<RayOfTable>& longer) {
+  struct Length {
+    double samples;
+    double within;
+  };
+  for (const Length length :
+       {Length{1, 0.5}, Length{1, 0.35}, Length{1, 0.65}, Length{2, 0.5}, Length{3, 0.5}}) {
+    auto seen = table.of_samples(length.samples, length.within);
+    const auto* ray = std::get_if<RayOfTable>(&seen);
+    if (ray == nullptr || march.extreme) return seen;
+    const bool missed = !ray->shows_anything() && (!longer || longer->shows_anything());
+    if (!missed && (!longer || agree(march, *ray, *longer))) return seen;
+  }
+  return no_short_ray;
+}
 
 }  // namespace
 
 std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& probe,
                                      const RaysThroughBox& rays, const volume::RaySteps& rule, March& march) {
-  constexpr float opaque = 0.6F;
   constexpr float saturated = 0.97F;
   constexpr double most_samples_of_shortest = 8;
-  const bool already = measured.run.pipeline().blending.premultiplied;
-  std::vector<float> values;
-  values.reserve(table_entries);
-  for (int i = 0; i < table_entries; ++i)
-    values.push_back(value_at(measured.range, double(i) / (table_entries - 1)));
+  TableRays table(measured, probe, rays, rule, march);
+  std::vector<RayOfTable> longer;
+  for (const double samples : {6.0, 40.0}) {
+    if (march.extreme) break;
+    auto seen = table.of_samples(samples);
+    auto* const ray = std::get_if<RayOfTable>(&seen);
+    if (ray == nullptr) return std::get<Refusal>(seen);
+    if (std::abs(ray->samples - samples) <= samples / 2) longer.push_back(std::move(*ray));
+  }
+  const auto found = shortest_ray(table, march, longer.empty() ? std::nullopt : std::optional(longer.front()));
+  if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
+  const auto& shortest = std::get<RayOfTable>(found);
   auto& entries = march.table.entries;
   entries.clear();
-  std::vector<float> shortest;  // opacity of the shortest ray
-  for (const double samples : {1.0, 6.0, 40.0}) {
-    const double wanted = march.extreme ? 3.0 : samples - 0.5 + (rule.divided ? 0.5 : rule.first);
-    const Ray ray = ray_of_length(rays, rule, wanted);
-    const double n = march.extreme ? 1 : samples_of_length(rule, ray.length);
-    if (entries.empty() && n < 1) return "no short ray is in view: the opacity of one sample cannot be told";
-    const bool long_at_best = entries.empty() && n > most_samples_of_shortest;
-    if (!entries.empty() && std::abs(n - samples) > samples / 2) continue;
-    const auto fragments = probe.at(ray.x, ray.y, values);
-    if (!finite(fragments)) return "the fragment stage gives colours that are not finite";
-    for (std::size_t i = 0; i < fragments.size(); ++i) {
-      const Rgba colour = premultiplied(fragments[i], already);
-      const float seen = amount(march, colour);
-      // Whatever more a sample had, a ray of many would look alike.
-      if (long_at_best && seen > saturated)
-        return "no short ray is in view: the opacity of one sample cannot be told";
-      if (entries.size() <= i) {
-        entries.push_back(march.extreme ? colour : sample_of(march, colour, n));
-        shortest.push_back(seen);
-      } else if (seen < opaque) {
-        // An opacity that does not grow with the way is that floor.
-        const bool grows = seen > shortest[i] + 1e-5F;
-        entries[i] = grows ? sample_of(march, colour, n) : Rgba{0, 0, 0, march.sum ? 1.0F : 0.0F};
-      }
+  for (const Rgba& colour : shortest.colours) {
+    // Whatever more a sample had, a ray of many would look alike.
+    if (shortest.samples > most_samples_of_shortest && amount(march, colour) > saturated) return no_short_ray;
+    entries.push_back(march.extreme ? colour : sample_of(march, colour, shortest.samples));
+  }
+  for (const RayOfTable& ray : longer) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const float seen = amount(march, ray.colours[i]);
+      if (seen >= opaque) continue;
+      // An opacity that does not grow with the way is that floor.
+      const bool grows = seen > amount(march, shortest.colours[i]) + 1e-5F;
+      entries[i] =
+          grows ? sample_of(march, ray.colours[i], ray.samples) : Rgba{0, 0, 0, march.sum ? 1.0F : 0.0F};
     }
-    if (march.extreme) break;
   }
   return std::nullopt;
 }

@@ -51,7 +51,7 @@ std::optional<Refusal> KnownVolumes::standing_refusal(const Pipeline& pipeline) 
   KnownVolume& volume = of(texture);
   const RefusalHistory& history = volume.refusals;
   if (!history.handed_back.empty()) return Refusal{history.handed_back};
-  if (session_->ledger().frames() < history.next_try && !history.last_reason.empty())
+  if (history.pauses(session_->ledger().frames()) && !history.last_reason.empty())
     return Refusal{history.last_reason};
   const auto now = SpeedGuard::Clock::now();
   volume.speed.about_to_draw(state_of(pipeline, group_), now);
@@ -132,7 +132,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   }
   Refusal refusal = refusal_of(comparison->difference);
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
-    volume.refusals.next_try = frame + 1;
+    volume.refusals.pause(frame, 1);
     volume.speed.allow_another();
     schedule.ask_for_whole();
     refusal.reason += "; tried again with samples rounded to 8 bits";
@@ -143,7 +143,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   volume.colours.probed.reset();
   volume.march.march.reset();
   const auto in_a_row = std::min(std::size_t(schedule.lost_in_a_row()), pauses.size());
-  volume.refusals.next_try = frame + pauses[in_a_row - 1];
+  volume.refusals.pause(frame, pauses[in_a_row - 1]);
   if (schedule.gives_up()) volume.refusals.handed_back = refusal.reason;
   throw Refusal{std::move(refusal)};
 }

@@ -70,29 +70,40 @@ class TableRays {
   std::vector<float> values_;
 };
 
-/// The opacities of one sample that two rays tell are the same where both can tell them.
-bool agree(const March& march, const RayOfTable& shorter, const RayOfTable& longer) {
+/// How many samples the longer ray has, going by what the shorter one tells of each. Where rays are short, at
+/// the silhouette of the box, their length changes by a sample within a small part of a pixel, and counts of
+/// samples by the geometry are off by one. Null: the rays do not agree whatever the number.
+std::optional<double> samples_by(const March& march, const RayOfTable& shorter, const RayOfTable& longer) {
+  constexpr int most_off = 2;
+  constexpr double tolerance = 0.004;
   constexpr float tells = 0.01F;
-  constexpr float tolerance = 0.05F;
-  std::size_t told = 0;
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < shorter.colours.size(); ++i) {
-    const float seen = amount(march, shorter.colours[i]);
-    const float through_longer = amount(march, longer.colours[i]);
-    // What does not grow with the way is a floor of the program's, and says nothing of a sample.
-    if (through_longer < tells || through_longer > opaque || through_longer < 1.5F * seen) continue;
-    ++told;
-    const float one = amount(march, sample_of(march, shorter.colours[i], shorter.samples));
-    const float other = amount(march, sample_of(march, longer.colours[i], longer.samples));
-    different += std::abs(one - other) > tolerance * std::max(one, other) ? 1 : 0;
+  std::optional<double> best;
+  double least = tolerance;
+  for (int off = -most_off; off <= most_off; ++off) {
+    const double samples = longer.samples + off;
+    double difference = 0;
+    std::size_t told = 0;
+    for (std::size_t i = 0; i < shorter.colours.size() && samples >= 1; ++i) {
+      const float seen = amount(march, shorter.colours[i]);
+      const float through_longer = amount(march, longer.colours[i]);
+      // What does not grow with the way is a floor of the program's, and says nothing of a sample.
+      if (through_longer < tells || through_longer > opaque || through_longer < 1.2F * seen) continue;
+      const Rgba one = sample_of(march, shorter.colours[i], shorter.samples);
+      difference += std::abs(amount(march, ray_of(march, one, samples)) - through_longer);
+      ++told;
+    }
+    if (told == 0) return longer.samples;
+    if (difference / double(told) >= least) continue;
+    least = difference / double(told);
+    best = samples;
   }
-  return 2 * different <= told;
+  return best;
 }
 
-/// The shortest ray that shows anything, and agrees with `longer` where that tells of a sample. At the box's
-/// silhouette, where rays are shortest, the one that was looked for may just miss its pixel.
+/// The shortest ray that shows anything, and agrees with the `longer` ones, whose samples are counted by it. At
+/// the box's silhouette, where rays are shortest, the one that was looked for may just miss its pixel.
 std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& march,
-                                               const std::optional<RayOfTable>& longer) {
+                                               std::vector<RayOfTable>& longer) {
   struct Length {
     double samples;
     double within;
@@ -102,8 +113,15 @@ std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& ma
     auto seen = table.of_samples(length.samples, length.within);
     const auto* ray = std::get_if<RayOfTable>(&seen);
     if (ray == nullptr || march.extreme) return seen;
-    const bool missed = !ray->shows_anything() && (!longer || longer->shows_anything());
-    if (!missed && (!longer || agree(march, *ray, *longer))) return seen;
+    const bool nothing_to_see = std::ranges::none_of(longer, &RayOfTable::shows_anything) && !longer.empty();
+    if (!ray->shows_anything() && !nothing_to_see) continue;
+    std::vector<double> counts;
+    for (const RayOfTable& other : longer) {
+      if (const auto samples = samples_by(march, *ray, other)) counts.push_back(*samples);
+    }
+    if (counts.size() < longer.size()) continue;
+    for (std::size_t i = 0; i < counts.size(); ++i) longer[i].samples = counts[i];
+    return seen;
   }
   return no_short_ray;
 }
@@ -123,7 +141,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
     if (ray == nullptr) return std::get<Refusal>(seen);
     if (std::abs(ray->samples - samples) <= samples / 2) longer.push_back(std::move(*ray));
   }
-  const auto found = shortest_ray(table, march, longer.empty() ? std::nullopt : std::optional(longer.front()));
+  const auto found = shortest_ray(table, march, longer);
   if (const auto* refusal = std::get_if<Refusal>(&found)) return *refusal;
   const auto& shortest = std::get<RayOfTable>(found);
   auto& entries = march.table.entries;

@@ -2,6 +2,7 @@
 // A refusal: the application draws a run itself, and here is why.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -31,6 +32,18 @@ struct RefusalHistory {
   int in_a_row = 0;         ///< since it was last substituted
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t next_try = 0;  ///< the frame from which on it is tried again, after a lost comparison
+  /// The same by the clock. A context whose images other contexts show, as a widget of Qt's, may draw for long
+  /// while no frame ends.
+  std::chrono::steady_clock::time_point next_try_by{};
+
+  /// Waits for `frames` after `frame`, or for as many tenths of a second.
+  void pause(std::uint64_t frame, std::uint64_t frames) {
+    next_try = frame + frames;
+    next_try_by = std::chrono::steady_clock::now() + frames * std::chrono::milliseconds(100);
+  }
+  bool pauses(std::uint64_t frame) const {
+    return frame < next_try && std::chrono::steady_clock::now() < next_try_by;
+  }
 };
 
 /// After this many refusals in a row a volume that is costly to look at is looked at only in one frame of so

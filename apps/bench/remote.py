@@ -7,15 +7,14 @@ OpenGL and nodes there, all of it on a GL server there; as it is, or with JPEG i
 the nodes' images. The bundled viewer turns 256^3 voxels in 512^2 pixels, or is at rest; glxgears has no volume. Each round
 has every line, and each line every way; times and ratios are medians of those of the rounds. What travelled is counted on the
 longer of two runs, less the shorter: upwards before it was compressed, as the volume, which is compressed by what the line
-seemed to be, travels in both runs; downwards as it travelled. What encryption costs is measured on this machine's own network, held to 1 Gbit/s, where
---plain may be had: a viewer that sends its nodes another 128^3 of noise with every frame, with and without, in turns.
+seemed to be, travels in both runs; downwards as it travelled. What encryption costs is measured on noise between two threads,
+with and without in turns, as fast as this machine's own network goes and with that held to 1 Gbit/s (encryption.cc).
 Only root can make such lines.
 """
 
 import contextlib
 import json
 import os
-import random
 import re
 import statistics
 import subprocess
@@ -34,8 +33,7 @@ SWITCH = viewers.ROOT / "build" / "tests" / "hosts" / "delaying_switch"
 LINES = {"one machine": None, "loopback": None, "1 Gbit/s 0.5 ms": ("1gbit", 250), "100 Mbit/s 20 ms": ("100mbit", 10000)}
 WAYS = {"nodes": [], "nodes, bytes": ["--pixels", "byte"], "stage": ["--remote"],
         "stage, quality 80": ["--remote", "--quality", "80"]}
-OF_THIS_MACHINE = ["one machine", "loopback"]
-GIGABIT = "1 Gbit/s, within a machine"
+GIGABIT = "1 Gbit/s"
 PORT = 7070
 ROUNDS = 3
 FRAMES = (6, 26)  # the shorter and the longer run
@@ -134,23 +132,24 @@ def measure(line, folder, display, host_of_server=None, host_of_client=None):
         return figures
 
 
-def encryption(folder, display):
-    """The same of a viewer that sends much, with and without."""
-    noise = folder / "noise.128x128x128"
-    noise.write_bytes(random.Random(1).randbytes(128**3))
-    figures = {}
-    with server(folder, None, ["--plain"]) as link:
-        for way, options in {"encrypted": [], "plain": ["--plain"]}.items():
-            print(f"  {GIGABIT}, {way}", file=sys.stderr, flush=True)
-            client = Client(folder, None, [*link, *options], display)
-            viewer = [viewers.PROGRAMS / "understudy-viewer", noise, "--mode", "time", "--offscreen", "--window-size", "128", "128"]
-            text = viewers.run([*client.prefix(["--speed-guard", "off"]), *viewer, "--frames", FRAMES[1], "--print-times"],
-                               client.environment())
-            times = [float(ms) for ms in re.findall(r"^frame \d+: ([0-9.]+) ms$", text, re.MULTILINE)]
-            travelled = client.travelled()
-            figures[f"encryption/{way}"] = {"ms": statistics.median(times[FRAMES[0]:])} | {
-                what: travelled[what] / FRAMES[1] for what in ("up", "down", "round_trips")}
-    return figures
+def encryption():
+    """Seconds of processor time a byte at both ends, and bytes a second, with and without in turns."""
+    text = subprocess.run([str(viewers.PROGRAMS / "understudy-bench-encryption")], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def rows_of_encryption(place, turns):
+    """The ratios are those of neighbouring turns."""
+    pairs = list(zip(turns[::2], turns[1::2]))
+    result = []
+    for what, unit, scale in (("send_ns_per_byte", "ns/B", 1), ("receive_ns_per_byte", "ns/B", 1), ("bytes_per_second", "MB/s", 1e-6)):
+        name = f"remote/encryption/{what}/{place}"
+        for at, way in enumerate(("plain", "encrypted")):
+            row = {"name": f"{name}/{way}", "value": scale * statistics.median(pair[at][what] for pair in pairs), "unit": unit}
+            if way == "encrypted":
+                row |= {"ratio_to": f"{name}/plain", "ratio": statistics.median(pair[1][what] / pair[0][what] for pair in pairs)}
+            result.append(row)
+    return result
 
 
 def in_namespaces(line, folder, display):
@@ -167,28 +166,26 @@ def rows():
     folder = viewers.OUT / "bench" / "remote"
     folder.mkdir(parents=True, exist_ok=True)
     lines = [line for line, hosts in LINES.items() if not hosts or (os.geteuid() == 0 and SWITCH.exists())]
-    lines += [GIGABIT] if os.geteuid() == 0 else []
     for line in LINES.keys() - lines:
         print(f"  {line}: needs root, and {SWITCH}", file=sys.stderr)
     rounds = []
     with VirtualDisplay() as display:
         for number in range(ROUNDS):
             print(f"  round {number + 1} of {ROUNDS}", file=sys.stderr)
-            rounds.append({line: (measure if line in OF_THIS_MACHINE else in_namespaces)(line, folder, display) for line in lines})
+            rounds.append({line: (in_namespaces if LINES[line] else measure)(line, folder, display) for line in lines})
     result = []
     for line in lines:
         for name in rounds[0][line]:
             row = {"name": f"remote/{name}/{line}", "value": median_of(rounds, line, name, "ms"), "unit": "ms"}
             row |= {f"bytes_{way}": median_of(rounds, line, name, way) for way in ("up", "down")}
             row["round_trips"] = median_of(rounds, line, name, "round_trips")
-            if name == "encryption/encrypted":
-                plain = "encryption/plain"
-                row |= {"ratio_to": f"remote/{plain}/{line}",
-                        "ratio": statistics.median(each[line][name]["ms"] / each[line][plain]["ms"] for each in rounds)}
-            elif line != "one machine" and name in rounds[0]["one machine"]:
+            if line != "one machine" and name in rounds[0]["one machine"]:
                 row |= {"ratio_to": f"remote/{name}/one machine",
                         "ratio": statistics.median(each[line][name]["ms"] / each["one machine"][name]["ms"] for each in rounds)}
             result.append(row)
+    result += rows_of_encryption("loopback", encryption())
+    if os.geteuid() == 0:
+        result += rows_of_encryption(GIGABIT, in_namespaces(GIGABIT, folder, ""))
     return result
 
 
@@ -201,7 +198,7 @@ def main(line, rate, one_way, folder, display):
         for command in (["ip", "link", "set", "lo", "up", "mtu", "1500"],
                         ["tc", "qdisc", "add", "dev", "lo", "root", "tbf", "rate", rate, "burst", "256k", "latency", "20ms"]):
             subprocess.run(command, check=True)
-        json.dump(encryption(Path(folder), display), sys.stdout)
+        json.dump(encryption(), sys.stdout)
         return
     subprocess.run(["sh", str(HOSTS / "network.sh"), str(SWITCH), one_way, "2", folder, rate], check=True,
                    stdout=sys.stderr)

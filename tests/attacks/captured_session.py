@@ -18,9 +18,8 @@ import threading
 from pathlib import Path
 
 from attacked_server import port_of, server
+from own_namespaces import go_on_inside
 
-SKIPPED = 77
-IN_NAMESPACE = "IN_OWN_NETWORK"
 SIDE = 48
 ETH_P_ALL = 3
 PROBE = 16  # bytes in a row
@@ -62,19 +61,6 @@ class Capture:
         return [bytes(payload) for ports, payload in self.streams.items() if port in struct.unpack(">HH", ports)]
 
 
-def in_own_network():
-    """Goes on in one, as root there; ends with SKIPPED where that is not allowed."""
-    if os.environ.get(IN_NAMESPACE):
-        subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-        return
-    as_root = [] if os.geteuid() == 0 else ["--user", "--map-root-user"]
-    command = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc", *as_root]
-    if subprocess.run([*command, "true"], check=False, stderr=subprocess.DEVNULL).returncode != 0:
-        print("no network of its own can be made here")
-        sys.exit(SKIPPED)
-    sys.exit(subprocess.run([*command, sys.executable, "-B", *sys.argv], check=False, env=os.environ | {IN_NAMESPACE: "yes"}).returncode)
-
-
 def sessions(understudy, viewer, folder, volume, texels, options):
     """What a server's clients and it send each other, and by what of it they can be told."""
     process = server(understudy, folder, "--gl-server", "--data", volume.parent, *options, **forwarded())
@@ -108,7 +94,7 @@ def forwarded():
 
 
 def main():
-    in_own_network()
+    go_on_inside(["ip", "link", "set", "lo", "up"])
     understudy, viewer = sys.argv[1:3]
     # Nothing is gained by compressing it, so that it travels as it is.
     texels = random.Random(1).randbytes(SIDE**3)

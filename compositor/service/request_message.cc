@@ -313,7 +313,7 @@ RenderRequest decode_request(std::span<const std::byte> payload, std::span<const
   request.planes.count = in.small("planes.count", 0, max_planes);
   request.steps = read_steps(in);
   request.op = in.enumerator("op", Operator::first_hit);
-  request.filter = in.enumerator("filter", Filter::linear);
+  request.filter = in.enumerator("filter", Filter::linear_8_bit);
   read(in, "region.low", request.region.low);
   read(in, "region.high", request.region.high);
   request.clip_planes.resize(std::size_t(in.integer("clip_planes", 0, limits::max_clip_planes)));

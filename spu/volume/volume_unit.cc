@@ -157,7 +157,7 @@ void VolumeUnit::show(const Run& run, const Recognised& recognised, KnownVolume&
   Stages& stages = this->stages();
   ImageRequest& image = recognised.image;
   volume::RenderRequest& request = image.request;
-  if (volume.colours.rounding.rounds()) round_samples(request.classification);
+  if (volume.colours.rounding.rounds()) round_samples(request);
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {

@@ -51,19 +51,21 @@ class Programs : public testing::TestWithParam<unsigned> {
     const fs::path folder = fs::path(ADVERSARY_FOLDER) / program.name;
     fs::remove_all(folder);
     fs::create_directories(folder);
+    bool drawn = true;
     const auto draw = [&](const std::string& into, std::vector<std::string> command,
                           const std::string& option) {
       command.insert(command.end(), {ADVERSARY_PROGRAM, "run", program.name, (folder / into).string(),
                                      "--frames", std::to_string(frames), "--edge", "128"});
       if (!option.empty()) command.push_back(option);
       const fs::path log = folder / (into + ".log");
-      EXPECT_EQ(run_command(command, log, {"UNDERSTUDY_SPEED_GUARD=off"}), 0)
-          << program.name << ": " << contents(log);
+      const int status = run_command(command, log, {"UNDERSTUDY_SPEED_GUARD=off"});
+      EXPECT_EQ(status, 0) << program.name << ": " << contents(log);
+      drawn = drawn && status == 0;
     };
     draw("bare", {}, "");
     draw("exact", {}, "--exact");
     draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder / "report.json").string(), "--"}, "");
-    if (HasFailure()) return {};
+    if (!drawn) return {};
     const Outcome outcome{.visible = is_visible(folder / "bare"), .verdict = judge(folder, frames)};
     fmt::print("adversary: {}{}\n{}", line_about(program, outcome.verdict),
                outcome.visible ? "" : " (nothing is seen)", contents(folder / "under.log"));

@@ -7,34 +7,22 @@
 namespace understudy::spu {
 namespace {
 
-/// Opaque above the middle.
-volume::TransferFunction step() {
-  volume::TransferFunction table;
-  for (int i = 0; i < 4081; ++i) table.entries.push_back(i > 2040 ? volume::Rgba{1, 1, 1, 1} : volume::Rgba{});
-  return table;
-}
+TEST(RoundedSamples, AreAskedForWhereTheyAreClassifiedOneByOne) {
+  volume::RenderRequest samples;
+  round_samples(samples);
+  EXPECT_EQ(samples.filter, volume::Filter::linear_8_bit);
 
-float alpha_at(const volume::TransferFunction& table, double value) {
-  const double place = (value - table.low) / (table.high - table.low) * double(table.entries.size() - 1);
-  return table.entries[std::size_t(place + 0.5)][3];
-}
-
-TEST(RoundedSamples, HaveTheColourOfTheNearestWholeValue) {
-  const volume::TransferFunction rounded = with_rounded_samples(step());
-  EXPECT_EQ(alpha_at(rounded, 127.4 / 255), 0);
-  EXPECT_EQ(alpha_at(rounded, 127.6 / 255), 1);  // 127.6 is shown as 128 is
-  EXPECT_EQ(alpha_at(rounded, 129.0 / 255), 1);
-}
-
-TEST(RoundedSamples, OfPartOfTheRangeBeginAndEndWithIt) {
-  volume::TransferFunction part = step();
-  part.low = 0.25F;
-  part.high = 0.5F;
-  const volume::TransferFunction rounded = with_rounded_samples(part);
-  EXPECT_EQ(rounded.low, 0.25F);
-  EXPECT_EQ(rounded.high, 0.5F);
-  EXPECT_EQ(alpha_at(rounded, 0.25), 0);
-  EXPECT_EQ(alpha_at(rounded, 0.5), 1);
+  volume::RenderRequest adaptive;
+  adaptive.method = volume::Method::adaptive;
+  volume::RenderRequest colours;
+  colours.classification = volume::LinearMap{};
+  volume::RenderRequest nearest;
+  nearest.filter = volume::Filter::nearest;
+  for (volume::RenderRequest request : {adaptive, colours, nearest}) {
+    const volume::Filter filter = request.filter;
+    round_samples(request);
+    EXPECT_EQ(request.filter, filter);
+  }
 }
 
 TEST(SampleRounding, IsTriedOnceAndKeptWhereItWins) {
@@ -57,13 +45,16 @@ TEST(SampleRounding, IsGivenUpWhereItLosesToo) {
   EXPECT_FALSE(rounding.try_after_loss(bytes));
 }
 
-TEST(SampleRounding, IsNoMatterOfFloatsOrOfNearestTexels) {
+TEST(SampleRounding, IsNoMatterOfFloatsOfNearestTexelsOrOfBorders) {
   TextureDescription floats;
   floats.type = volume::TexelType::f32;
   TextureDescription nearest;
   nearest.filter = volume::Filter::nearest;
   EXPECT_FALSE(SampleRounding().try_after_loss(floats));
   EXPECT_FALSE(SampleRounding().try_after_loss(nearest));
+  TextureDescription bordered;
+  bordered.wrap[1] = volume::Wrap::border;
+  EXPECT_FALSE(SampleRounding().try_after_loss(bordered));
 }
 
 }  // namespace

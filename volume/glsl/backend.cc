@@ -46,8 +46,9 @@ struct Kind {
 std::string text_of(const Kind& kind) {
   constexpr std::array types{"u8", "u16", "f32", "rgba8"};
   constexpr std::array operators{"over", "max", "min", "add", "first hit"};
+  constexpr std::array filters{"nearest", "linear", "8-bit linear"};
   return fmt::format("{}, {}, {} filter, {}", types.at(std::size_t(kind.type)),
-                     operators.at(std::size_t(kind.op)), kind.filter == Filter::linear ? "linear" : "nearest",
+                     operators.at(std::size_t(kind.op)), filters.at(std::size_t(kind.filter)),
                      kind.mostly_empty ? "most blocks empty" : "most blocks visible");
 }
 

@@ -274,6 +274,7 @@ std::optional<std::string> GlslRayCaster::obstacle(const RenderRequest& request)
   if (std::holds_alternative<PreIntegrationTable>(request.classification))
     return "segments with a pre-integration table";
   if (request.fog) return "fog";
+  if (request.filter == Filter::linear_8_bit) return "a linear filter of 8 bits";
   if (request.method == Method::pre_integrated) return "pre-integrated segments";
   if (request.method == Method::adaptive) return "adaptive steps";
   if (!request.surfaces.empty()) return "surfaces";

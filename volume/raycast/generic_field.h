@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "volume/raycast/kernel.h"
 #include "volume/rgba.h"
@@ -118,6 +119,8 @@ class FieldReader {
   typename FieldType::Sample sample() const {
     const std::byte* block = scene_.store->block_data()[block_];
     constexpr int y = BrickStore::block_row, z = BrickStore::block_slice;
+    if constexpr (std::is_same_v<FieldType, Field<std::uint8_t>>)
+      if (scene_.filter == Filter::linear_8_bit) return rounded_sample(block);
     if (scene_.filter == Filter::nearest) {
       const int texel = corner_ + (fraction_[0] >= 0.5F ? 1 : 0) + (fraction_[1] >= 0.5F ? y : 0) +
                         (fraction_[2] >= 0.5F ? z : 0);
@@ -138,6 +141,18 @@ class FieldReader {
   }
 
  private:
+  float rounded_sample(const std::byte* block) const {
+    std::array<int, 3> steps{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      steps[axis] = int(std::nearbyint(fraction_[axis] * float(filter_steps)));
+    const auto texel = [&](int i) { return std::to_integer<int>(block[i]); };
+    const auto along_x = [&](int i) { return rounded_mix(texel(i), texel(i + 1), steps[0]); };
+    const auto along_y = [&](int i) {
+      return rounded_mix(along_x(i), along_x(i + BrickStore::block_row), steps[1]);
+    };
+    return float(rounded_mix(along_y(corner_), along_y(corner_ + BrickStore::block_slice), steps[2]));
+  }
+
   /// Where the texels around the clamped position are.
   void find_cell() {
     block_ = 0;

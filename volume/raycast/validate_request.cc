@@ -137,6 +137,14 @@ void validate_cut(const VolumeDescription& volume, int blocks) {
            blocks * BrickStore::block_cells, most);
 }
 
+void validate_filter(const VolumeDescription& volume, const RenderRequest& request) {
+  if (request.filter != Filter::linear_8_bit) return;
+  if (volume.type != TexelType::u8) refuse("the linear filter of 8 bits is for one byte a texel");
+  if (request.slice_segment) refuse("segments have no linear filter of 8 bits");
+  if (std::find(volume.wrap.begin(), volume.wrap.end(), Wrap::border) != volume.wrap.end())
+    refuse("the linear filter of 8 bits knows no border");
+}
+
 void validate_fog(const Fog& fog, Operator op) {
   if (op == Operator::min) refuse("there is no fog under the operator min");
   if (fog.entries.size() < 2 || fog.entries.size() > max_table_entries)
@@ -190,6 +198,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
   validate_classification(volume, request.classification);
   validate_slice_segment(volume, request);
   if (request.fog) validate_fog(*request.fog, request.op);
+  validate_filter(volume, request);
   validate_segments(volume, request);
 }
 

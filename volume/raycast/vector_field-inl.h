@@ -98,6 +98,11 @@ struct Bytes8 {
   static constexpr std::size_t bytes = 1;
   static constexpr float factor = -32768, zero = 0;
 };
+/// The same under Filter::linear_8_bit, whose samples are whole.
+struct RoundedBytes8 {
+  static constexpr bool scalar = true;
+  static constexpr float factor = 1, zero = 0;
+};
 struct Shorts16 {
   static constexpr bool scalar = true;
   static constexpr std::size_t bytes = 2;
@@ -451,6 +456,40 @@ HWY_INLINE Floats field_at(const Located& at, const Constants& constants, Source
   const bool choose = std::is_same_v<Source, Floats32> && constants.nearest;
   return mix_or_choose(mix_or_choose(edges[0], edges[1], at.y, choose),
                        mix_or_choose(edges[2], edges[3], at.y, choose), at.z, choose);
+}
+
+/// For pairs of 16-bit values: (filter_steps - s, s), of fractions of the way from the first to the second.
+HWY_INLINE Ints rounded_weights(Floats fraction) {
+  const Ints high = hn::NearestInt(hn::Mul(fraction, hn::Set(FloatTag(), float(filter_steps))));
+  return hn::Add(hn::Set(IntTag(), filter_steps), hn::Sub(hn::ShiftLeft<16>(high), high));
+}
+
+/// rounded_mix() of pairs of 16-bit values.
+HWY_INLINE Ints rounded_mix_of(Ints pairs, Ints weights) {
+  const Ints half = hn::Set(IntTag(), filter_steps / 2);
+  return hn::ShiftRight<8>(hn::Add(pairwise_products(pairs, weights), half));
+}
+static_assert(filter_steps == 1 << 8);
+
+template <std::size_t q>
+HWY_INLINE Floats rounded_edges_of_column(const Corners& corners, Ints weights) {
+  const Ints texels = hn::BitCast(IntTag(), edge_texels<q>(corners));
+  return hn::BitCast(FloatTag(), rounded_mix_of(texels, hn::Broadcast<q>(weights)));
+}
+
+HWY_INLINE Floats field_at(const Located& at, const Constants& constants, RoundedBytes8) {
+  const FloatTag f;
+  const IntTag d;
+  const Corners corners = corners_of<1>(at, constants);
+  const Ints x = rounded_weights(at.x), y = rounded_weights(at.y), z = rounded_weights(at.z);
+  std::array<Floats, 4> edges{rounded_edges_of_column<0>(corners, x), rounded_edges_of_column<1>(corners, x),
+                              rounded_edges_of_column<2>(corners, x), rounded_edges_of_column<3>(corners, x)};
+  transpose(edges);
+  const auto pairs = [&](Ints low, Ints high) HWY_ATTR { return hn::Or(low, hn::ShiftLeft<16>(high)); };
+  const auto edge = [&](std::size_t i) HWY_ATTR { return hn::BitCast(d, edges[i]); };
+  const Ints near = rounded_mix_of(pairs(edge(0), edge(1)), y);
+  const Ints far = rounded_mix_of(pairs(edge(2), edge(3)), y);
+  return hn::ConvertTo(f, rounded_mix_of(pairs(near, far), z));
 }
 
 /// What a sample adds to its ray's pixel. Scalars: a place in the table, whose entries are loaded when they

@@ -224,6 +224,8 @@ void vector_kernel(const Scene& scene, const RayPacket& packet, float* rgba, Ker
   };
   switch (scene.store->description().type) {
     case TexelType::u8:
+      if (scene.filter == Filter::linear_8_bit)
+        return walk_packet<false>(scene, packet, RoundedBytes8(), rgba, counts);
       return walk(Bytes8());
     case TexelType::u16:
       return walk(Shorts16());

@@ -101,6 +101,23 @@ class Texture {
     return sum;
   }
 
+  /// One byte a texel: axis after axis, as Filter::linear_8_bit says.
+  Sample linear_8_bit(const Vec3& t) const {
+    std::array<int, 3> low;
+    std::array<int, 3> step;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int place = int(std::lround((t[axis] * volume_.size[axis] - 0.5) * filter_steps));
+      low[axis] = int(std::floor(double(place) / filter_steps));
+      step[axis] = place - low[axis] * filter_steps;
+    }
+    const auto byte = [&](int x, int y, int z) {
+      return int(std::lround(255 * texel({low[0] + x, low[1] + y, low[2] + z})[0]));
+    };
+    const auto along_x = [&](int y, int z) { return rounded_mix(byte(0, y, z), byte(1, y, z), step[0]); };
+    const auto along_y = [&](int z) { return rounded_mix(along_x(0, z), along_x(1, z), step[1]); };
+    return {rounded_mix(along_y(0), along_y(1), step[2]) / 255.0};
+  }
+
  private:
   /// Whether the sample's cell has a NaN corner; samples beyond the outermost texel centres belong to the
   /// outermost cell.
@@ -298,6 +315,7 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
 Field texture_field(const VolumeDescription& volume, Filter filter, std::span<const std::byte> texels) {
   const Texture texture(volume, texels);
   if (filter == Filter::nearest) return [texture](const Vec3& t) { return texture.nearest(t); };
+  if (filter == Filter::linear_8_bit) return [texture](const Vec3& t) { return texture.linear_8_bit(t); };
   return [texture](const Vec3& t) { return texture.linear(t); };
 }
 

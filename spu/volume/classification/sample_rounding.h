@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples as drivers give them that filter 8-bit texels in 8 bits.
 //
-// llvmpipe rounds every filtered sample of such a texture to a whole number of 1/255 (graphics cards round the
-// weights alone). Under a transfer function with steps a sample near a step then falls to its other side; where
-// many do, the exact image is another one.
+// llvmpipe rounds the place of a sample to 1/256 of a texel, and every interpolation along an axis to a whole
+// number of 1/255 (volume/texture_filter.h, Filter::linear_8_bit); graphics cards round the places alone. Under
+// a transfer function with steps a sample near a step then falls to its other side; where many do, the exact
+// image is another one.
 #pragma once
 
 #include <cstdint>
 
 #include "spu/volume/texture/texels.h"
-#include "volume/classification.h"
+#include "volume/request.h"
 
 namespace understudy::spu {
 
-/// The transfer function that gives every sample the colour that `table` has for the nearest multiple of 1/255.
-volume::TransferFunction with_rounded_samples(const volume::TransferFunction& table);
-
-/// The same of a table of colours; others stay as they are.
-void round_samples(volume::Classification& colours);
+/// Asks for rounded samples. Samples of colours, of pre-integration tables and on adaptive steps stay as they
+/// are.
+void round_samples(volume::RenderRequest& request);
 
 /// Whether a volume's samples are taken exactly or rounded: exactly, until a comparison with the viewer's own
 /// image is lost; then rounded, if that comparison is won.

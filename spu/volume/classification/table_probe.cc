@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <span>
 
 #include "volume/blending_operator.h"
 
@@ -11,6 +11,20 @@ namespace understudy::spu {
 namespace {
 
 constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
+
+/// Whether the table has `value` in channel `c` of `entries` or between them. Between two it may have a peak or
+/// a step, which is taken to reach as far beyond them as they are apart.
+bool is_among(float value, std::span<const volume::Rgba> entries, std::size_t c) {
+  float low = entries.front()[c];
+  float high = low;
+  float apart = 0;
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    low = std::min(low, entries[i][c]);
+    high = std::max(high, entries[i][c]);
+    apart = std::max(apart, std::abs(entries[i][c] - entries[i - 1][c]));
+  }
+  return value >= low - apart - same_colour && value <= high + apart + same_colour;
+}
 
 /// Whether colours change where the field has a slope: the application looks at more than one place, which flat
 /// texels cannot show. The texels rise along all axes, and every sample must get a colour that the table has
@@ -36,16 +50,12 @@ bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureD
                            slope[1] * ((y + 0.5) / probe_edge * 2 - 0.5) + slope[2] * 0.5;
       const int entry = int(std::lround(place * (probed_entries - 1)));
       const volume::Rgba& colour = image[std::size_t(y) * probe_edge + std::size_t(x)];
-      for (std::size_t c = 0; c < 4; ++c) {
-        float low = std::numeric_limits<float>::max();
-        float high = std::numeric_limits<float>::lowest();
-        for (int i = std::max(entry - weight_error, 0); i <= std::min(entry + weight_error, probed_entries - 1);
-             ++i) {
-          low = std::min(low, table[std::size_t(i)][c]);
-          high = std::max(high, table[std::size_t(i)][c]);
-        }
-        if (!(colour[c] >= low - same_colour && colour[c] <= high + same_colour)) return true;
-      }
+      const auto around =
+          std::span(table).subspan(std::size_t(std::max(entry - weight_error, 0)),
+                                   std::size_t(std::min(entry + weight_error, probed_entries - 1) -
+                                               std::max(entry - weight_error, 0) + 1));
+      for (std::size_t c = 0; c < 4; ++c)
+        if (!is_among(colour[c], around, c)) return true;
     }
   }
   return false;
@@ -67,6 +77,17 @@ class TableProbe {
   ProbedImage table(const InputValues& inputs) {
     show(probe_edge, ramp_);
     return bench_.draw(without_coordinate(fragment_, inputs), true);
+  }
+  /// Takes the colours of bytes from bytes: what a driver makes of them may differ from multiples of 1/255 in
+  /// the last bit, and a program that compares a sample with such a number sees that.
+  void take_bytes(ProbedImage& table, const InputValues& inputs) {
+    constexpr int bytes = 256;
+    constexpr std::size_t entries_a_byte = (probed_entries - 1) / (bytes - 1);
+    std::vector<float> texels(probe_pixels);
+    for (int i = 0; i < probe_pixels; ++i) texels[std::size_t(i)] = float(std::min(i, bytes - 1)) / (bytes - 1);
+    show(byte_probe_format(texture_.base), probe_edge, texels);
+    const ProbedImage seen = bench_.draw(without_coordinate(fragment_, inputs), true);
+    for (std::size_t i = 0; i < bytes; ++i) table[entries_a_byte * i] = seen[i];
   }
   /// One entry, at coordinates all over the volume.
   ProbedImage everywhere(std::size_t entry, const InputValues& inputs) {
@@ -93,9 +114,10 @@ class TableProbe {
   }
 
  private:
-  void show(int extent, const std::vector<float>& texels) {
-    bench_.show(probe_format(texture_.base), upload_format(texture_.base), extent, extent, texels,
-                texture_.swizzle, context_.version >= 330);
+  void show(int extent, const std::vector<float>& texels) { show(probe_format(texture_.base), extent, texels); }
+  void show(GLenum format, int extent, const std::vector<float>& texels) {
+    bench_.show(format, upload_format(texture_.base), extent, extent, texels, texture_.swizzle,
+                context_.version >= 330);
   }
 
   ProbeBench& bench_;
@@ -230,6 +252,7 @@ ProbeFinding probe_table(ProbeBench& bench, const GlContext& context, const Pipe
   if (!one_place && sees_neighbours(bench, context, texture, range, without_coordinate(fragment, tabled), table,
                                     pipeline.stack))
     return "the colour depends on the field around the sample (gradient, lighting)";
+  if (texture.type == volume::TexelType::u8) probe.take_bytes(table, tabled);
   auto function = composable(table, pipeline, range);
   if (!function) return "the colours leave [0,1] in a float framebuffer";
   probed->classification = *std::move(function);

@@ -93,6 +93,15 @@ FieldProbe::~FieldProbe() {
   gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
 }
 
+/// Whether the volume's own texels can hold all of it. What a driver makes of bytes may differ from multiples
+/// of 1/255 in the last bit, and a program that compares a sample with such a number sees that.
+bool FieldProbe::of_bytes(const std::array<float, 8>& corners) const {
+  constexpr float bytes = 255;
+  return texture_.type == volume::TexelType::u8 && std::ranges::all_of(corners, [](float value) {
+           return std::abs(value - std::round(value * bytes) / bytes) < 1e-6F && value >= 0 && value <= 1;
+         });
+}
+
 void FieldProbe::show(const std::array<float, 8>& corners) {
   // A texture for every field: changing one that is in use would wait for the draw.
   GLuint name = 0;
@@ -106,8 +115,9 @@ void FieldProbe::show(const std::array<float, 8>& corners) {
     gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
   }
   if (with_swizzle_) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, texture_.swizzle.data());
-  gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(probe_format(texture_.base)), 2, 2, 2, 0, upload_format(texture_.base),
-                 GL_FLOAT, corners.data());
+  const GLenum format = of_bytes(corners) ? byte_probe_format(texture_.base) : probe_format(texture_.base);
+  gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(format), 2, 2, 2, 0, upload_format(texture_.base), GL_FLOAT,
+                 corners.data());
 }
 
 std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const float> values) {

@@ -52,6 +52,7 @@ class FieldProbe {
   int height() const { return viewport_[3]; }
 
  private:
+  bool of_bytes(const std::array<float, 8>& corners) const;
   void show(const std::array<float, 8>& corners);
   void clear();
   std::vector<volume::Rgba> in_place(int column, int row, int width, int height, float value);

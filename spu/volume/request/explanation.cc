@@ -25,6 +25,18 @@ std::string_view name_of(volume::TexelType type) {
   }
 }
 
+std::string_view name_of(volume::Filter filter) {
+  switch (filter) {
+    case volume::Filter::nearest:
+      return "nearest";
+    case volume::Filter::linear:
+      return "linear";
+    case volume::Filter::linear_8_bit:
+      return "8-bit linear";
+  }
+  return "";
+}
+
 const char* name_of(const Blending& blending) {
   if (blending.front_to_back != FrontToBack::no) return "under";
   switch (blending.op) {
@@ -82,8 +94,7 @@ std::string explanation(const Pipeline& pipeline, const TextureDescription& text
       "{}x{}x{} {} texels ({}), {}, {} filter, {}, {} camera, fit to {:.1e}, {} of {} colours, {} clip planes, "
       "{}{}",
       texture.size[0], texture.size[1], texture.size[2], name_of(texture.type), texture.format_name,
-      sampling_of(request, texture.size, !image.ray_ends.empty()),
-      request.filter == volume::Filter::linear ? "linear" : "nearest", colours,
+      sampling_of(request, texture.size, !image.ray_ends.empty()), name_of(request.filter), colours,
       perspective ? "perspective" : "parallel", residual, name_of(pipeline.blending),
       pipeline.blending.premultiplied ? "premultiplied" : "plain", request.clip_planes.size(),
       request.depth ? "hidden by opaque geometry" : "no opaque geometry before it",

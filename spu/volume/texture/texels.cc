@@ -327,6 +327,21 @@ GLenum probe_format(BaseFormat base) {
   }
 }
 
+GLenum byte_probe_format(BaseFormat base) {
+  switch (base) {
+    case BaseFormat::luminance:
+      return GL_LUMINANCE8;
+    case BaseFormat::intensity:
+      return GL_INTENSITY8;
+    case BaseFormat::alpha:
+      return GL_ALPHA8;
+    case BaseFormat::rgba:
+      return GL_RGBA8;
+    default:
+      return GL_R8;
+  }
+}
+
 GLenum upload_format(BaseFormat base) {
   switch (base) {
     case BaseFormat::luminance:

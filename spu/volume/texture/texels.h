@@ -42,6 +42,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
 
 /// Of a float texture that reads like one of base format `base`: internal format, and format of its texels.
 GLenum probe_format(BaseFormat base);
+/// The same with one byte a component.
+GLenum byte_probe_format(BaseFormat base);
 GLenum upload_format(BaseFormat base);
 
 /// Where texels are read from, any box of them. Expects tight pixel packing (SavedState).

@@ -90,6 +90,19 @@ TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
   EXPECT_EQ(scene.app->substituted(), 3U) << scene.app->last_reason();
 }
 
+TEST(Proxies, AStepThatIsAnotherInEveryFrameIsFollowed) {
+  ProxyScene scene(MarchStyle{});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  double angle = 30;
+  for (const float step : {0.02F, 0.05F, 0.031F, 0.074F, 0.02F}) {
+    scene.caster().style.step = step;
+    const auto under = scene.frame(true, angle);
+    EXPECT_GE(psnr(under, scene.frame(false, angle)), 38) << "step " << step;
+    angle += 7;
+  }
+  EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
+}
+
 TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   for (const bool reads_depth : {false, true}) {
     ProxyScene scene(MarchStyle{.noisy = true, .reads_depth = reads_depth, .step = 0.08F});

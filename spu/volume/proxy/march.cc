@@ -262,17 +262,32 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   return "the steps of rays are others where the eye is inside";
 }
 
-bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box) {
+std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
+                                       double factor) {
+  // The table is not measured otherwise.
+  constexpr int values_looked_at = 64;
+  if (march.extreme || march.sum || march.steps.divided) return std::nullopt;
+  March longer = march;
+  for (double& number : longer.steps.metric) number /= factor;
+  March corrected = longer;
+  for (Rgba& entry : corrected.table.entries) entry = ray_of(march, entry, factor);
+  for (const March& candidate : {corrected, longer}) {
+    if (still_marches(measured, candidate, box, values_looked_at)) return candidate;
+  }
+  return std::nullopt;
+}
+
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
+                   int values_looked_at) {
   constexpr float same_colour = 5e-3F;
   FieldProbe probe(measured.context, measured.run, measured.texture);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  constexpr int looked_at = 16;
   std::vector<float> values;
-  values.reserve(looked_at);
-  for (int i = 0; i < looked_at; ++i)
-    values.push_back(value_at({march.table.low, march.table.high}, (i + 0.5) / looked_at));
+  values.reserve(std::size_t(values_looked_at));
+  for (int i = 0; i < values_looked_at; ++i)
+    values.push_back(value_at({march.table.low, march.table.high}, (i + 0.5) / values_looked_at));
   const auto expected = [&](const Rgba& fragment, float value, double n) {
     const Rgba sample = table_at(march.table, value);
     const Rgba got = premultiplied(fragment, already);

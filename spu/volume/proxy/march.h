@@ -55,12 +55,18 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 /// The march with the transfer function that the program has now; null when more than that has changed.
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
+/// The march with steps that are `factor` times as long, whose samples are corrected for their length, as is
+/// usual, or are what they were; null when neither is what the program shows.
+std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
+                                       double factor);
+
 /// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
 std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
                                             const ProxyBox& box);
 
 /// Whether a few rays still are as `march` says.
-bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box);
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
+                   int values_looked_at = 16);
 
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);

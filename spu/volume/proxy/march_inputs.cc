@@ -43,10 +43,22 @@ std::size_t components(GLenum type) {
   }
 }
 
+/// Whether the uniform reaches where samples lie and when a ray ends, and decides about no fragment or colour.
+/// It may reach colours as a number: programs correct opacity by the step.
+bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
+  bool moves = false;
+  for (const program::UniformUse& use : says.ray->uniforms) {
+    const program::Source& source = says.facts.sources[use.source];
+    if (source.kind != program::SourceKind::uniform || source.name != name) continue;
+    if (use.discard || use.branch) return false;
+    moves |= use.coordinate;
+  }
+  return moves;
+}
+
 }  // namespace
 
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
-                         std::span<const std::string> tables_of_samples) {
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says) {
   const DispatchTable& gl = *measured.context.gl;
   const Pipeline& pipeline = measured.run.pipeline();
   MarchInputs inputs;
@@ -63,6 +75,8 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
     if (location < 0) continue;
     std::array<GLfloat, 16> value{};
     gl.GetUniformfv(pipeline.program, location, value.data());
+    if (uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
+      inputs.steps.push_back(inputs.fixed.size());
     auto& to = is_scalar(uniform.type) ? inputs.fixed : inputs.varying;
     to.insert(to.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
   }
@@ -71,7 +85,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
       inputs.varying.push_back(never_equal);
       continue;
     }
-    const bool of_samples = std::ranges::any_of(tables_of_samples, [&](const std::string& name) {
+    const bool of_samples = std::ranges::any_of(says.ray->tables_of_samples, [&](const std::string& name) {
       return gl.GetUniformLocation(pipeline.program, name.c_str()) == other.sampler_location;
     });
     if (of_samples) inputs.tables.insert(inputs.tables.end(), {inputs.fixed.size(), inputs.fixed.size() + 1});
@@ -79,6 +93,20 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
   }
   return inputs;
+}
+
+std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now) {
+  constexpr double largest = 64;
+  if (before.fixed.size() != now.fixed.size()) return {};
+  std::vector<double> factors;
+  for (std::size_t i = 0; i < now.fixed.size(); ++i) {
+    if (before.fixed[i] == now.fixed[i] || std::ranges::find(now.tables, i) != now.tables.end()) continue;
+    if (std::ranges::find(now.steps, i) == now.steps.end()) return {};
+    const double factor = double(now.fixed[i]) / double(before.fixed[i]);
+    if (!(factor > 1 / largest && factor < largest)) return {};
+    factors.push_back(factor);
+  }
+  return factors;
 }
 
 }  // namespace understudy::spu

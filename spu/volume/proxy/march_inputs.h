@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "spu/track/share_group.h"
+#include "spu/volume/program_check/program_check.h"
 #include "spu/volume/proxy/coordinate_space.h"
 
 namespace understudy::spu {
@@ -16,14 +15,19 @@ namespace understudy::spu {
 /// is among the inputs that vary.
 struct MarchInputs {
   std::vector<float> fixed;
-  std::vector<std::size_t>
-      tables;  ///< of `fixed`, names and contents of tables that samples address: measured anew
+  /// Of `fixed`, names and contents of tables that samples address: measured anew.
+  std::vector<std::size_t> tables;
+  /// Of `fixed`, uniforms that move samples, and decide about no fragment or colour.
+  std::vector<std::size_t> steps;
   std::vector<float> varying;
   bool operator==(const MarchInputs&) const = default;
 };
 
-/// `tables_of_samples` names samplers (program::RayFinding).
-MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group,
-                         std::span<const std::string> tables_of_samples);
+/// `says` has a finding about ray casters.
+MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says);
+
+/// Where nothing of `fixed` differs but what the step of rays and the tables depend on: the factors by which
+/// the step may have grown. Empty: something else differs, or nothing does.
+std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now);
 
 }  // namespace understudy::spu

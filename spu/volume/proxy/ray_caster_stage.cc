@@ -64,7 +64,9 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, bool turned) {
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs all;
   for (const float value : inputs.fixed) all.push_back({value});
-  for (const std::size_t table : inputs.tables) all[table].effect = Effect::predicted;
+  for (const auto* predicted : {&inputs.steps, &inputs.tables}) {
+    for (const std::size_t input : *predicted) all[input].effect = Effect::predicted;
+  }
   for (const float value : inputs.varying) {
     // Not a number: the depth of opaque geometry, which is drawn in every frame.
     all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
@@ -130,11 +132,16 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }
 
-ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, compositor::RenderService& service) {
+ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                                 compositor::RenderService& service) {
   // Another table is usual while somebody edits one; where samples lie is not tried again for that.
   std::optional<March>& march = draw.known.march.march;
   std::optional<March> again;
-  if (march) again = with_new_table(draw.measured(), *march, box);
+  // VTK takes longer steps while somebody turns its volume.
+  for (const double factor : march ? step_factors(draw.known.march.inputs, inputs) : std::vector<double>{}) {
+    if (!again) again = with_longer_steps(draw.measured(), *march, box, factor);
+  }
+  if (march && !again) again = with_new_table(draw.measured(), *march, box);
   march = again;
   if (!again) {
     const RefusalHistory& refusals = draw.known.refusals;
@@ -165,13 +172,13 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   // Says what values there are.
   uploader_.upload({pipeline, {}, seen.texture_version, box.region, {}}, known.sent, known.counters, service);
 
-  MarchInputs inputs = march_inputs(draw.measured(), group_, says.ray->tables_of_samples);
+  MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, known.march.camera != box.camera.texture_to_clip);
   known.march.camera = box.camera.texture_to_clip;
   follow_inside(draw, box, inputs);
   const std::string_view why = why_measured(draw, box, inputs);
   classifier_.count_probe(why);
-  if (!why.empty()) box = measure(draw, box, service);
+  if (!why.empty()) box = measure(draw, box, inputs, service);
   known.march.inputs = std::move(inputs);
   RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, box)), box.camera};
   asked.image.inputs = std::move(depends_on);

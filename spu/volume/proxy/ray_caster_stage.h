@@ -63,7 +63,8 @@ class RayCasterStage {
   ProxyBox find_box(Draw& draw);
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;
-  ProxyBox measure(Draw& draw, const ProxyBox& box, compositor::RenderService& service);
+  ProxyBox measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                   compositor::RenderService& service);
   volume::RenderRequest compose(const Draw& draw, const ProxyBox& box);
   ImageRequest ask(const Draw& draw, const March& march, const ProxyBox& box,
                    volume::RenderRequest composed) const;

@@ -9,6 +9,7 @@
 #include "box_ray_caster.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "spu/volume/proxy/table_contents.h"
 #include "volume/sampling.h"
 
 namespace understudy::spu::testing {
@@ -163,6 +164,30 @@ TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
     }
     EXPECT_EQ(scene.app->substituted(), 0U) << refusal.reason;
   }
+}
+
+TEST(TableContents, TellACorrectedTableFromAnEditedOne) {
+  constexpr double factor = 2.5;
+  TableContents before{3, {}};
+  TableContents corrected{3, {}};
+  for (int i = 0; i < 1024; ++i) {
+    const float opacity = float(i % 97) / 97;
+    before.rgba.insert(before.rgba.end(), {0.5F, 0.25F, 0.0F, opacity});
+    corrected.rgba.insert(corrected.rgba.end(), {0.5F, 0.25F, 0.0F, 1 - std::pow(1 - opacity, float(factor))});
+  }
+  const std::vector<TableContents> then{before};
+  EXPECT_TRUE(only_corrected(then, then, factor));
+  EXPECT_TRUE(only_corrected(then, std::vector{corrected}, factor));
+  EXPECT_FALSE(only_corrected(then, std::vector{corrected}, 2.0));
+  TableContents edited = corrected;
+  edited.rgba[4 * 500 + 3] += 0.01F;
+  EXPECT_FALSE(only_corrected(then, std::vector{edited}, factor)) << "one entry";
+  TableContents another = corrected;
+  another.sampler_location = 4;
+  EXPECT_FALSE(only_corrected(then, std::vector{another}, factor));
+  EXPECT_FALSE(only_corrected(then, {}, factor));
+  EXPECT_FALSE(only_corrected(std::vector{TableContents{3, {}}}, std::vector{TableContents{3, {}}}, factor))
+      << "of which nothing is known";
 }
 
 TEST(StepFit, TellsCountsFromOpacities) {

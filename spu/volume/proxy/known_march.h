@@ -4,16 +4,19 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/march_inputs.h"
+#include "spu/volume/proxy/table_contents.h"
 
 namespace understudy::spu {
 
 struct KnownMarch {
   std::optional<March> march;
-  MarchInputs inputs;        ///< what the march was measured under
-  volume::Matrix4 camera{};  ///< of its last image, from texture to clip coordinates
+  MarchInputs inputs;                 ///< what the march was measured under
+  std::vector<TableContents> tables;  ///< of samples, as the march was measured with
+  volume::Matrix4 camera{};           ///< of its last image, from texture to clip coordinates
 };
 
 /// The input of the fragment stage that addressed the volume; empty: none is known.

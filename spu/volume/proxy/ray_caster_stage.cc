@@ -90,6 +90,7 @@ struct RayCasterStage::Draw {
   std::vector<CoordinateSpace> spaces{};
   Cuts cuts{};
   bool eye_inside = false;
+  std::span<const std::string> tables_of_samples{};
 
   MarchContext measured() const {
     return {context, run, stages, known.sent.texture, known.sent.range, !cuts.clipping.empty(), &*seen.capture};
@@ -138,9 +139,14 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   std::optional<March>& march = draw.known.march.march;
   std::optional<March> again;
   // VTK takes longer steps while somebody turns its volume.
-  for (const double factor : march ? step_factors(draw.known.march.inputs, inputs) : std::vector<double>{}) {
-    if (!again) again = with_longer_steps(draw.measured(), *march, box, factor);
+  KnownMarch& known = draw.known.march;
+  std::vector<TableContents> tables = table_contents(context_, draw.run, draw.tables_of_samples);
+  for (const double factor : march ? step_factors(known.inputs, inputs) : std::vector<double>{}) {
+    // A table that was edited in the same frame is measured, value by value.
+    if (!again && only_corrected(known.tables, tables, factor))
+      again = with_longer_steps(draw.measured(), *march, box, factor);
   }
+  known.tables = std::move(tables);
   if (march && !again) again = with_new_table(draw.measured(), *march, box);
   march = again;
   if (!again) {
@@ -167,6 +173,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::ray_caster);
   if (auto refusal = refusal_of_ray_caster(says)) throw Refusal{std::move(*refusal)};
+  draw.tables_of_samples = says.ray->tables_of_samples;
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
   // Says what values there are.

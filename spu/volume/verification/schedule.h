@@ -24,7 +24,7 @@ namespace understudy::spu {
 constexpr int max_lost_comparisons = 5;
 /// In all: a volume whose images are wrong again and again is not understood.
 constexpr int max_lost_comparisons_ever = 12;
-/// In a row, after a lost comparison, before sentinels suffice again.
+/// In a row, after a lost comparison or where there is doubt, before sentinels suffice again.
 constexpr int right_after_loss = 8;
 /// The same input has changed this often and the image was right each time: sentinels suffice for it.
 constexpr int trusted_changes = 4;
@@ -63,6 +63,12 @@ class VerificationSchedule {
   void whole_was_right(bool anything_visible, double native_ms);
   void sentinels_took(int count, double ms);
   void lost();
+  /// What was measured now may be right in one view and wrong in another: so many images that show something
+  /// must be right before sentinels suffice.
+  void doubt() {
+    right_ = false;
+    to_prove_ = right_after_loss;
+  }
   /// The next image is compared whole, whatever was right before.
   void ask_for_whole() { right_ = false; }
 

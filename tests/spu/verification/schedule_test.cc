@@ -151,6 +151,14 @@ TEST(VerificationSchedule, SentinelsTakeOnePercentOfTheApplicationsTime) {
   EXPECT_GE(spent, 0.9 * 1000 * native_ms * sentinel_share);
 }
 
+TEST(VerificationSchedule, ComparesSeveralImagesWhereThereIsDoubt) {
+  VerificationSchedule schedule;
+  schedule.doubt();
+  int whole = 0;
+  for (int image = 0; image < 20; ++image) whole += compared(schedule, {{0}});
+  EXPECT_EQ(whole, right_after_loss);
+}
+
 TEST(VerificationSchedule, GivesUpAfterLossesInARowAndNotBefore) {
   VerificationSchedule schedule;
   for (int loss = 1; loss < max_lost_comparisons; ++loss) schedule.lost();

@@ -180,35 +180,5 @@ TEST_F(TamperedConnectionTest, AMessageWithoutEncryptionEndsTheSession) {
   EXPECT_THAT(end_of_session(), HasSubstr("changed on its way"));
 }
 
-TEST_F(TamperedConnectionTest, MessagesOfAnyLengthComeWhole) {
-  const std::jthread line([this] {
-    std::array<std::byte, 5000> bytes{};
-    for (;;) {
-      if (!wait_until_ready(near_line_.get(), POLLIN, Clock::now() + std::chrono::seconds(10))) return;
-      const ssize_t got = ::recv(near_line_.get(), bytes.data(), bytes.size(), 0);
-      if (got <= 0) return;
-      for (ssize_t sent = 0; sent < got;) {
-        const ssize_t now =
-            ::send(far_line_.get(), &bytes[std::size_t(sent)], std::size_t(got - sent), MSG_NOSIGNAL);
-        if (now > 0)
-          sent += now;
-        else if (!wait_until_ready(far_line_.get(), POLLOUT, Clock::now() + std::chrono::seconds(10)))
-          return;
-      }
-    }
-  });
-  const std::vector<std::byte> all = noise();
-  std::uint64_t sequence = 0;
-  for (const std::size_t size :
-       {0, 1, 511, 16'383, 16'384, 65'535, 65'536, 65'537, 262'144, 262'145, 1'000'000}) {
-    const std::array<Bytes, 3> parts = {Bytes(all).first(size / 3),
-                                        Bytes(all).subspan(size / 3, size - size / 3), Bytes()};
-    const std::jthread sender([&] { near_->send(NodeMessage::add_texels, ++sequence, parts); });
-    const Message message = far_->receive();
-    EXPECT_TRUE(std::ranges::equal(message.payload, Bytes(all).first(size))) << size;
-  }
-  ::shutdown(near_->fd(), SHUT_RDWR);
-}
-
 }  // namespace
 }  // namespace understudy::compositor::testing

@@ -9,7 +9,7 @@
 #include "interceptor/log_line.h"
 #include "interceptor/open_core.h"
 #include "interceptor/real_driver.h"
-#include "interceptor/remote/remote.h"
+#include "interceptor/remote.h"
 
 namespace understudy::interceptor {
 

@@ -7,8 +7,8 @@
 
 #include "interceptor/life_cycle.h"
 #include "interceptor/real_function.h"
-#include "interceptor/remote/remote.h"
-#include "interceptor/remote/x_font.h"
+#include "interceptor/remote.h"
+#include "interceptor/x_font.h"
 
 namespace understudy::interceptor {
 namespace {

@@ -15,7 +15,7 @@
 #include "interceptor/entry_thread.h"
 #include "interceptor/log_line.h"
 #include "interceptor/real_driver.h"
-#include "interceptor/remote/remote.h"
+#include "interceptor/remote.h"
 
 namespace understudy::interceptor {
 

@@ -17,7 +17,7 @@
 #include "interceptor/gl_names.h"
 #include "interceptor/log_line.h"
 #include "interceptor/osmesa.h"
-#include "interceptor/remote/remote.h"
+#include "interceptor/remote.h"
 
 namespace understudy::interceptor {
 namespace {

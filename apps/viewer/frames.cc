@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "apps/viewer/description.h"
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 #include "apps/viewer/screenshot.h"
 
 namespace viewer {

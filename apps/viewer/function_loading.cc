@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

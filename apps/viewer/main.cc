@@ -6,10 +6,10 @@
 #include <exception>
 #include <new>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/formats/volume_file.h"
+#include "apps/viewer/model/error.h"
 #include "apps/viewer/offscreen.h"
 #include "apps/viewer/options.h"
-#include "apps/viewer/volume_file.h"
 #include "apps/viewer/window.h"
 
 namespace {

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/frames.h"
 #include "apps/viewer/function_loading.h"
+#include "apps/viewer/model/error.h"
 #include "apps/viewer/scene.h"
 
 namespace viewer {

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string_view>
 
-#include "apps/viewer/transfer_function.h"
+#include "apps/viewer/model/transfer_function.h"
 
 namespace viewer {
 

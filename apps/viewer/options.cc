@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

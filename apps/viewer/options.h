@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "apps/viewer/camera.h"
+#include "apps/viewer/formats/volume_file.h"
+#include "apps/viewer/model/camera.h"
 #include "apps/viewer/modes/mode.h"
 #include "apps/viewer/operator.h"
 #include "apps/viewer/preset_file.h"
-#include "apps/viewer/volume_file.h"
 
 namespace viewer {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/viewer/transfer_function.h"
+#include "apps/viewer/model/transfer_function.h"
 
 namespace viewer {
 

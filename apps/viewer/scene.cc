@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

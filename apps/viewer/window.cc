@@ -14,9 +14,9 @@
 #include <optional>
 #include <utility>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/frames.h"
 #include "apps/viewer/function_loading.h"
+#include "apps/viewer/model/error.h"
 #include "apps/viewer/scene.h"
 
 namespace viewer {

@@ -10,7 +10,7 @@
 
 #include "interceptor/entry_thread.h"
 #include "interceptor/log_line.h"
-#include "interceptor/remote/remote.h"
+#include "interceptor/remote.h"
 
 namespace understudy::interceptor {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "interceptor/remote/remote.h"
+#include "interceptor/remote.h"
 
 #include <stdlib.h>
 #include <string.h>

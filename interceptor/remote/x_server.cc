@@ -9,9 +9,9 @@
 #include <unistd.h>
 #include <xcb/xcb.h>
 
+#include "interceptor/library_function.h"
 #include "interceptor/log_line.h"
 #include "interceptor/real_driver.h"
-#include "interceptor/remote/library_function.h"
 #include "interceptor/remote/x_shared_memory.h"
 
 namespace understudy::interceptor {

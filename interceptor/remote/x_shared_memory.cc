@@ -9,8 +9,8 @@
 #include <unistd.h>
 #include <xcb/shm.h>
 
+#include "interceptor/library_function.h"
 #include "interceptor/real_driver.h"
-#include "interceptor/remote/library_function.h"
 
 namespace understudy::interceptor {
 namespace {

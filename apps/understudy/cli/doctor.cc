@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/installation.h"
 
 namespace understudy::launcher {
 namespace {

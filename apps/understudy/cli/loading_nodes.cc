@@ -6,11 +6,11 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "apps/understudy/cli/backend_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/hosts/placement.h"
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/own_node_group.h"
+#include "apps/understudy/processes/environment.h"
 #include "compositor/transport/tcp/address.h"
 #include "spu/options.h"
 

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/understudy/cli/backend_option.h"
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/run.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/launch/backend_option.h"
+#include "apps/understudy/processes/installation.h"
 #include "spu/registry/assemble.h"
 
 namespace understudy::launcher {

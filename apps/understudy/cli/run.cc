@@ -8,10 +8,10 @@
 #include <cstring>
 #include <map>
 
-#include "apps/understudy/cli/backend_option.h"
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/trace_option.h"
+#include "apps/understudy/launch/backend_option.h"
 #include "logging/log.h"
 #include "spu/former_names.h"
 #include "spu/options.h"

@@ -13,16 +13,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "apps/understudy/cli/backend_option.h"
 #include "apps/understudy/cli/balance_option.h"
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/gl_server/gl_server.h"
 #include "apps/understudy/hosts/placement.h"
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/listener.h"
 #include "apps/understudy/launch/node_group.h"
 #include "apps/understudy/launch/run_folder.h"
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/environment.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/runtime_folder.h"
 #include "compositor/transport/tcp/secret.h"

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/installation.h"
 
 namespace understudy::launcher {
 

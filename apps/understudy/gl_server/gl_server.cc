@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "apps/understudy/gl_server/frame_changes.h"
-#include "apps/understudy/launch/client_processes.h"
-#include "apps/understudy/launch/signal_inbox.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
+#include "apps/understudy/processes/client_processes.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/connection.h"
 #include "logging/log.h"

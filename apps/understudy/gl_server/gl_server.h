@@ -11,9 +11,9 @@
 #include <functional>
 #include <memory>
 
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/environment.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/environment.h"
+#include "apps/understudy/processes/installation.h"
 
 namespace understudy::launcher {
 

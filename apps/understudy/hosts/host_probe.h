@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/hostfile.h"
-#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/processes/child_process.h"
 
 namespace understudy::launcher {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/placement.h"
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 
 namespace understudy::launcher {
 

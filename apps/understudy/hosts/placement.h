@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/hostfile.h"
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 
 namespace understudy::launcher {
 

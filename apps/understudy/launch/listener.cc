@@ -11,9 +11,9 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/understudy/launch/client_processes.h"
-#include "apps/understudy/launch/environment.h"
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/client_processes.h"
+#include "apps/understudy/processes/environment.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"

@@ -9,8 +9,8 @@
 #include <functional>
 #include <memory>
 
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/installation.h"
 #include "compositor/transport/tcp/address.h"
 
 namespace understudy::launcher {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/mpirun_command.h"
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 #include "compositor/service/backend_line.h"
 #include "logging/log.h"
 

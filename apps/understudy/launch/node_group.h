@@ -17,10 +17,10 @@
 
 #include "apps/understudy/hosts/host_probe.h"
 #include "apps/understudy/hosts/placement.h"
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/installation.h"
 #include "apps/understudy/launch/node_choices.h"
 #include "apps/understudy/launch/restarts.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/installation.h"
 #include "compositor/service/broker.h"
 
 namespace understudy::launcher {

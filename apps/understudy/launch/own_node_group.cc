@@ -17,7 +17,7 @@
 
 #include "apps/understudy/launch/node_group.h"
 #include "apps/understudy/launch/run_folder.h"
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/transport/file_descriptor.h"
 #include "compositor/transport/socket.h"
 

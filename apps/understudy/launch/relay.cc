@@ -13,11 +13,11 @@
 #include <stdexcept>
 #include <thread>
 
-#include "apps/understudy/launch/client_processes.h"
 #include "apps/understudy/launch/connection_figures.h"
-#include "apps/understudy/launch/environment.h"
 #include "apps/understudy/launch/run_folder.h"
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/client_processes.h"
+#include "apps/understudy/processes/environment.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"

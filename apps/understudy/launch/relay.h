@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/installation.h"
 #include "compositor/transport/tcp/handshake.h"
 
 namespace understudy::launcher {

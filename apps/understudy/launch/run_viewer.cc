@@ -17,18 +17,18 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "apps/understudy/cli/backend_option.h"
 #include "apps/understudy/gl_server/gl_server.h"
 #include "apps/understudy/hosts/placement.h"
-#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/connection_figures.h"
-#include "apps/understudy/launch/environment.h"
-#include "apps/understudy/launch/installation.h"
 #include "apps/understudy/launch/node_group.h"
 #include "apps/understudy/launch/relay.h"
 #include "apps/understudy/launch/run_figures.h"
 #include "apps/understudy/launch/run_folder.h"
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/environment.h"
+#include "apps/understudy/processes/installation.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/exchange/settings.h"
 #include "compositor/transport/tcp/address.h"
 #include "logging/log.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/launch/environment.h"
 #include "apps/understudy/launch/relay.h"
+#include "apps/understudy/processes/environment.h"
 
 namespace understudy::launcher {
 

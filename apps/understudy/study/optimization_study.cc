@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "apps/understudy/images/image.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/installation.h"
 #include "apps/understudy/study/viewer_command.h"
 #include "spu/report/optimization.h"
 

@@ -17,8 +17,8 @@
 
 #include "apps/understudy/file_scene/control_points_file.h"
 #include "apps/understudy/images/image.h"
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/installation.h"
 #include "apps/understudy/study/other_programs.h"
 #include "apps/understudy/study/results.h"
 #include "volume/file/volume_file.h"

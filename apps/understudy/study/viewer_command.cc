@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/understudy/launch/child_process.h"
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/child_process.h"
+#include "apps/understudy/processes/installation.h"
 #include "volume/texture_space.h"
 
 namespace understudy::launcher::study {

@@ -13,7 +13,7 @@
 #include <functional>
 #include <memory>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/formats/bytes.h"
 #include "apps/viewer/formats/widen.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "apps/viewer/volume.h"
+#include "apps/viewer/model/volume.h"
 
 namespace viewer {
 

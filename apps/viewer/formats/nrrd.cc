@@ -11,8 +11,8 @@
 #include <fstream>
 #include <memory>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/formats/widen.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -8,8 +8,8 @@
 #include <charconv>
 #include <filesystem>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/formats/bytes.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

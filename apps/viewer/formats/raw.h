@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/viewer/volume_file.h"
+#include "apps/viewer/formats/volume_file.h"
 
 namespace viewer {
 

@@ -2,8 +2,8 @@
 // What the two compatibility-profile modes share: matrix stacks and opaque geometry in immediate mode.
 #pragma once
 
-#include "apps/viewer/camera.h"
-#include "apps/viewer/opaque_geometry.h"
+#include "apps/viewer/model/camera.h"
+#include "apps/viewer/model/opaque_geometry.h"
 
 namespace viewer {
 

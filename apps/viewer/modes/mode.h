@@ -16,11 +16,11 @@
 #include <string>
 #include <string_view>
 
-#include "apps/viewer/camera.h"
-#include "apps/viewer/opaque_geometry.h"
-#include "apps/viewer/slices.h"
-#include "apps/viewer/texels.h"
-#include "apps/viewer/transfer_function.h"
+#include "apps/viewer/model/camera.h"
+#include "apps/viewer/model/opaque_geometry.h"
+#include "apps/viewer/model/slices.h"
+#include "apps/viewer/model/texels.h"
+#include "apps/viewer/model/transfer_function.h"
 
 namespace viewer {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

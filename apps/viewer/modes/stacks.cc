@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 #include "apps/viewer/modes/compatibility.h"
 #include "apps/viewer/modes/gl_objects.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "apps/viewer/model/texels.h"
+#include "apps/viewer/model/transfer_function.h"
 #include "apps/viewer/modes/gl_objects.h"
-#include "apps/viewer/texels.h"
-#include "apps/viewer/transfer_function.h"
 
 namespace viewer {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The environments of children: injection methods for the viewer, none for the nodes.
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/camera.h"
+#include "apps/viewer/model/camera.h"
 
 #include <gtest/gtest.h>
 

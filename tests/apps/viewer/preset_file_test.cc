@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 #include "tests/apps/viewer/temporary_folder.h"
 
 namespace viewer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/slices.h"
+#include "apps/viewer/model/slices.h"
 
 #include <gtest/gtest.h>
 

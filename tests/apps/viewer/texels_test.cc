@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/texels.h"
+#include "apps/viewer/model/texels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/transfer_function.h"
+#include "apps/viewer/model/transfer_function.h"
 
 #include <gtest/gtest.h>
 

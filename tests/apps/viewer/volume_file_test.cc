@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/volume_file.h"
+#include "apps/viewer/formats/volume_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <limits>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/formats/raw.h"
+#include "apps/viewer/model/error.h"
 #include "tests/apps/viewer/temporary_folder.h"
 
 namespace viewer {

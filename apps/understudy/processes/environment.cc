@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 
 #include <unistd.h>
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/viewer/vector_math.h"
+#include "apps/viewer/model/vector_math.h"
 
 namespace viewer {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "apps/viewer/vector_math.h"
-#include "apps/viewer/volume.h"
+#include "apps/viewer/model/vector_math.h"
+#include "apps/viewer/model/volume.h"
 
 namespace viewer {
 

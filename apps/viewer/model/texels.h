@@ -6,7 +6,7 @@
 // as empty.
 #pragma once
 
-#include "apps/viewer/volume.h"
+#include "apps/viewer/model/volume.h"
 
 namespace viewer {
 

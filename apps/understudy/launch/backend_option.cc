@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/cli/backend_option.h"
+#include "apps/understudy/launch/backend_option.h"
 
 #include <fmt/format.h>
 

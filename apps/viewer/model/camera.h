@@ -5,7 +5,7 @@
 // Azimuth 0 looks along +y; it turns the eye anticlockwise seen from above. Elevation lifts the eye.
 #pragma once
 
-#include "apps/viewer/vector_math.h"
+#include "apps/viewer/model/vector_math.h"
 
 namespace viewer {
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/file_descriptor.h"
 

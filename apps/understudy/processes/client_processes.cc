@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/launch/client_processes.h"
+#include "apps/understudy/processes/client_processes.h"
 
 #include <fmt/format.h>
 #include <poll.h>

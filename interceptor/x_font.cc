@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "interceptor/remote/x_font.h"
+#include "interceptor/x_font.h"
 
 #include <X11/Xutil.h>
 #include <dlfcn.h>
@@ -9,8 +9,8 @@
 
 #include <initializer_list>
 
+#include "interceptor/library_function.h"
 #include "interceptor/real_driver.h"
-#include "interceptor/remote/library_function.h"
 
 namespace understudy::interceptor {
 namespace {

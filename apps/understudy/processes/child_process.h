@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/understudy/launch/environment.h"
+#include "apps/understudy/processes/environment.h"
 
 namespace understudy::launcher {
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/viewer/volume.h"
+#include "apps/viewer/model/volume.h"
 
 namespace viewer {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/volume_file.h"
+#include "apps/viewer/formats/volume_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "apps/viewer/error.h"
 #include "apps/viewer/formats/nifti.h"
 #include "apps/viewer/formats/nrrd.h"
 #include "apps/viewer/formats/raw.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/volume.h"
+#include "apps/viewer/model/volume.h"
 
 #include <fmt/format.h>
 
-#include "apps/viewer/error.h"
+#include "apps/viewer/model/error.h"
 
 namespace viewer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/launch/signal_inbox.h"
+#include "apps/understudy/processes/signal_inbox.h"
 
 #include <unistd.h>
 

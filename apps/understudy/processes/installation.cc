@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/launch/installation.h"
+#include "apps/understudy/processes/installation.h"
 
 #include <unistd.h>
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apps/viewer/slices.h"
+#include "apps/viewer/model/slices.h"
 
 namespace viewer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/viewer/opaque_geometry.h"
+#include "apps/viewer/model/opaque_geometry.h"
 
 #include <algorithm>
 

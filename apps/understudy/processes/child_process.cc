@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/understudy/launch/child_process.h"
+#include "apps/understudy/processes/child_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "volume/brick/brick_store.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::volume {
 
 BlockCosts::BlockCosts(const TexelBox& lattice, int edge) : lattice_(lattice), edge_(edge) {
-  if (edge < BrickStore::block_cells || edge % BrickStore::block_cells != 0 || is_empty(lattice))
+  if (edge < block_cells || edge % block_cells != 0 || is_empty(lattice))
     throw std::invalid_argument(
         fmt::format("costs of cubes of {} cells: give a multiple of {}, and a lattice that is not empty", edge,
-                    BrickStore::block_cells));
+                    block_cells));
   std::size_t cubes = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     counts_[axis] = (lattice.high[axis] - lattice.low[axis] + edge - 1) / edge;

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/description.h"
 
 namespace understudy::volume {

@@ -15,7 +15,7 @@ namespace understudy::volume {
 /// Chosen by the client of a render service; each client has numbers of its own.
 using VolumeId = std::uint64_t;
 
-/// Each axis of `size` has 1 to max_axis_texels texels (volume/brick/cell_lattice.h).
+/// Each axis of `size` has 1 to max_axis_texels texels (volume/cell_lattice.h).
 struct VolumeDescription {
   VolumeId id = 0;
   std::uint64_t version = 0;  ///< grows whenever the texels change

@@ -2,7 +2,7 @@
 // The pixels that a box of texture space can touch.
 #pragma once
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/description.h"
 #include "volume/rect.h"
 #include "volume/texture_space.h"

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/description.h"
 #include "volume/partition.h"
 #include "volume/texture_space.h"

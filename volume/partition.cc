@@ -8,8 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "volume/brick/brick_store.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::volume {
 
@@ -29,7 +28,7 @@ int longest_axis(const TexelBox& cells) {
 /// Where to cut for `left` of `ranks`: on the block face nearest to the fair share, or between any two cells
 /// when no block face lies inside; a single cell is not cut.
 int even_cut(const TexelBox& lattice, const TexelBox& cells, int axis, int left, int ranks) {
-  constexpr int block = BrickStore::block_cells;
+  constexpr int block = block_cells;
   const int length = extent(cells, axis);
   if (length < 2) return cells.high[axis];
   const int offset = cells.low[axis] - lattice.low[axis];

@@ -10,7 +10,7 @@
 #include "compositor/balance/block_cache.h"
 #include "compositor/balance/moves.h"
 #include "volume/brick/brick_store.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"

@@ -20,7 +20,7 @@
 #include <optional>
 
 #include "volume/brick/brick_store.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
 #include "volume/image.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "volume/brick/brick_store.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::compositor {
 

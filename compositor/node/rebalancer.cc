@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compositor/balance/moves.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/raycast/expected_samples.h"
 
 namespace understudy::compositor {

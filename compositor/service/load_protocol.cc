@@ -7,7 +7,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/node_protocol.h"
 #include "compositor/transport/wire.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::compositor {
 

@@ -9,7 +9,7 @@
 #include "compositor/service/limits.h"
 #include "compositor/service/rect_fields.h"
 #include "compositor/transport/wire.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/raycast/pre_integration_lookup.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/request.h"

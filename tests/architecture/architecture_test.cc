@@ -4,11 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -115,6 +118,44 @@ TEST(Architecture, NoFolderOfSpuIncludesAFolderAboveIt) {
                        height_in_spu(header) > height_in_spu(file.path);
               }),
               IsEmpty());
+}
+
+std::string folder_of(const std::string& path) {
+  return path.substr(0, path.rfind('/'));
+}
+
+/// By folder: the folders whose headers it includes, without itself, each with the first place.
+std::map<std::string, std::map<std::string, std::string>> folders_included() {
+  std::set<std::string> paths;
+  for (const SourceFile& file : project_files()) paths.insert(file.path);
+  std::map<std::string, std::map<std::string, std::string>> included;
+  for (const SourceFile& file : project_files()) {
+    if (!is_code(file) || module_of(file.path) == "tests") continue;
+    for (const std::string& header : includes_of(file)) {
+      if (paths.contains(header) && folder_of(header) != folder_of(file.path))
+        included[folder_of(file.path)].try_emplace(folder_of(header), file.path + " includes " + header);
+    }
+  }
+  return included;
+}
+
+TEST(Architecture, NoFoldersIncludeEachOtherInACycle) {
+  // Folders that include none of those that are left are taken away until none is left, or only cycles.
+  auto left = folders_included();
+  bool fewer = true;
+  while (fewer) {
+    fewer =
+        std::erase_if(left, [&](const auto& folder) {
+          return std::ranges::none_of(folder.second, [&](const auto& to) { return left.contains(to.first); });
+        }) > 0;
+  }
+  std::string cycles;
+  for (const auto& [folder, targets] : left) {
+    for (const auto& [target, place] : targets) {
+      if (left.contains(target)) cycles += place + "\n";
+    }
+  }
+  EXPECT_EQ(cycles, "");
 }
 
 TEST(Architecture, EveryFolderOfTheVolumeUnitSaysWhatItIs) {

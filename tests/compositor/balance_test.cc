@@ -12,7 +12,7 @@
 #include "compositor/balance/moves.h"
 #include "compositor/balance/tree.h"
 #include "tests/volume/scenes.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
 #include "volume/raycast/expected_samples.h"

@@ -7,7 +7,7 @@
 #include "tests/volume/scenes.h"
 #include "volume/block_costs.h"
 #include "volume/brick/brick_store.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"

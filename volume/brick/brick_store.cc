@@ -16,7 +16,6 @@ namespace understudy::volume {
 
 namespace {
 
-constexpr int block_cells = BrickStore::block_cells;
 constexpr int block_row = BrickStore::block_row;
 constexpr int block_texels = BrickStore::block_texels;
 

@@ -15,7 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/description.h"
 
 namespace understudy::volume {
@@ -25,7 +25,7 @@ constexpr std::uint64_t max_blocks = std::uint64_t(1) << 28;
 
 class BrickStore {
  public:
-  static constexpr int block_cells = 8;
+  static constexpr int block_cells = volume::block_cells;
   static constexpr int block_row = block_cells + 1;          ///< texels from one y to the next
   static constexpr int block_slice = block_row * block_row;  ///< texels from one z to the next
   static constexpr int block_texels = block_row * block_slice;

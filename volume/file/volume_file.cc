@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/file/file_error.h"
 #include "volume/file/nifti.h"
 #include "volume/file/nrrd.h"

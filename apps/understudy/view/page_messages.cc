@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/understudy/view/image_encoding.h"
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/description.h"
 #include "volume/file/scalar_type.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 
 namespace understudy::spu {
 namespace {

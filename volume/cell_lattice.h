@@ -17,6 +17,9 @@ namespace understudy::volume {
 /// Longest texture axis that is believed.
 constexpr int max_axis_texels = 16384;
 
+/// Edge of a block, the unit of empty-space skipping, in cells.
+constexpr int block_cells = 8;
+
 struct CellLattice {
   std::array<int, 3> origin{};  ///< lowest cell
   std::array<int, 3> cells{};   ///< how many, at least one

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "volume/brick/cell_lattice.h"
+#include "volume/cell_lattice.h"
 
 #include <fmt/format.h>
 

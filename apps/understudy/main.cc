@@ -4,11 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/understudy/cli/compare.h"
 #include "apps/understudy/cli/doctor.h"
+#include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/key.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/print.h"
@@ -34,6 +36,7 @@ int main(int argc, char** argv) try {
   understudy::spu::rename_former_variables();
 
   CLI::App app{"Renders the volumes of unmodified OpenGL viewers by distributed ray casting.", "understudy"};
+  app.formatter(std::make_shared<launcher::HelpLayout>());
   app.require_subcommand(1);
   std::function<int()> chosen;
   launcher::add_run(app, line.viewer, chosen);
@@ -52,6 +55,7 @@ int main(int argc, char** argv) try {
   launcher::add_compare(app, chosen);
   launcher::add_doctor(app, chosen);
   launcher::add_units(app, chosen);
+  launcher::group_options(app);
   try {
     // The library takes them last to first, and without the program's name.
     app.parse(std::vector<std::string>(line.own.rbegin(), line.own.rend() - 1));

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <memory>
 
+#include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/run.h"
 #include "apps/understudy/view/view.h"
 #include "logging/log.h"
@@ -13,9 +15,11 @@ namespace launcher = understudy::launcher;
 
 int main(int argc, char** argv) try {
   CLI::App app{"Shows what render nodes draw.", "understudy"};
+  app.formatter(std::make_shared<launcher::HelpLayout>());
   app.require_subcommand(1);
   std::function<int()> chosen;
   launcher::add_view(app, chosen);
+  launcher::group_options(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -17,6 +17,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -81,6 +82,23 @@ class UnderstudyRun : public ::testing::Test {
 
   fs::path folder_ = fs::temp_directory_path() / ("understudy-run-test-" + std::to_string(getpid()));
 };
+
+/// Characters of UTF-8.
+std::ptrdiff_t width(const std::string& line) {
+  return std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+}
+
+TEST_F(UnderstudyRun, HelpFitsIntoAHundredColumns) {
+  for (const char* const subcommand : {"", "run", "serve", "replay", "print", "trim", "render", "view", "study",
+                                       "compare", "key", "doctor", "units"}) {
+    const Result help = understudy(std::string(subcommand) + " --help");
+    EXPECT_EQ(help.status, 0) << subcommand;
+    std::istringstream lines(help.output);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_LE(width(line), 100) << subcommand << ": " << line;
+  }
+  EXPECT_THAT(understudy("render --help").output, HasSubstr("\nNodes:\n"));
+}
 
 TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
   const auto file = [&](const std::string& text) {

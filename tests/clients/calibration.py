@@ -96,7 +96,7 @@ def main():
 def draw(curve, path):
     import matplotlib
     matplotlib.use("svg")
-    matplotlib.rcParams["svg.hashsalt"] = "understudy"
+    matplotlib.rcParams.update({"svg.hashsalt": "understudy", "svg.fonttype": "none"})
     from matplotlib import pyplot
     figure, axes = pyplot.subplots(figsize=(5, 3.2))
     factors = [factor for factor, _, _ in curve]

@@ -238,7 +238,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     nearest = std::abs(through - 0.5F);
     changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
   }
-  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box)) return std::nullopt;
+  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, 16)) return std::nullopt;
   return changed;
 }
 

@@ -66,7 +66,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
 
 /// Whether a few rays still are as `march` says.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
-                   int values_looked_at = 16);
+                   int values_looked_at = 8);
 
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""calibration.py [CURVE.svg]: how well the bound on tiles (docs/verification.md) tells right images from wrong ones.
+"""calibration.py [CURVE.png]: how well the bound on tiles (docs/verification.md) tells right images from wrong ones.
 
 Right images are those that `./run modes` kept in out/modes of rows that were substituted, against the bare viewer's. Wrong
 ones are the same images with a fault: in one tile of 16 × 16 pixels, in a tenth of the window, or everywhere. The bound is
 multiplied by factors; for each the share of right images that would be refused (false alarms) and of wrong ones that
-would be found is printed, and drawn into CURVE.svg.
+would be found is printed, and drawn into CURVE.png.
 """
 
 import json
@@ -95,8 +95,7 @@ def main():
 
 def draw(curve, path):
     import matplotlib
-    matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "understudy", "svg.fonttype": "none"})
+    matplotlib.use("agg")
     from matplotlib import pyplot
     figure, axes = pyplot.subplots(figsize=(5, 3.2))
     factors = [factor for factor, _, _ in curve]
@@ -108,7 +107,7 @@ def draw(curve, path):
     axes.set_ylim(-3, 103)
     axes.legend(loc="center right")
     figure.tight_layout()
-    figure.savefig(path, metadata={"Date": None})
+    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":

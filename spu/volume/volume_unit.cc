@@ -86,7 +86,8 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
     return false;
   }
   try {
-    if (auto refusal = volumes_.standing_refusal(run->pipeline())) throw Refusal{std::move(*refusal)};
+    if (auto refusal = volumes_.standing_refusal(texture, run->pipeline().program))
+      throw Refusal{std::move(*refusal)};
     substitute(run);
     return true;
   } catch (const Refusal& refusal) {

@@ -41,8 +41,8 @@ class VolumeUnit final : public DrawObserver {
  private:
   struct Recognised;
 
-  std::optional<Refusal> standing_refusal(const Pipeline& pipeline) override {
-    return volumes_.standing_refusal(pipeline);
+  std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) override {
+    return volumes_.standing_refusal(texture, program);
   }
   void refuse_in_this_frame(GLuint texture, const Refusal& refusal) override;
   bool substitutes(std::unique_ptr<Run>& run) override;

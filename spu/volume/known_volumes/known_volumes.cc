@@ -17,9 +17,9 @@ namespace {
 constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 
 /// Stands for the program and the volume's contents.
-std::uint64_t state_of(const Pipeline& pipeline, const ShareGroup& group) {
+std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) {
   constexpr std::uint64_t prime = 0x100000001b3;
-  return (group.texture_version(pipeline.volume.texture) * prime) ^ pipeline.program;
+  return (group.texture_version(texture) * prime) ^ program;
 }
 
 }  // namespace
@@ -46,15 +46,14 @@ KnownVolume* KnownVolumes::find(GLuint texture) {
   return found == volumes_.end() ? nullptr : &found->second;
 }
 
-std::optional<Refusal> KnownVolumes::standing_refusal(const Pipeline& pipeline) {
-  const GLuint texture = pipeline.volume.texture;
+std::optional<Refusal> KnownVolumes::standing_refusal(GLuint texture, GLuint program) {
   KnownVolume& volume = of(texture);
   const RefusalHistory& history = volume.refusals;
   if (!history.handed_back.empty()) return Refusal{history.handed_back};
   if (history.pauses(session_->ledger().frames()) && !history.last_reason.empty())
     return Refusal{history.last_reason};
   const auto now = SpeedGuard::Clock::now();
-  volume.speed.about_to_draw(state_of(pipeline, group_), now);
+  volume.speed.about_to_draw(state_of(texture, program, group_), now);
   if (!volume.speed.pauses(now)) return std::nullopt;
   if (volume.speed.slower().empty()) return Refusal{history.last_reason};
   return Refusal{volume.speed.slower(), {}, "--speed-guard off substitutes it all the same"};

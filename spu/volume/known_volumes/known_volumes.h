@@ -28,8 +28,9 @@ class KnownVolumes {
   KnownVolume* find(GLuint texture);
   bool empty() const { return volumes_.empty(); }
 
-  /// Why the application draws the volume before anything is known of the draw; null: there is no reason.
-  std::optional<Refusal> standing_refusal(const Pipeline& pipeline);
+  /// Why the application draws the volume with `program` before anything is known of the draw; null: there is
+  /// no reason.
+  std::optional<Refusal> standing_refusal(GLuint texture, GLuint program);
   /// The application draws the volume of `texture`: counted, and said on stderr where the reason is a new one
   /// and `say` is set.
   void refuse(GLuint texture, const Refusal& refusal, FrameAccount& account, bool say = true);

@@ -22,7 +22,7 @@ bool DrawObserver::opens_run() {
 std::optional<Refusal> DrawObserver::refusal_of(const Pipeline& pipeline) {
   const GLuint texture = pipeline.volume.texture;
   if (conditional_render) return Refusal{"the slices are rendered conditionally"};
-  if (auto refusal = standing_refusal(pipeline)) return refusal;
+  if (auto refusal = standing_refusal(texture, pipeline.program)) return refusal;
   if (chain_.group().is_rendered_to(texture))
     return Refusal{"the volume texture is rendered into, or another texture shares its texels"};
   return std::nullopt;

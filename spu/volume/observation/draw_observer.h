@@ -59,8 +59,8 @@ class DrawObserver : public Unit {
   Chain& chain() { return chain_; }
 
  protected:
-  /// Why the volume of `texture` is not substituted whatever the run; null: there is no reason.
-  virtual std::optional<Refusal> standing_refusal(const Pipeline& pipeline) = 0;
+  /// Why the volume of `texture` is not substituted with `program` whatever the run; null: there is no reason.
+  virtual std::optional<Refusal> standing_refusal(GLuint texture, GLuint program) = 0;
   /// No run begins for that reason: of slices drawn one by one, too, that is said once a frame.
   virtual void refuse_in_this_frame(GLuint texture, const Refusal& refusal) = 0;
   /// The image of `run` is in the framebuffer; else its calls are to be made.

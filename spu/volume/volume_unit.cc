@@ -163,8 +163,9 @@ void VolumeUnit::show(const Run& run, const Recognised& recognised, KnownVolume&
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {
-    take_comparison(stages.verifier.verify({run, request, image.eye_inside, volume.frames}, shown,
-                                           volume.verified, *volume.counters),
+    take_comparison(stages.verifier.verify({run, request, image.uncut_window.value_or(request.window),
+                                            image.discards_by_place, image.eye_inside, volume.frames},
+                                           shown, volume.verified, *volume.counters),
                     volume, session_->ledger().frames());
   };
   const volume::FrameCounts counts =

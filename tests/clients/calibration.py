@@ -51,11 +51,11 @@ def faults(image, choice):
             copy[where] = numpy.clip(change(copy)[where], 0, 255)
             return copy
 
-        yield f"missing, {name}", wrong(lambda picture: numpy.broadcast_to(background, picture.shape))
-        yield f"a tenth darker, {name}", wrong(lambda picture: background + (picture - background) * 9 // 10)
-        yield f"a third fainter, {name}", wrong(lambda picture: background + (picture - background) * 2 // 3)
-        yield f"moved by 4 pixels, {name}", wrong(lambda picture: numpy.roll(picture, 4, axis=1))
-        yield f"red and blue exchanged, {name}", wrong(lambda picture: picture[:, :, ::-1])
+        yield f"missing, {name}", wrong(lambda pixels: numpy.broadcast_to(background, pixels.shape))
+        yield f"a tenth darker, {name}", wrong(lambda pixels: background + (pixels - background) * 9 // 10)
+        yield f"a third fainter, {name}", wrong(lambda pixels: background + (pixels - background) * 2 // 3)
+        yield f"moved by 4 pixels, {name}", wrong(lambda pixels: numpy.roll(pixels, 4, axis=1))
+        yield f"red and blue exchanged, {name}", wrong(lambda pixels: pixels[:, :, ::-1])
 
 
 def main():

@@ -22,6 +22,18 @@ std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) 
   return (group.texture_version(texture) * prime) ^ program;
 }
 
+/// What the next image is tried with, after one was wrong; empty: nothing is left to try.
+std::string_view another_explanation(const Comparison& lost, KnownVolume& volume) {
+  KnownMarch& march = volume.march;
+  if (lost.kept && !(march.kept && march.kept->viewport == lost.kept->viewport)) {
+    march.kept = lost.kept;
+    march.views_to_prove = right_after_loss;
+    return "within the part of the window where its program keeps fragments";
+  }
+  if (volume.colours.rounding.try_after_loss(volume.sent.texture)) return "with samples rounded to 8 bits";
+  return {};
+}
+
 }  // namespace
 
 KnownVolumes::KnownVolumes(ShareGroup& group, std::shared_ptr<RenderSession> session)
@@ -130,17 +142,18 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
     return;
   }
   Refusal refusal = refusal_of(comparison->difference);
-  if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
+  if (const std::string_view how = another_explanation(*comparison, volume); !how.empty()) {
     volume.refusals.pause(frame, 1);
     volume.speed.allow_another();
     schedule.ask_for_whole();
-    refusal.reason += "; tried again with samples rounded to 8 bits";
+    refusal.reason += fmt::format("; tried again {}", how);
     throw Refusal{std::move(refusal)};
   }
   schedule.lost();
   volume.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);
   volume.colours.probed.reset();
   volume.march.march.reset();
+  volume.march.kept.reset();
   const auto in_a_row = std::min(std::size_t(schedule.lost_in_a_row()), pauses.size());
   volume.refusals.pause(frame, pauses[in_a_row - 1]);
   if (schedule.gives_up()) volume.refusals.handed_back = refusal.reason;

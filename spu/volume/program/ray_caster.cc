@@ -110,6 +110,8 @@ RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> 
     const bool of_volume = std::ranges::find(volumes, source.name) != volumes.end();
     if (source.kind == SourceKind::texel && !of_volume) tables.insert(source.name);
     finding.writes_depth |= influence.target == Target::depth;
+    finding.discards_by_place |= influence.target == Target::discard &&
+                                 source.kind == SourceKind::fragment_coordinate && source.component < 2;
     if (counts(source.kind, influence)) list_for(influence, source.kind, finding).push_back(influence);
   }
   finding.uniforms = uniform_uses(fragment, all);

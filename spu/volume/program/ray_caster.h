@@ -26,7 +26,8 @@ struct RayFinding {
   std::vector<UniformUse> uniforms;
   std::vector<std::string> tables;  ///< samplers, other than the volume's, whose texels reach anything
   std::vector<std::string>
-      tables_of_samples;  ///< of these, the ones that are addressed by texels of the volume alone
+      tables_of_samples;           ///< of these, the ones that are addressed by texels of the volume alone
+  bool discards_by_place = false;  ///< fragments, by gl_FragCoord.x or .y
   bool writes_depth = false;
   bool side_effects = false;
 

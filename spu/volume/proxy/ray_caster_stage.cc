@@ -180,7 +180,8 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   uploader_.upload({pipeline, {}, seen.texture_version, box.region, {}}, known.sent, known.counters, service);
 
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
-  VerificationSchedule::Inputs depends_on = inputs_of(inputs, known.march.camera != box.camera.texture_to_clip);
+  const bool turned = known.march.camera != box.camera.texture_to_clip;
+  VerificationSchedule::Inputs depends_on = inputs_of(inputs, turned);
   known.march.camera = box.camera.texture_to_clip;
   follow_inside(draw, box, inputs);
   const std::string_view why = why_measured(draw, box, inputs);
@@ -191,7 +192,20 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   asked.image.inputs = std::move(depends_on);
   // How a ray ends at a plane shows in few pixels, and in some views in none.
   asked.image.doubtful = known.frames == 0 && known.march.march->clipped;
+  asked.image.discards_by_place = says.ray->discards_by_place;
+  keep_window(draw, turned, asked.image);
   return asked;
+}
+
+void RayCasterStage::keep_window(const Draw& draw, bool turned, ImageRequest& image) const {
+  KnownMarch& known = draw.known.march;
+  if (!known.kept || known.kept->viewport != image.request.viewport) return;
+  image.uncut_window = image.request.window;
+  image.request.window = intersection(image.request.window, known.kept->kept);
+  // What a clipping plane took in one view looks the same.
+  if (known.views_to_prove == 0 || !turned) return;
+  --known.views_to_prove;
+  image.doubtful = true;
 }
 
 volume::RenderRequest RayCasterStage::compose(const Draw& draw, const ProxyBox& box) {

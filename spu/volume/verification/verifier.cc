@@ -54,12 +54,13 @@ std::optional<Comparison> Verifier::verify(const ImageToVerify& what, const volu
 std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, const volume::ImageView& image,
                                                   VerifiedVolume& volume, VolumeCounters& counters) {
   const Pipeline& pipeline = what.run.pipeline();
-  const volume::Rect window = intersection(what.request.window, what.request.viewport);
+  const volume::Rect window = intersection(what.window, what.request.viewport);
   if (window.empty()) return std::nullopt;
   NativeDrawing drawing(context_, pipeline, what.request);
   if (!drawing.complete()) return std::nullopt;
   const double native_ms = drawing.add_timed(what.run);
-  const ImageDifference difference = difference_between(pipeline, drawing.image(window), image);
+  const NativeImage native = drawing.image(window);
+  const ImageDifference difference = difference_between(pipeline, native, image);
   if (what.eye_inside && difference.psnr() < inside_psnr) {
     volume.left_inside = fmt::format(
         "seen from inside, its image differs from the application's own by {:.1f} dB", difference.psnr());
@@ -67,14 +68,19 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
                   "move the eye out of the volume"};
   }
   volume.inside = what.eye_inside;
-  return judge(difference, native_ms, counters);
+  Comparison comparison = judge(difference, native_ms, counters);
+  if (!comparison.right && what.discards_by_place) {
+    if (const auto kept = kept_rect(pipeline, native, image))
+      comparison.kept = KeptWindow{what.request.viewport, *kept};
+  }
+  return comparison;
 }
 
 Comparison Verifier::judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters) {
   count(difference, counters);
   account_.note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
   const double asked_psnr = session_.options().verify_psnr;
-  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms};
+  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms, {}};
 }
 
 void Verifier::count(const ImageDifference& difference, VolumeCounters& counters) {
@@ -112,7 +118,7 @@ volume::Rect Verifier::random_tile(const volume::Rect& window) {
 std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what, const volume::ImageView& image,
                                                       VerifiedVolume& volume, VolumeCounters& counters) {
   const int tiles = volume.schedule.sentinels();
-  const volume::Rect window = intersection(what.request.window, what.request.viewport);
+  const volume::Rect window = intersection(what.window, what.request.viewport);
   if (tiles == 0 || window.empty()) return std::nullopt;
   NativeDrawing& drawing = sentinel_drawing(what);
   if (!drawing.complete()) return std::nullopt;
@@ -126,7 +132,7 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
       counters.verify_worst_tile = difference.worst.severity();
       counters.verify_worst_frame = account_.frames() + 1;
     }
-    if (!difference.worst.within_bound()) return Comparison{difference, false, std::nullopt};
+    if (!difference.worst.within_bound()) return Comparison{difference, false, {}, {}};
   }
   volume.schedule.sentinels_took(tiles, milliseconds_since(start));
   return std::nullopt;

@@ -125,6 +125,7 @@ TEST(RayCasters, WithGlobalVariablesAndFunctionsAreFollowed) {
   EXPECT_TRUE(finding.of_one_texel_each()) << ::testing::PrintToString(finding.reasons);
   EXPECT_THAT(words(facts, finding.discards),
               Contains("gl_FragCoord.xz decides which fragments are discarded"));
+  EXPECT_TRUE(finding.discards_by_place);
 }
 
 TEST(RayCasters, TellTablesOfSamplesFromMasks) {

@@ -25,10 +25,16 @@ std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) 
 /// What the next image is tried with, after one was wrong; empty: nothing is left to try.
 std::string_view another_explanation(const Comparison& lost, KnownVolume& volume) {
   KnownMarch& march = volume.march;
-  if (lost.kept && !(march.kept && march.kept->viewport == lost.kept->viewport)) {
-    march.kept = lost.kept;
-    march.views_to_prove = right_after_loss;
-    return "within the part of the window where its program keeps fragments";
+  if (lost.kept) {
+    // An edge that the volume had not crossed before: vispy takes a pixel from all four.
+    KeptWindow kept = *lost.kept;
+    if (march.kept && march.kept->viewport == kept.viewport)
+      kept.kept = intersection(kept.kept, march.kept->kept);
+    if (march.kept != kept) {
+      march.kept = kept;
+      march.views_to_prove = right_after_loss;
+      return "within the part of the window where its program keeps fragments";
+    }
   }
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) return "with samples rounded to 8 bits";
   return {};

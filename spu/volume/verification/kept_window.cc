@@ -2,8 +2,11 @@
 #include "spu/volume/verification/kept_window.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/blending_operator.h"
@@ -64,6 +67,47 @@ bool is_sharp(const volume::Rect& edge, const VisiblePixels& native, const Visib
   return 2 * both > shown;
 }
 
+/// Where a rectangle may end on each side; empty: not before the window does.
+struct Edges {
+  std::optional<int> left, bottom, right, top;
+};
+
+/// The edges of what `native` shows that `image` crosses.
+Edges sharp_edges(const VisiblePixels& image, const VisiblePixels& native) {
+  const volume::Rect shown = image.bounds(), drawn = native.bounds();
+  if (shown.empty() || drawn.empty()) return {};
+  const int right = drawn.x + drawn.width, top = drawn.y + drawn.height;
+  const auto sharp = [&](const volume::Rect& edge) { return is_sharp(edge, native, image); };
+  Edges edges;
+  if (shown.x < drawn.x && sharp({drawn.x, drawn.y, 1, drawn.height})) edges.left = drawn.x;
+  if (shown.y < drawn.y && sharp({drawn.x, drawn.y, drawn.width, 1})) edges.bottom = drawn.y;
+  if (shown.x + shown.width > right && sharp({right - 1, drawn.y, 1, drawn.height})) edges.right = right;
+  if (shown.y + shown.height > top && sharp({drawn.x, top - 1, drawn.width, 1})) edges.top = top;
+  return edges;
+}
+
+/// `window` cut at some of the edges, those first that are cut at few.
+std::vector<volume::Rect> cut_rects(const volume::Rect& window, const Edges& edges) {
+  std::array<std::vector<volume::Rect>, 5> by_count;
+  for (unsigned choice = 1; choice < 16; ++choice) {
+    int left = window.x, bottom = window.y, right = window.x + window.width, top = window.y + window.height;
+    bool possible = true;
+    const auto end_at = [&](unsigned side, const std::optional<int>& edge, int& end) {
+      if ((choice & side) == 0) return;
+      possible = possible && edge;
+      end = edge.value_or(end);
+    };
+    end_at(1, edges.left, left);
+    end_at(2, edges.bottom, bottom);
+    end_at(4, edges.right, right);
+    end_at(8, edges.top, top);
+    if (possible) by_count[std::popcount(choice)].push_back({left, bottom, right - left, top - bottom});
+  }
+  std::vector<volume::Rect> rects;
+  for (const auto& some : by_count) rects.insert(rects.end(), some.begin(), some.end());
+  return rects;
+}
+
 volume::Image cut(const volume::ImageView& image, const volume::Rect& rect, float background) {
   volume::Image kept = copy_of(image);
   for (int y = 0; y < image.rect.height; ++y) {
@@ -84,25 +128,12 @@ std::optional<volume::Rect> kept_rect(const Pipeline& pipeline, const NativeImag
   const float background = pipeline.blending.op == volume::Operator::min ? 1.0F : 0.0F;
   const VisiblePixels ours(image.rect, image.rgba, background);
   const VisiblePixels theirs(native.rect, native.rgba, background);
-  const volume::Rect shown = intersection(ours.bounds(), native.rect), drawn = theirs.bounds();
-  if (shown.empty() || drawn.empty()) return std::nullopt;
-  // Edges that do not cut are those of the compared window.
-  int left = native.rect.x, bottom = native.rect.y;
-  int right = native.rect.x + native.rect.width, top = native.rect.y + native.rect.height;
-  const auto cuts = [&](bool beyond, const volume::Rect& edge) {
-    return beyond && is_sharp(edge, theirs, ours);
-  };
-  if (cuts(shown.x < drawn.x, {drawn.x, drawn.y, 1, drawn.height})) left = drawn.x;
-  if (cuts(shown.y < drawn.y, {drawn.x, drawn.y, drawn.width, 1})) bottom = drawn.y;
-  const int drawn_right = drawn.x + drawn.width, drawn_top = drawn.y + drawn.height;
-  if (cuts(shown.x + shown.width > drawn_right, {drawn_right - 1, drawn.y, 1, drawn.height}))
-    right = drawn_right;
-  if (cuts(shown.y + shown.height > drawn_top, {drawn.x, drawn_top - 1, drawn.width, 1})) top = drawn_top;
-  const volume::Rect kept{left, bottom, right - left, top - bottom};
-  if (kept == native.rect) return std::nullopt;
-  if (!difference_between(pipeline, native, cut(image, kept, background).view()).worst.within_bound())
-    return std::nullopt;
-  return kept;
+  // Few edges first: at a silhouette the images may differ by a pixel, which cuts nothing.
+  for (const volume::Rect& kept : cut_rects(native.rect, sharp_edges(ours, theirs))) {
+    const volume::Image within = cut(image, kept, background);
+    if (difference_between(pipeline, native, within.view()).worst.within_bound()) return kept;
+  }
+  return std::nullopt;
 }
 
 }  // namespace understudy::spu

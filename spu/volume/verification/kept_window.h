@@ -15,6 +15,8 @@ namespace understudy::spu {
 struct KeptWindow {
   volume::Rect viewport;  ///< that it was found for; it says nothing about another
   volume::Rect kept;      ///< in pixels of the window
+
+  bool operator==(const KeptWindow&) const = default;
 };
 
 /// The rectangle outside of which `native` shows nothing, where this alone is what `image` does differently:

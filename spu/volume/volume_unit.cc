@@ -159,7 +159,7 @@ void VolumeUnit::show(const Run& run, const Recognised& recognised, KnownVolume&
   ImageRequest& image = recognised.image;
   volume::RenderRequest& request = image.request;
   if (volume.colours.rounding.rounds()) round_samples(request);
-  if (image.doubtful) volume.verified.schedule.doubt();
+  if (image.unproven) volume.verified.schedule.ask_for_several();
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {

@@ -3,7 +3,7 @@
 """calibration.py [CURVE.png]: how well the bound on tiles (docs/verification.md) tells right images from wrong ones.
 
 Right images are those that `./run modes` kept in out/modes of rows that were substituted, against the bare viewer's. Wrong
-ones are the same images with a fault: in one tile of 16 × 16 pixels, in a tenth of the window, or everywhere. The bound is
+ones are the same images with a fault: in one tile (16 × 16 pixels), in a tenth of the window, or everywhere. The bound is
 multiplied by factors; for each the share of right images that would be refused (false alarms) and of wrong ones that
 would be found is printed, and drawn into CURVE.png.
 """

@@ -191,7 +191,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, box)), box.camera};
   asked.image.inputs = std::move(depends_on);
   // How a ray ends at a plane shows in few pixels, and in some views in none.
-  asked.image.doubtful = known.frames == 0 && known.march.march->clipped;
+  asked.image.unproven = known.frames == 0 && known.march.march->clipped;
   asked.image.discards_by_place = says.ray->discards_by_place;
   keep_window(draw, turned, asked.image);
   return asked;
@@ -205,7 +205,7 @@ void RayCasterStage::keep_window(const Draw& draw, bool turned, ImageRequest& im
   // What a clipping plane took in one view looks the same.
   if (known.views_to_prove == 0 || !turned) return;
   --known.views_to_prove;
-  image.doubtful = true;
+  image.unproven = true;
 }
 
 volume::RenderRequest RayCasterStage::compose(const Draw& draw, const ProxyBox& box) {

@@ -17,7 +17,7 @@ struct ImageRequest {
   // Of a ray caster.
   bool ray_caster = false;
   bool eye_inside = false;         ///< its box has been cut before the eye
-  bool doubtful = false;           ///< measured for this image, and perhaps right in this view alone
+  bool unproven = false;           ///< measured for this image, and perhaps right in this view alone
   bool discards_by_place = false;  ///< its program may discard fragments by gl_FragCoord
   /// What it draws into, where `request.window` is cut to where its program keeps fragments.
   std::optional<volume::Rect> uncut_window;

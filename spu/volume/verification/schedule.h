@@ -24,7 +24,7 @@ namespace understudy::spu {
 constexpr int max_lost_comparisons = 5;
 /// In all: a volume whose images are wrong again and again is not understood.
 constexpr int max_lost_comparisons_ever = 12;
-/// In a row, after a lost comparison or where there is doubt, before sentinels suffice again.
+/// In a row, after a lost comparison or where what was measured is unproven, before sentinels suffice again.
 constexpr int right_after_loss = 8;
 /// The same input has changed this often and the image was right each time: sentinels suffice for it.
 constexpr int trusted_changes = 4;
@@ -65,7 +65,7 @@ class VerificationSchedule {
   void lost();
   /// What was measured now may be right in one view and wrong in another: so many images that show something
   /// must be right before sentinels suffice.
-  void doubt() {
+  void ask_for_several() {
     right_ = false;
     to_prove_ = right_after_loss;
   }

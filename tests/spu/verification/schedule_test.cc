@@ -151,9 +151,9 @@ TEST(VerificationSchedule, SentinelsTakeOnePercentOfTheApplicationsTime) {
   EXPECT_GE(spent, 0.9 * 1000 * native_ms * sentinel_share);
 }
 
-TEST(VerificationSchedule, ComparesSeveralImagesWhereThereIsDoubt) {
+TEST(VerificationSchedule, ComparesSeveralImagesWhereTheyAreAskedFor) {
   VerificationSchedule schedule;
-  schedule.doubt();
+  schedule.ask_for_several();
   int whole = 0;
   for (int image = 0; image < 20; ++image) whole += compared(schedule, {{0}});
   EXPECT_EQ(whole, right_after_loss);

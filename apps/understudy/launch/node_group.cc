@@ -68,15 +68,15 @@ std::string last_words(const std::filesystem::path& log, std::uintmax_t from) {
   return verdict;
 }
 
-Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan,
-                       const Placement& placement) {
+Command mpirun_command(const Installation& installation, const NodeGroupPlan& plan, const Placement& placement,
+                       const std::filesystem::path& folder) {
   Command command;
-  command.arguments = mpirun_words(placement, plan.folder);
+  command.arguments = mpirun_words(placement, folder);
   for (const std::string& word : {installation.node().string(), std::string("--control"), plan.socket.string()})
     command.arguments.push_back(word);
   for (const std::string& word : plan.choices.words()) command.arguments.push_back(word);
   command.environment =
-      mpirun_environment(node_environment(current_environment(), installation), placement, plan.folder);
+      mpirun_environment(node_environment(current_environment(), installation), placement, folder);
   command.output = log_of(plan);
   command.own_group = true;
   return command;
@@ -152,14 +152,17 @@ void NodeGroup::start() {
 }
 
 void NodeGroup::start_on(const Placement& placement) {
-  if (!placement.hosts.empty()) std::ofstream(own_hostfile(plan_.folder)) << hostfile_text(placement.hosts);
-  // What a group that was killed has left there goes, and not only with the run.
-  std::filesystem::remove_all(shared_memory_folder(plan_.folder));
-  std::filesystem::create_directory(shared_memory_folder(plan_.folder));
+  // What a group that was killed has left goes, and not only with the run. The next group has a folder of its
+  // own: ranks of the last one that still end remove Open MPI's session folder while the new mpirun makes it.
+  std::error_code not_removed;
+  std::filesystem::remove_all(group_folder_, not_removed);
+  group_folder_ = plan_.folder / fmt::format("group-{}", ++groups_);
+  std::filesystem::create_directories(shared_memory_folder(group_folder_));
+  if (!placement.hosts.empty()) std::ofstream(own_hostfile(group_folder_)) << hostfile_text(placement.hosts);
   log_start_ = size_of(log_of(plan_));
   why_ended_.clear();
   started_at_ = Clock::now();
-  mpirun_.emplace(mpirun_command(installation_, plan_, placement));
+  mpirun_.emplace(mpirun_command(installation_, plan_, placement, group_folder_));
 }
 
 void NodeGroup::try_to(const std::function<void()>& start) {

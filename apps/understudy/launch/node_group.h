@@ -76,6 +76,8 @@ class NodeGroup {
   compositor::Broker broker_;
   std::optional<HostProbe> probe_;  ///< before a start
   std::optional<ChildProcess> mpirun_;
+  std::filesystem::path group_folder_;  ///< in the plan's folder: what mpirun_ keeps there
+  int groups_ = 0;                      ///< started so far
   Clock::time_point started_at_;
   std::string why_lost_;          ///< the broker's words
   std::string why_ended_;         ///< if the group had to be ended from here

@@ -9,6 +9,7 @@
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/pipeline/program_stages.h"
 #include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
 
 namespace understudy::spu {
@@ -33,6 +34,7 @@ struct MarchContext {
   const Run& run;
   const ProgramStages& stages;
   const TextureDescription& texture;
+  ProbeSurfaces& surfaces;
   std::array<float, 2> range;     ///< of the texels' values
   bool clipped = false;           ///< rays begin or end at clipping planes
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more

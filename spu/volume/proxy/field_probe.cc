@@ -33,7 +33,8 @@ bool samples_depth(const GlContext& context, const Pipeline& pipeline) {
                      [&](const SampledTexture& texture) { return is_depth_texture(*context.gl, texture); });
 }
 
-FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture)
+FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
+                       ProbeSurfaces& surfaces)
     : gl_(*context.gl),
       run_(run),
       texture_(texture),
@@ -56,29 +57,11 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
     std::array<GLint, 2> size{};
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &size[0]);
     gl_.GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_HEIGHT, &size[1]);
-    const std::vector<float> farthest(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]),
-                                      1.0F);
-    GLuint far_plane = 0;
-    gl_.GenTextures(1, &far_plane);
-    textures_.push_back(far_plane);
-    gl_.BindTexture(GL_TEXTURE_2D, far_plane);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size[0], size[1], 0, GL_DEPTH_COMPONENT, GL_FLOAT,
-                   farthest.data());
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    surfaces.bind_far_plane(size[0], size[1]);
   }
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 
-  gl_.GenRenderbuffers(1, &colour_);
-  gl_.GenFramebuffers(1, &framebuffer_);
-  GLint application_renderbuffer = 0;
-  gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &application_renderbuffer);
-  gl_.BindRenderbuffer(GL_RENDERBUFFER, colour_);
-  gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
-  gl_.BindRenderbuffer(GL_RENDERBUFFER, GLuint(application_renderbuffer));
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
-  complete_ = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  complete_ = surfaces.bind_framebuffer(width, height) != 0;
   // Which of the box's faces make fragments is the application's choice.
   if (saved_.was_enabled(GL_CULL_FACE)) gl_.Enable(GL_CULL_FACE);
   gl_.Enable(GL_SCISSOR_TEST);
@@ -88,8 +71,6 @@ FieldProbe::~FieldProbe() {
   gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
   gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_SCISSOR_TEST);
-  gl_.DeleteFramebuffers(1, &framebuffer_);
-  gl_.DeleteRenderbuffers(1, &colour_);
   gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
 }
 

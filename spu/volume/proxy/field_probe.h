@@ -10,6 +10,7 @@
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/proxy/cuts.h"
+#include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
 #include "volume/classification.h"
 
@@ -20,7 +21,8 @@ constexpr float no_fragment = -1;
 
 class FieldProbe {
  public:
-  FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture);
+  FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
+             ProbeSurfaces& surfaces);
   ~FieldProbe();
   FieldProbe(const FieldProbe&) = delete;
   FieldProbe& operator=(const FieldProbe&) = delete;
@@ -68,8 +70,6 @@ class FieldProbe {
   LiftedCuts lifted_;
   std::vector<GLuint> textures_;
   std::vector<int> tiled_units_;  ///< whose 2-D texture is borrowed for tiles
-  GLuint colour_ = 0;
-  GLuint framebuffer_ = 0;
   bool complete_ = false;
 };
 

@@ -43,7 +43,7 @@ class MarchMeasurement {
   MarchMeasurement(const MarchContext& measured, const ProxyBox& box)
       : measured_(measured),
         box_(box),
-        probe_(measured.context, measured.run, measured.texture),
+        probe_(measured.context, measured.run, measured.texture, measured.surfaces),
         rays_(box.camera.texture_to_clip, box.region, box.cuts) {
     for (std::size_t k = 0; k < 3; ++k) texels_.metric[4 * k] = measured.texture.size[k];
     march_.clipped = measured.clipped;
@@ -219,7 +219,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   changed.table.high = measured.range[1];
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   {
-    FieldProbe probe(measured.context, measured.run, measured.texture);
+    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
     if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
   }
@@ -238,7 +238,8 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
     nearest = std::abs(through - 0.5F);
     changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
   }
-  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, 16)) return std::nullopt;
+  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, {.values = 16}))
+    return std::nullopt;
   return changed;
 }
 
@@ -247,7 +248,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   March changed = march;
   changed.from_inside = true;
   if (march.extreme) return changed;  // taken at one step or another, it is the same
-  FieldProbe probe(measured.context, measured.run, measured.texture);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -265,29 +266,29 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
                                        double factor) {
   // The table is not measured otherwise.
-  constexpr int values_looked_at = 64;
+  constexpr RaysLookedAt looked_at{.values = 64};
   if (march.extreme || march.sum || march.steps.divided) return std::nullopt;
   March longer = march;
   for (double& number : longer.steps.metric) number /= factor;
   March corrected = longer;
   for (Rgba& entry : corrected.table.entries) entry = ray_of(march, entry, factor);
   for (const March& candidate : {corrected, longer}) {
-    if (still_marches(measured, candidate, box, values_looked_at)) return candidate;
+    if (still_marches(measured, candidate, box, looked_at)) return candidate;
   }
   return std::nullopt;
 }
 
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
-                   int values_looked_at) {
+                   const RaysLookedAt& looked_at) {
   constexpr float same_colour = 5e-3F;
-  FieldProbe probe(measured.context, measured.run, measured.texture);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = measured.run.pipeline().blending.premultiplied;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   std::vector<float> values;
-  values.reserve(std::size_t(values_looked_at));
-  for (int i = 0; i < values_looked_at; ++i)
-    values.push_back(value_at({march.table.low, march.table.high}, (i + 0.5) / values_looked_at));
+  values.reserve(std::size_t(looked_at.values));
+  for (int i = 0; i < looked_at.values; ++i)
+    values.push_back(value_at({march.table.low, march.table.high}, (i + looked_at.offset) / looked_at.values));
   const auto expected = [&](const Rgba& fragment, float value, double n) {
     const Rgba sample = table_at(march.table, value);
     const Rgba got = premultiplied(fragment, already);
@@ -309,11 +310,11 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample.
   constexpr std::array short_lengths{2.5, 4.5, 7.5};
   const double first = march.steps.divided ? 0.5 : march.steps.first;
-  if (std::ranges::none_of(short_lengths, [&](double length) {
+  if (looked_at.values > 0 && std::ranges::none_of(short_lengths, [&](double length) {
         return shows_table(ray_of_length(rays, march.steps, march.extreme ? length + 1 : length + first));
       }))
     return false;
-  if (march.extreme) return true;
+  if (march.extreme || !looked_at.long_ray) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();
   const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);

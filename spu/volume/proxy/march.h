@@ -64,9 +64,17 @@ std::optional<March> with_longer_steps(const MarchContext& measured, const March
 std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
                                             const ProxyBox& box);
 
-/// Whether a few rays still are as `march` says.
+/// What still_marches() looks at.
+struct RaysLookedAt {
+  int values = 8;  ///< evenly spread over the table, each on a short ray
+  double offset =
+      0.5;  ///< 0 to 1: of the space between two values, how far the first lies behind the beginning
+  bool long_ray = true;
+};
+
+/// Whether a few rays through constant fields still are as `march` says.
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
-                   int values_looked_at = 8);
+                   const RaysLookedAt& looked_at);
 
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);

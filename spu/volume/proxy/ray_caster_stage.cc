@@ -74,6 +74,16 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, bool turned) {
   return all;
 }
 
+/// Where the camera moved, as it does in every frame while somebody turns a volume, half of it in each of two
+/// frames, and other values each time.
+RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame) {
+  if (!turned) return {};
+  constexpr double golden_section = 0.618033988749895;  // no two of many frames come close to each other
+  const double turns = double(frame) * golden_section;
+  const bool values = march.extreme || frame % 2 == 0;
+  return {.values = values ? 3 : 0, .offset = turns - std::floor(turns), .long_ray = !values};
+}
+
 Refusal no_coordinate() {
   return "no output of the vertex shader is a texture coordinate over the whole box";
 }
@@ -87,13 +97,15 @@ struct RayCasterStage::Draw {
   const RecognisedRun& seen;
   const ProgramStages& stages;
   KnownRayCaster known;
+  ProbeSurfaces& surfaces;
   std::vector<CoordinateSpace> spaces{};
   Cuts cuts{};
   bool eye_inside = false;
   std::span<const std::string> tables_of_samples{};
 
   MarchContext measured() const {
-    return {context, run, stages, known.sent.texture, known.sent.range, !cuts.clipping.empty(), &*seen.capture};
+    return {context,       run, stages, known.sent.texture, surfaces, known.sent.range, !cuts.clipping.empty(),
+            &*seen.capture};
   }
 };
 
@@ -122,13 +134,14 @@ void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchI
   march = std::get<March>(std::move(again));
 }
 
-std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box,
-                                              const MarchInputs& inputs) const {
+std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                                              bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
   const bool same = inputs == known.inputs;
-  const bool holds =
-      same || (inputs.fixed == known.inputs.fixed && still_marches(draw.measured(), *known.march, box));
+  const bool holds = same || (inputs.fixed == known.inputs.fixed &&
+                              still_marches(draw.measured(), *known.march, box,
+                                            rays_looked_at(*known.march, turned, account_.frames())));
   if (!holds) return "tables, uniforms or state that colours depend on changed";
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }
@@ -167,7 +180,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
 RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& seen, KnownRayCaster known,
                                          compositor::RenderService& service) {
   const Pipeline& pipeline = run.pipeline();
-  Draw draw{context_, run, seen, programs_.stages(pipeline.program), known};
+  Draw draw{context_, run, seen, programs_.stages(pipeline.program), known, surfaces_};
   known.sent.texture = uploader_.describe(pipeline, 0);
   count_texture(known.counters, known.sent.texture);
   const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
@@ -184,7 +197,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, turned);
   known.march.camera = box.camera.texture_to_clip;
   follow_inside(draw, box, inputs);
-  const std::string_view why = why_measured(draw, box, inputs);
+  const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
   known.march.inputs = std::move(inputs);

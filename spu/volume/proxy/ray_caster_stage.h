@@ -10,6 +10,7 @@
 #include "spu/volume/classification/classifier.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/known_march.h"
+#include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/request/image_request.h"
 #include "spu/volume/request/request_composer.h"
 #include "spu/volume/upload/uploader.h"
@@ -45,7 +46,8 @@ class RayCasterStage {
         uploader_(uploader),
         classifier_(classifier),
         composer_(composer),
-        account_(account) {}
+        account_(account),
+        surfaces_(context) {}
 
   /// The request for `run`, the draw of a box. Measures what `known` does not tell, and leaves it there. Needs
   /// the session's lock. Throws Refusal, and what the service throws.
@@ -62,7 +64,8 @@ class RayCasterStage {
 
   ProxyBox find_box(Draw& draw);
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
-  std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;
+  std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                                bool turned) const;
   ProxyBox measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                    compositor::RenderService& service);
   volume::RenderRequest compose(const Draw& draw, const ProxyBox& box);
@@ -80,6 +83,7 @@ class RayCasterStage {
   Classifier& classifier_;
   RequestComposer& composer_;
   FrameAccount& account_;
+  ProbeSurfaces surfaces_;
 };
 
 /// Not every image of the nodes is what the application shows of it: this one goes through complete_image().

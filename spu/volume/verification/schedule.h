@@ -28,10 +28,10 @@ constexpr int max_lost_comparisons_ever = 12;
 constexpr int right_after_loss = 8;
 /// The same input has changed this often and the image was right each time: sentinels suffice for it.
 constexpr int trusted_changes = 4;
-/// Of what the application's own drawing takes by itself. Into the window, and beside other work of the
-/// driver's, it takes up to a third less: together at most 1 and 10 % of a frame.
-constexpr double sentinel_share = 0.007;
-constexpr double dense_sentinel_share = 0.07;
+/// Of what the application's own drawing takes by itself in its first frame. Into the window, and later, it
+/// takes up to half of that: together at most 1 and 10 % of a frame.
+constexpr double sentinel_share = 0.005;
+constexpr double dense_sentinel_share = 0.05;
 
 class VerificationSchedule {
  public:

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What probes draw into and read depth from, kept from frame to frame: a ray caster is probed in every frame in
+// which the camera moves, and making these takes longer than the probes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spu/volume/context/context.h"
+
+namespace understudy::spu {
+
+class ProbeSurfaces {
+ public:
+  explicit ProbeSurfaces(const GlContext& context) : gl_(*context.gl) {}
+  ~ProbeSurfaces();
+  ProbeSurfaces(const ProbeSurfaces&) = delete;
+  ProbeSurfaces& operator=(const ProbeSurfaces&) = delete;
+
+  /// A framebuffer of floats with at least so many pixels, which becomes the current one. What it shows is not
+  /// known. 0 where the driver cannot draw into floats.
+  GLuint bind_framebuffer(int width, int height);
+  /// A depth texture of this size that is 1 everywhere, bound to GL_TEXTURE_2D of the active unit.
+  void bind_far_plane(int width, int height);
+
+ private:
+  struct FarPlane {
+    std::array<int, 2> size;
+    GLuint texture;
+  };
+
+  const DispatchTable& gl_;
+  std::array<int, 2> extent_{};
+  GLuint colour_ = 0;
+  GLuint framebuffer_ = 0;
+  bool complete_ = false;
+  std::vector<FarPlane> far_planes_;
+};
+
+}  // namespace understudy::spu

@@ -90,7 +90,7 @@ TEST(VerificationSchedule, FollowsTheCameraBySentinels) {
     sentinels += schedule.sentinels();
     schedule.sentinels_took(schedule.sentinels(), schedule.sentinels() * 1.0);
   }
-  EXPECT_GE(sentinels, 13);
+  EXPECT_GE(sentinels, int(20 * 100 * sentinel_share) - 1);
 }
 
 TEST(VerificationSchedule, SendsMoreSentinelsWhileWhatIsMeasuredChanges) {

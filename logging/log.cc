@@ -3,17 +3,20 @@
 
 #include <atomic>
 #include <cstdio>
-#include <string>
+#include <iterator>
 
 namespace understudy::logging {
 namespace {
 
 constinit std::atomic<const char*> program{"understudy"};
 
-void write_line(const std::string& line) {
+void write_line(std::string_view line) {
   // At once: lines of several threads and processes stay whole.
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
+
+/// Lines up to this length need no memory.
+constexpr std::size_t usual_length = 1024;
 
 Level level_of_environment() noexcept {
   const char* name = ::secure_getenv("UNDERSTUDY_LOG");
@@ -36,7 +39,10 @@ bool is_written(Level level) noexcept {
 void write(Level level, std::string_view text) noexcept {
   if (!is_written(level)) return;
   try {
-    write_line(fmt::format("{}: {}{}\n", program.load(), level == Level::debug ? "debug: " : "", text));
+    fmt::basic_memory_buffer<char, usual_length> line;
+    fmt::format_to(std::back_inserter(line), "{}: {}{}\n", program.load(),
+                   level == Level::debug ? "debug: " : "", text);
+    write_line({line.data(), line.size()});
   } catch (const std::exception&) {
     // No memory for the line.
   }

@@ -2,6 +2,14 @@
 #include "spu/chain.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "dispatch/shell.h"
+#include "logging/log.h"
+#include "spu/lost_context.h"
 
 namespace understudy::spu {
 namespace {
@@ -12,6 +20,28 @@ constexpr std::array<Phase, phase_count> all_phases = {Phase::plain, Phase::watc
 }  // namespace
 
 constinit thread_local Chain* Chain::current_ = nullptr;
+
+/// What stands between the application and the units of the chain that is current.
+struct Chain::Guard {
+  static const DispatchTable& guarded() { return *current_->guarded_; }
+  static void failed() noexcept { current_->give_up_for_exception(); }
+  static const DispatchTable& after_failure() noexcept { return current_->without_units(); }
+};
+
+template <class Told>
+void Chain::tell(Told told) {
+  if (!given_up_) {
+    for (const Place& place : units_) told(*place.unit);
+    return;
+  }
+  for (const Place& place : units_) {
+    try {
+      told(*place.unit);
+    } catch (...) {
+      // Said when it was given up.
+    }
+  }
+}
 
 Chain::Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
              void (*switch_table)(const DispatchTable*), Surroundings surroundings)
@@ -25,13 +55,14 @@ Chain::~Chain() {
 
 void Chain::make_current() {
   current_ = this;
+  if (given_up_) return switch_table_(&without_units());
   set_phase(phase_);
   for (const Place& place : units_) place.unit->made_current();
 }
 
 void Chain::release_current() {
   if (current_ == nullptr) return;
-  for (const Place& place : current_->units_) place.unit->left();
+  current_->after_call([] { current_->tell([](Unit& unit) { unit.left(); }); });
   current_->switch_table_(nullptr);
   current_ = nullptr;
 }
@@ -46,15 +77,19 @@ void Chain::remove_units() {
   replacements_.clear();
   while (!units_.empty()) units_.pop_back();
   for (auto& tables : tables_) tables.clear();
+  for (auto& table : guarded_tables_) table.reset();
 }
 
 void Chain::build(Phase phase) const {
   auto& tables = tables_[std::size_t(phase)];
-  tables.resize(units_.size());
+  // A table stays where it is for ever: threads and units hold its address. All are there, or none.
+  if (tables.empty()) {
+    std::vector<std::unique_ptr<DispatchTable>> made(units_.size());
+    for (auto& table : made) table = std::make_unique<DispatchTable>(driver_);
+    tables = std::move(made);
+  }
   for (std::size_t place = units_.size(); place-- > 0;) {
     const DispatchTable& next = below(place, phase);
-    // A table stays where it is for ever: threads and units hold its address.
-    if (!tables[place]) tables[place] = std::make_unique<DispatchTable>();
     DispatchTable& face = *tables[place];
     face = next;
     units_[place].unit->fill(phase, face);
@@ -67,6 +102,21 @@ void Chain::build(Phase phase) const {
       set_slot(face, replacement.call, replacement.function);
     }
   }
+  if (guarded_tables_[std::size_t(phase)]) build_guarded(phase);
+}
+
+void Chain::build_guarded(Phase phase) const {
+  for (std::size_t i = 0; i < call_count; ++i) guard_slot(phase, CallId(i));
+}
+
+void Chain::guard_slot(Phase phase, CallId call) const {
+  static const DispatchTable shells = [] {
+    DispatchTable all{};
+    Shell<Guard>::fill(all);
+    return all;
+  }();
+  const AnyFunction own = slot(head(phase), call);
+  set_slot(*guarded_tables_[std::size_t(phase)], call, own == slot(driver_, call) ? own : slot(shells, call));
 }
 
 void Chain::note_original(Replacement& replacement, Phase phase) const {
@@ -86,6 +136,7 @@ void Chain::set_inherited(std::size_t place, Phase phase, CallId call, AnyFuncti
   const AnyFunction before = slot(*tables[place], call);
   set_slot(*tables[place], call, function);
   while (place-- > 0 && slot(*tables[place], call) == before) set_slot(*tables[place], call, function);
+  if (guarded_tables_[std::size_t(phase)]) guard_slot(phase, call);
 }
 
 void Chain::replace_slot(const Unit& unit, CallId call, AnyFunction function) {
@@ -129,25 +180,73 @@ const DispatchTable& Chain::head(Phase phase) const {
   return *tables_[std::size_t(phase)].front();
 }
 
+const DispatchTable& Chain::guarded_head(Phase phase) const {
+  if (units_.empty()) return driver_;
+  auto& table = guarded_tables_[std::size_t(phase)];
+  if (!table) {
+    if (!built(phase)) build(phase);
+    table = std::make_unique<DispatchTable>();
+    build_guarded(phase);
+  }
+  return *table;
+}
+
 void Chain::set_phase(Phase phase) {
+  if (given_up_) return;
+  const DispatchTable& seen = guarded_head(phase);
   phase_ = phase;
-  switch_table_(&head(phase));
+  guarded_ = &head(phase);
+  switch_table_(&seen);
+}
+
+const DispatchTable& Chain::without_units() const {
+  return surroundings_.server != nullptr ? lost_context() : driver_;
+}
+
+void Chain::give_up(const char* trouble) noexcept {
+  if (given_up_) return;
+  given_up_ = true;
+  tell([](Unit& unit) { unit.give_up(); });
+  switch_table_(&without_units());
+  static constinit std::atomic_flag said{};
+  if (said.test_and_set()) return;
+  // There may be no memory for a longer line.
+  std::array<char, 512> line;
+  std::snprintf(line.data(), line.size(), "%s; %s", trouble,
+                surroundings_.server != nullptr
+                    ? "its OpenGL context is lost, and nothing more of it is drawn; start the viewer again"
+                    : "calls go straight to the driver, which draws all volumes of this context itself");
+  logging::write(logging::Level::error, line.data());
+}
+
+void Chain::give_up_for_exception() noexcept {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    give_up("there is not enough memory");
+  } catch (const std::exception& error) {
+    give_up(error.what());
+  } catch (...) {
+    give_up("an unknown error");
+  }
 }
 
 void Chain::settle() {
+  if (given_up_) return;
   for (const Place& place : units_) place.unit->settle();
 }
 
 void Chain::frame_ended(FrameEnd kind) {
+  if (given_up_) return;
   for (const Place& place : units_) place.unit->frame_ended(kind);
 }
 
 void Chain::abandon() {
-  for (const Place& place : units_) place.unit->abandon();
+  tell([](Unit& unit) { unit.abandon(); });
 }
 
 void Chain::process_ends() {
-  for (const Place& place : units_) place.unit->process_ends();
+  tell([](Unit& unit) { unit.process_ends(); });
 }
 
 }  // namespace understudy::spu

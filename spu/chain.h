@@ -4,9 +4,13 @@
 // A unit is a set of slots in the dispatch table. For every phase of the stream the chain builds one table a
 // unit, starting from a copy of the next unit's: a slot that a unit leaves alone *is* the next unit's pointer,
 // down to the driver's own, and costs nothing. Changing the phase is one store: the thread's entry points read
-// another table. A unit may also replace single slots of its face while the chain runs (Chromium's change of
-// interface): whoever inherited the slot sees the new one at once.
+// another table. What the application calls is a shell around the first unit's table (dispatch/shell.h): where
+// a unit throws, the whole chain is given up, and the context is the driver's alone from then on. A unit may
+// also replace single slots of its face while the chain runs (Chromium's change of interface): whoever
+// inherited the slot sees the new one at once.
 #pragma once
+
+#include <cxxabi.h>
 
 #include <array>
 #include <cstddef>
@@ -57,6 +61,10 @@ class Unit {
   virtual void frame_ended(FrameEnd) {}
   /// The context goes away; it may not be current, so no GL call is allowed.
   virtual void abandon() {}
+  /// The chain is given up: what was held back must be in the framebuffer when this returns, drawn by the next
+  /// unit's own functions. Afterwards the unit is told no more than left() and abandon(). The context is
+  /// current.
+  virtual void give_up() {}
   /// The process may end without another word: figures that belong into a file are written. Called by any
   /// thread.
   virtual void process_ends() {}
@@ -118,10 +126,33 @@ class Chain {
     if (!built(phase)) build(phase);
     return below(unit.place_, phase);
   }
+  /// Something went wrong that nobody can mend, for want of memory perhaps: units draw what they hold back, and
+  /// from now on calls go straight to the driver. Said once in a process. The context is current on the calling
+  /// thread. `trouble` says what went wrong.
+  void give_up(const char* trouble) noexcept;
+  bool given_up() const { return given_up_; }
+  /// What a unit does after the call it was asked for is made: where it fails, the chain is given up and the
+  /// call is not made again.
+  template <class Work>
+  void after_call(Work work) {
+    try {
+      work();
+    } catch (abi::__forced_unwind&) {
+      throw;
+    } catch (...) {
+      give_up_for_exception();
+    }
+  }
+  /// give_up() with what the exception that is being handled says.
+  void give_up_for_exception() noexcept;
+
   /// The table that calls to `unit` come through.
   const DispatchTable& face(const Unit& unit, Phase phase) const;
-  /// The table the application sees.
+  /// The first unit's table.
   const DispatchTable& head(Phase phase) const;
+  /// What the application calls: head(), out of which nothing thrown gets. A slot that is the driver's own is
+  /// the driver's own here too.
+  const DispatchTable& guarded_head(Phase phase) const;
   const DispatchTable& driver() const { return driver_; }
   ShareGroup& group() { return *group_; }
   const Surroundings& surroundings() const { return surroundings_; }
@@ -156,6 +187,10 @@ class Chain {
   }
 
  private:
+  struct Guard;
+  /// Tells every unit; of a chain that was given up, whatever units have to say to that is dropped.
+  template <class Told>
+  void tell(Told told);
   struct Place {
     const char* tag;  ///< the unit's own; kept here because units are looked up on every call
     std::unique_ptr<Unit> unit;
@@ -178,6 +213,11 @@ class Chain {
     return CallId((slot - reinterpret_cast<const char*>(&driver_)) / std::ptrdiff_t{sizeof(AnyFunction)});
   }
 
+  /// Where calls go when the chain is given up.
+  const DispatchTable& without_units() const;
+  void build_guarded(Phase phase) const;
+  void guard_slot(Phase phase, CallId call) const;
+
   bool built(Phase phase) const { return !tables_[std::size_t(phase)].empty(); }
   void build(Phase phase) const;
   const DispatchTable& below(std::size_t place, Phase phase) const {
@@ -199,8 +239,11 @@ class Chain {
   std::vector<Place> units_;
   mutable std::vector<Replacement> replacements_;
   Phase phase_ = Phase::plain;
+  const DispatchTable* guarded_ = nullptr;  ///< head(phase_) while units are asked
+  bool given_up_ = false;
   /// tables_[phase][u] is unit u's face; built when the phase is first entered.
   mutable std::array<std::vector<std::unique_ptr<DispatchTable>>, phase_count> tables_;
+  mutable std::array<std::unique_ptr<DispatchTable>, phase_count> guarded_tables_;
 };
 
 }  // namespace understudy::spu

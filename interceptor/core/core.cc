@@ -2,20 +2,25 @@
 // The core: one SPU chain for every desktop OpenGL context of the application.
 #include "interceptor/core.h"
 
+#include <cxxabi.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
+#include <stdexcept>
 
 #include "interceptor/core/redraw_request.h"
 #include "logging/log.h"
 #include "spu/chain.h"
+#include "spu/lost_context.h"
 #include "spu/options.h"
 #include "spu/registry/assemble.h"
 #include "spu/remote/front_end.h"
@@ -75,6 +80,12 @@ class Core {
 
   const EntryServices& entry() const { return entry_; }
 
+  /// Where there is none, its calls do nothing.
+  void leave_to_driver() noexcept {
+    ThreadState& thread = *entry_.thread_state();
+    thread.table = server_ ? &spu::lost_context() : thread.driver;
+  }
+
   RemoteVersions remote_versions() const {
     if (!server_) return {};
     return {server_->versions().core, server_->versions().compatibility};
@@ -106,7 +117,8 @@ class Core {
       gone = std::move(found->second);
       contexts_.erase(found);
     }
-    gone->chain.abandon();
+    // Null where there was no memory to make it.
+    if (gone) gone->chain.abandon();
   }
 
   void frame_ended(spu::FrameEnd kind) {
@@ -150,8 +162,15 @@ class Core {
 
   Member& member_of(std::uintptr_t context, std::uintptr_t share, const spu::DispatchTable& driver) {
     const std::scoped_lock lock(mutex_);
+    const auto found = contexts_.find(context);
+    if (found != contexts_.end()) {
+      // What the context did meanwhile is not known.
+      if (!found->second)
+        throw std::runtime_error("an OpenGL context could not be followed from its beginning");
+      return *found->second;
+    }
     auto& member = contexts_[context];
-    if (!member) {
+    {
       const auto relative = contexts_.find(share);
       auto group = relative != contexts_.end() && relative->second ? relative->second->group
                                                                    : std::make_shared<spu::ShareGroup>();
@@ -196,17 +215,31 @@ void Core::install(const spu::DispatchTable* table) {
   core->entry_.thread_state()->table = table;
 }
 
-/// Nothing thrown may cross into the application.
+/// The thread's context is the driver's alone from now on.
+void leave_to_driver(const char* trouble) noexcept {
+  if (spu::Chain* chain = spu::Chain::current()) return chain->give_up(trouble);
+  if (core != nullptr) core->leave_to_driver();
+  static constinit std::atomic_flag said{};
+  if (said.test_and_set()) return;
+  // There may be no memory for a longer line.
+  std::array<char, 512> line;
+  std::snprintf(line.data(), line.size(), "%s; calls go straight to the driver", trouble);
+  logging::write(logging::Level::error, line.data());
+}
+
+/// Nothing thrown may cross into the application, but the end of a thread that is cancelled.
 template <class Action>
-void guarded(Action action) noexcept {
+void guarded(Action action) {
   try {
     action();
+  } catch (abi::__forced_unwind&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    leave_to_driver("there is not enough memory");
   } catch (const std::exception& error) {
-    logging::log(logging::Level::error, "{}; calls go straight to the driver", error.what());
-    if (core != nullptr) {
-      ThreadState& thread = *core->entry().thread_state();
-      thread.table = thread.driver;
-    }
+    leave_to_driver(error.what());
+  } catch (...) {
+    leave_to_driver("an unknown error");
   }
 }
 
@@ -227,8 +260,8 @@ void context_leaving() {
       chain->settle();
       chain->frame_ended(spu::FrameEnd::make_current);
     }
-    spu::Chain::release_current();
   });
+  guarded([] { spu::Chain::release_current(); });
 }
 
 void context_destroyed(std::uintptr_t context) {

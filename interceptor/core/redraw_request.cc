@@ -5,6 +5,7 @@
 #include <xcb/xcb.h>
 
 #include <cstdlib>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -123,7 +124,16 @@ void RedrawRequest::frame_shown(std::uintptr_t window, bool behind) {
   if (!behind) return;
   due_ = {window, std::chrono::steady_clock::now() + pause_before_asking};
   // It sleeps for as long as the program lives: nothing that ends with the program is touched by it.
-  if (!std::exchange(has_thread_, true)) std::thread([this] { ask_when_due(); }).detach();
+  if (!has_thread_) {
+    std::thread([this] {
+      try {
+        ask_when_due();
+      } catch (const std::exception&) {
+        // Nobody is asked any more: an image that is behind stays so until the program draws.
+      }
+    }).detach();
+    has_thread_ = true;
+  }
   changed_.notify_one();
 }
 

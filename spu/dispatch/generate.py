@@ -11,6 +11,7 @@ Files written (README.md in this folder says who uses which):
     call_shape.h, .cc   CallShape: types, names and extents of a command's arguments; stable ids; names of enumerants
     call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
+    shell.h           Shell<Guard>: for every command the call within a try block, so that nothing thrown gets out
     gl_entry_N.cc     the exported gl* functions of the entry library, in a few files so that they compile in parallel
     glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the entry library does not write by hand
 
@@ -214,6 +215,48 @@ struct PassThrough {{
 """
 
 
+def shell(commands):
+    functions = "\n".join(
+        f"  static {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
+        f"    try {{\n"
+        f"      return Guard::guarded().{c.member}({c.arguments});\n"
+        f"    }} catch (abi::__forced_unwind&) {{\n"
+        f"      throw;\n"
+        f"    }} catch (...) {{\n"
+        f"      Guard::failed();\n"
+        f"    }}\n"
+        f"    return Guard::after_failure().{c.member}({c.arguments});\n"
+        f"  }}"
+        for c in commands
+    )
+    slots = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
+    return f"""\
+#pragma once
+
+#include <cxxabi.h>
+
+#include "dispatch/call_id.h"
+#include "dispatch/table.h"
+
+namespace understudy::spu {{
+
+/// For every command the same command of the table `Guard::guarded()`, out of which no exception gets: where one is
+/// thrown, `Guard::failed()` is called while it is handled, and the call is made on the table `Guard::after_failure()`
+/// instead, whose functions throw nothing. Only the end of a thread that is cancelled passes.
+template <class Guard>
+struct Shell {{
+{functions}
+
+  /// Sets every slot.
+  static void fill(DispatchTable& table) {{
+{slots}
+  }}
+}};
+
+}}  // namespace understudy::spu
+"""
+
+
 def gl_entries(commands):
     functions = "\n".join(
         f"UNDERSTUDY_ENTRY {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
@@ -283,6 +326,7 @@ def main():
     write(out / "call_words.h", shapes.words_header(gl))
     write(out / "call_words.cc", shapes.words_source(gl))
     write(out / "pass_through.h", pass_through(gl))
+    write(out / "shell.h", shell(gl))
     share = -(-len(gl) // GL_ENTRY_FILES)
     for number in range(GL_ENTRY_FILES):
         write(out / f"gl_entry_{number}.cc", gl_entries(gl[number * share : (number + 1) * share]))

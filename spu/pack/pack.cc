@@ -1,10 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/pack/pack.h"
 
+#include <exception>
+
 #include "dispatch/call_words.h"
 
 namespace understudy::spu {
 namespace {
+
+/// In scope while a call is packed: all of its records are kept, or none.
+class WholeRecords {
+ public:
+  explicit WholeRecords(Records& records) : records_(records), words_(records.words().size()) {}
+  ~WholeRecords() {
+    if (std::uncaught_exceptions() > exceptions_) records_.rewind(words_);
+  }
+  WholeRecords(const WholeRecords&) = delete;
+  WholeRecords& operator=(const WholeRecords&) = delete;
+
+ private:
+  Records& records_;
+  const std::size_t words_;
+  const int exceptions_ = std::uncaught_exceptions();
+};
 
 struct Packed {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
@@ -32,8 +50,11 @@ void Pack::fill(Phase, DispatchTable& table) {
 
 std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
   if (const auto known = taker_->known(call, words)) return *known;
-  taker_->before(call, words, records_);
-  encoder_.encode(call, words, records_);
+  {
+    const WholeRecords whole(records_);
+    taker_->before(call, words, records_);
+    encoder_.encode(call, words, records_);
+  }
   const HandOn when = taker_->when(call, encoder_.inside_begin());
   if (when == HandOn::and_wait) {
     const PackedCall last{call, words};
@@ -49,11 +70,16 @@ std::uint64_t Pack::call(CallId call, const std::uint64_t* words) {
 std::uint64_t Pack::hand_on(const PackedCall* last) {
   // A unit behind us may settle the chain while our calls are being made.
   if (records_.empty() || handing_on_) return 0;
+  // Whatever becomes of them: no call is made twice.
+  struct HandedOn {
+    Pack& pack;
+    ~HandedOn() {
+      pack.handing_on_ = false;
+      pack.records_.clear();
+    }
+  } const handed_on{*this};
   handing_on_ = true;
-  const std::uint64_t result = taker_->take(records_, last);
-  handing_on_ = false;
-  records_.clear();
-  return result;
+  return taker_->take(records_, last);
 }
 
 constinit const UnitDescription pack_description{

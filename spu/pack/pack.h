@@ -24,6 +24,7 @@ class Pack final : public Unit {
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;
   void settle() override { hand_on(); }
+  void give_up() override { hand_on(); }
 
   bool inside_begin() const { return encoder_.inside_begin(); }
 

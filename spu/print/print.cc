@@ -41,7 +41,7 @@ struct Print::Printed {
     const bool afterwards = shows_outcome(call);
     if (!afterwards) print.tell(call, words, 0);
     const std::uint64_t result = invoke(next, call, words);
-    if (afterwards) print.tell(call, words, result);
+    if (afterwards) print.chain_.after_call([&] { print.tell(call, words, result); });
     return result;
   }
 };

@@ -76,9 +76,17 @@ std::thread ServerConnection::start(void (ServerConnection::*work)()) {
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread thread([this, work] { (this->*work)(); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  return thread;
+  struct Restored {
+    const sigset_t& mask;
+    ~Restored() { pthread_sigmask(SIG_SETMASK, &mask, nullptr); }
+  } const restored{before};
+  return std::thread([this, work] {
+    try {
+      (this->*work)();
+    } catch (const std::exception& error) {
+      lose(error.what());
+    }
+  });
 }
 
 ServerConnection::~ServerConnection() {
@@ -98,7 +106,7 @@ void ServerConnection::end() {
   ::shutdown(connection_->fd(), SHUT_RDWR);
 }
 
-void ServerConnection::lose(const std::string& why) {
+void ServerConnection::lose(std::string_view why) {
   std::call_once(losing_, [&] {
     // Said before anybody goes on without the GL server, as that may be to the end of the program.
     if (!ending_)

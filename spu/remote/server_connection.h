@@ -91,7 +91,7 @@ class ServerConnection {
 
   std::thread start(void (ServerConnection::*work)());
   void transmit(const Records& records, ServerReply reply, std::uint64_t thread);
-  void lose(const std::string& why);
+  void lose(std::string_view why);
   void receive_all();
   void show_pending();
   void take(compositor::Message message);

@@ -560,7 +560,7 @@ bool write_report_now(const std::string& path) noexcept {
     replace_file(path, report_json(Processes(&self, 1)));
     return true;
   } catch (const std::exception& error) {
-    if (!complained.exchange(true)) logging::log(logging::Level::error, "{}", error.what());
+    if (!complained.exchange(true)) logging::write(logging::Level::error, error.what());
     return false;
   }
 }

@@ -97,6 +97,8 @@ class Words {
   std::size_t size() const { return size_; }
   std::span<const std::uint64_t> words() const { return {memory_.get(), size_}; }
   void clear() { size_ = 0; }
+  /// Takes away what was added after there were `size` words.
+  void rewind(std::size_t size) { size_ = size; }
 
  private:
   void grow(std::size_t room) {
@@ -189,6 +191,8 @@ class Records {
     start_ = 0;
     ++generation_;
   }
+  /// Takes away the records without payload that were added after there were `words` words.
+  void rewind(std::size_t words) { words_.rewind(words); }
   /// Changes whenever the records are cleared: positions from before mean nothing any more.
   std::uint64_t generation() const { return generation_; }
 

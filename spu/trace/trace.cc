@@ -42,11 +42,13 @@ std::uint64_t Trace::call(CallId call, const std::uint64_t* words) {
   recording_.append([&](Records& records) { recorder_.before(call, words, records); });
   // Not under the recording's lock: the call may wait for another thread's.
   const std::uint64_t result = invoke(chain_.below(*this), call, words);
-  if (CallRecorder::answers(call)) {
-    recording_.append([&](Records& records) { CallRecorder::append_answers(call, words, result, records); });
-  }
-  recorder_.made(call, words, result);
-  if (!recorder_.inside_begin()) recording_.flush(false);
+  chain_.after_call([&] {
+    if (CallRecorder::answers(call)) {
+      recording_.append([&](Records& records) { CallRecorder::append_answers(call, words, result, records); });
+    }
+    recorder_.made(call, words, result);
+    if (!recorder_.inside_begin()) recording_.flush(false);
+  });
   return result;
 }
 

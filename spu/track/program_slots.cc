@@ -16,39 +16,47 @@ ProgramSources& programs() {
   return here().chain().group().programs();
 }
 
+/// Once the call is made.
+template <class Note>
+void note(Note note) {
+  here().chain().after_call([&] { note(programs()); });
+}
+
 GLuint APIENTRY create_shader(GLenum type) {
   const GLuint shader = here().below().CreateShader(type);
-  programs().shader_created(shader, type);
+  note([&](ProgramSources& known) { known.shader_created(shader, type); });
   return shader;
 }
 
 GLhandleARB APIENTRY create_shader_object(GLenum type) {
   const GLhandleARB shader = here().below().CreateShaderObjectARB(type);
-  programs().shader_created(GLuint(shader), type);
+  note([&](ProgramSources& known) { known.shader_created(GLuint(shader), type); });
   return shader;
 }
 
 GLuint APIENTRY create_program() {
   const GLuint program = here().below().CreateProgram();
-  programs().program_created(program);
+  note([&](ProgramSources& known) { known.program_created(program); });
   return program;
 }
 
 GLhandleARB APIENTRY create_program_object() {
   const GLhandleARB program = here().below().CreateProgramObjectARB();
-  programs().program_created(GLuint(program));
+  note([&](ProgramSources& known) { known.program_created(GLuint(program)); });
   return program;
 }
 
 GLuint APIENTRY create_shader_program(GLenum type, GLsizei count, const GLchar* const* strings) {
   const GLuint program = here().below().CreateShaderProgramv(type, count, strings);
-  programs().program_linked_from(program, type, joined(count, strings, nullptr));
+  note([&](ProgramSources& known) {
+    known.program_linked_from(program, type, joined(count, strings, nullptr));
+  });
   return program;
 }
 
 GLuint APIENTRY create_shader_program_ext(GLenum type, const GLchar* string) {
   const GLuint program = here().below().CreateShaderProgramEXT(type, string);
-  programs().program_linked_from(program, type, joined(1, &string, nullptr));
+  note([&](ProgramSources& known) { known.program_linked_from(program, type, joined(1, &string, nullptr)); });
   return program;
 }
 
@@ -85,8 +93,10 @@ void APIENTRY specialize_shader_arb(GLuint shader, const GLchar* entry, GLuint c
 
 void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
   here().below().ProgramBinary(program, format, binary, length);
-  if (binary != nullptr && length > 0)
-    programs().program_loaded(program, {static_cast<const std::byte*>(binary), std::size_t(length)});
+  if (binary == nullptr || length <= 0) return;
+  note([&](ProgramSources& known) {
+    known.program_loaded(program, {static_cast<const std::byte*>(binary), std::size_t(length)});
+  });
 }
 
 void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length, GLenum* format, void* binary) {
@@ -94,15 +104,19 @@ void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length,
   GLsizei written = nothing_written;
   here().below().GetProgramBinary(program, space, &written, format, binary);
   if (length != nullptr && written != nothing_written) *length = written;
-  if (binary != nullptr && written > 0)
-    programs().binary_taken(program, {static_cast<const std::byte*>(binary), std::size_t(written)});
+  if (binary == nullptr || written <= 0) return;
+  note([&](ProgramSources& known) {
+    known.binary_taken(program, {static_cast<const std::byte*>(binary), std::size_t(written)});
+  });
 }
 
 void APIENTRY delete_object(GLhandleARB object) {
   here().below().DeleteObjectARB(object);
   // The one name is a shader's or a program's.
-  programs().shader_deleted(GLuint(object));
-  programs().program_deleted(GLuint(object));
+  note([&](ProgramSources& known) {
+    known.shader_deleted(GLuint(object));
+    known.program_deleted(GLuint(object));
+  });
 }
 
 /// Commands that name one object, or two, and answer nothing: made, then noted.
@@ -112,7 +126,7 @@ template <class... Names, void (APIENTRY* DispatchTable::*Slot)(Names...), auto 
 struct Noted<Slot, Note> {
   static void APIENTRY call(Names... names) {
     (here().below().*Slot)(names...);
-    (programs().*Note)(GLuint(names)...);
+    note([&](ProgramSources& known) { (known.*Note)(GLuint(names)...); });
   }
 };
 

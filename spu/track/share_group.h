@@ -69,6 +69,11 @@ class ShareGroup {
   void texture_rendered_to(GLuint texture);
   bool is_rendered_to(GLuint texture) const;
 
+  /// What one of its contexts does from now on is not followed, so nothing known of the group's objects can be
+  /// relied on.
+  void leave_to_driver() { left_to_driver_.store(true, std::memory_order_relaxed); }
+  bool is_left_to_driver() const { return left_to_driver_.load(std::memory_order_relaxed); }
+
   ProgramSources& programs() { return programs_; }
   const ProgramSources& programs() const { return programs_; }
 
@@ -104,6 +109,7 @@ class ShareGroup {
   std::atomic<bool> has_volumes_{false};
   std::atomic<int> stack_watchers_{0};
   std::atomic<bool> lists_change_textures_{false};
+  std::atomic<bool> left_to_driver_{false};
 };
 
 }  // namespace understudy::spu

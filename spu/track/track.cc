@@ -148,19 +148,20 @@ void APIENTRY new_list(GLuint list, GLenum mode) {
   Track& track = here();
   track.below().NewList(list, mode);
   // Anything else is refused and opens no list.
-  if (list != 0 && (mode == GL_COMPILE || mode == GL_COMPILE_AND_EXECUTE)) track.begin_list(list, mode);
+  if (list != 0 && (mode == GL_COMPILE || mode == GL_COMPILE_AND_EXECUTE))
+    track.chain().after_call([&] { track.begin_list(list, mode); });
 }
 
 void APIENTRY close_list() {
   Track& track = here();
   track.below().EndList();
-  track.end_list();
+  track.chain().after_call([&] { track.end_list(); });
 }
 
 void APIENTRY delete_lists(GLuint first, GLsizei count) {
   Track& track = here();
   track.below().DeleteLists(first, count);
-  track.chain().group().lists_deleted(first, count);
+  track.chain().after_call([&] { track.chain().group().lists_deleted(first, count); });
 }
 
 void APIENTRY call_list(GLuint list) {
@@ -168,14 +169,18 @@ void APIENTRY call_list(GLuint list) {
   track.below().CallList(list);
   ShareGroup& group = track.chain().group();
   if (!group.has_volumes() || !group.lists_change_textures()) return;
-  const auto record = group.list(list);
-  if (record && record->changes_textures) group.some_texture_changed();
+  track.chain().after_call([&] {
+    const auto record = group.list(list);
+    if (record && record->changes_textures) group.some_texture_changed();
+  });
 }
 
 void APIENTRY call_lists(GLsizei count, GLenum type, const void* lists) {
   Track& track = here();
   track.below().CallLists(count, type, lists);
-  if (track.chain().group().lists_change_textures()) track.chain().group().some_texture_changed();
+  track.chain().after_call([&] {
+    if (track.chain().group().lists_change_textures()) track.chain().group().some_texture_changed();
+  });
 }
 
 void APIENTRY call_list_in_list(GLuint list) {

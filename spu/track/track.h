@@ -28,6 +28,7 @@ class Track final : public Unit {
   void fill(Phase phase, DispatchTable& table) override;
   void made_current() override;
   void frame_ended(FrameEnd kind) override;
+  void give_up() override { chain_.group().leave_to_driver(); }
 
   /// What the list being compiled holds so far.
   ListRecord& open_list() { return open_list_; }

@@ -104,7 +104,7 @@ bool VolumeUnit::shows(std::unique_ptr<Run>& run) {
   } catch (const std::exception& error) {
     volumes_.refuse(texture, error.what(), account);
   }
-  return false;
+  return run == nullptr || run->shown;
 }
 
 bool VolumeUnit::is_a_stack(const Run& run) {
@@ -153,7 +153,7 @@ void VolumeUnit::substitute(std::unique_ptr<Run>& run) {
   }
 }
 
-void VolumeUnit::show(const Run& run, const Recognised& recognised, KnownVolume& volume,
+void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volume,
                       compositor::RenderService& service) {
   Stages& stages = this->stages();
   ImageRequest& image = recognised.image;
@@ -170,6 +170,7 @@ void VolumeUnit::show(const Run& run, const Recognised& recognised, KnownVolume&
   };
   const volume::FrameCounts counts =
       stages.presentation.show(service, {run.pipeline(), image, volume, compared_whole}, check);
+  run.shown = true;
   if (stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
     depth_watched_ = run.volume_texture();
     chain().set_phase(Phase::depth_deferred);

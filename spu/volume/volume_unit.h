@@ -55,8 +55,7 @@ class VolumeUnit final : public DrawObserver {
   bool shows(std::unique_ptr<Run>& run);
   void substitute(std::unique_ptr<Run>& run);
   void tidy();
-  void show(const Run& run, const Recognised& recognised, KnownVolume& volume,
-            compositor::RenderService& service);
+  void show(Run& run, const Recognised& recognised, KnownVolume& volume, compositor::RenderService& service);
   void forget_deleted_volumes();
 
   std::shared_ptr<RenderSession> session_;

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdio>
+#include <new>
+#include <stdexcept>
 
 #include "dispatch/call_id.h"
 #include "spu/pass/pass.h"
@@ -50,6 +52,32 @@ class OverridesFinish final : public Unit {
   static void APIENTRY finish() {}
 };
 
+/// glClear and glCreateShader throw; what it holds back is a glFlush.
+class Fails final : public Unit {
+ public:
+  static constexpr char tag = '!';
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase, DispatchTable& table) override {
+    table.Clear = [](GLbitfield) { throw std::bad_alloc(); };
+    table.CreateShader = [](GLenum type) -> GLuint {
+      Chain* chain = Chain::current();
+      const GLuint shader = chain->below(*chain->find<Fails>()).CreateShader(type);
+      chain->after_call([] { throw std::runtime_error("no room for a shader"); });
+      return shader;
+    };
+  }
+  void settle() override { ++told; }
+  void frame_ended(FrameEnd) override { ++told; }
+  void left() override { throw std::bad_alloc(); }
+  void give_up() override {
+    ++given_up;
+    Chain* chain = Chain::current();
+    chain->below(*this).Flush();
+  }
+  int given_up = 0;
+  int told = 0;
+};
+
 void APIENTRY another_clear(GLbitfield) {}
 void APIENTRY third_clear(GLbitfield) {}
 void APIENTRY another_finish() {}
@@ -67,6 +95,71 @@ class ChainTest : public ::testing::Test {
   MockDriver mock_;
   Chain chain_{mock_.table(), std::make_shared<ShareGroup>(), install};
 };
+
+TEST_F(ChainTest, WhatTheApplicationCallsIsTheDriversPointerWhereNobodyOverridesIt) {
+  add<CountsClears>(chain_);
+  for (std::size_t i = 0; i < call_count; ++i) {
+    const AnyFunction guarded = slot(chain_.guarded_head(Phase::watching), CallId(i));
+    if (CallId(i) == CallId::Clear) {
+      EXPECT_NE(guarded, slot(chain_.head(Phase::watching), CallId(i))) << "nothing stands around the unit";
+    } else {
+      ASSERT_EQ(guarded, slot(mock_.table(), CallId(i))) << call_name(CallId(i));
+    }
+  }
+}
+
+TEST_F(ChainTest, IsGivenUpWhereAUnitThrowsAndTheCallIsMadeByTheDriver) {
+  const Fails& unit = add<Fails>(chain_);
+  chain_.make_current();
+  installed().Clear(GL_COLOR_BUFFER_BIT);
+  EXPECT_THAT(mock_.called(), ElementsAre(CallId::Flush, CallId::Clear)) << "what was held back, then the call";
+  EXPECT_TRUE(chain_.given_up());
+  EXPECT_EQ(&installed(), &mock_.table());
+  chain_.settle();
+  chain_.frame_ended(FrameEnd::swap);
+  chain_.set_phase(Phase::watching);
+  installed().Clear(GL_COLOR_BUFFER_BIT);
+  EXPECT_EQ(unit.given_up, 1);
+  EXPECT_EQ(unit.told, 0);
+  EXPECT_EQ(&installed(), &mock_.table()) << "for good";
+  Chain::release_current();
+  chain_.make_current();
+  EXPECT_EQ(&installed(), &mock_.table());
+  Chain::release_current();
+}
+
+TEST_F(ChainTest, MakesNoCallTwiceWhereTheWorkAfterItFails) {
+  add<Fails>(chain_);
+  chain_.make_current();
+  installed().CreateShader(GL_VERTEX_SHADER);
+  EXPECT_THAT(mock_.called(), ElementsAre(CallId::CreateShader, CallId::Flush));
+  EXPECT_TRUE(chain_.given_up());
+  Chain::release_current();
+}
+
+TEST_F(ChainTest, ReplacedSlotsAreGuardedToo) {
+  const Fails& unit = add<Fails>(chain_);
+  chain_.make_current();
+  chain_.replace_slot(unit, &DispatchTable::Finish, [] { throw std::bad_alloc(); });
+  installed().Finish();
+  EXPECT_THAT(mock_.called(), ElementsAre(CallId::Flush, CallId::Finish));
+  Chain::release_current();
+}
+
+TEST_F(ChainTest, WithoutADriverTheContextIsLost) {
+  // The GL server is only asked whether it is there.
+  auto* const server = reinterpret_cast<ServerConnection*>(&mock_);
+  Chain chain(mock_.table(), std::make_shared<ShareGroup>(), install, {1, 0, server});
+  add<Fails>(chain);
+  chain.make_current();
+  installed().Clear(GL_COLOR_BUFFER_BIT);
+  EXPECT_EQ(installed().GetError(), GLenum(GL_OUT_OF_MEMORY));
+  EXPECT_EQ(installed().GetError(), GLenum(GL_NO_ERROR));
+  EXPECT_EQ(installed().GetGraphicsResetStatus(), GLenum(GL_UNKNOWN_CONTEXT_RESET));
+  EXPECT_EQ(installed().CreateShader(GL_VERTEX_SHADER), 0U);
+  EXPECT_THAT(mock_.called(), ElementsAre(CallId::Flush));
+  Chain::release_current();
+}
 
 TEST_F(ChainTest, ASlotThatNobodyOverridesIsTheDriversPointer) {
   add<CountsClears>(chain_);
@@ -167,7 +260,7 @@ TEST_F(ChainTest, AnOverridingUnitHidesAReplacedSlot) {
     EXPECT_EQ(chain_.below(overriding, phase).Finish, another_finish) << "and calls the new one itself";
   }
   chain_.replace_slot(overriding, &DispatchTable::Finish, another_finish);
-  EXPECT_EQ(installed().Finish, another_finish);
+  EXPECT_EQ(chain_.head(chain_.phase()).Finish, another_finish);
   chain_.restore_slot(overriding, CallId::Finish);
   for (const Phase phase : phases) EXPECT_EQ(chain_.face(top, phase).Finish, OverridesFinish::finish);
 }
@@ -179,7 +272,7 @@ TEST_F(ChainTest, ARestoredSlotInheritsWhatIsBelowByThen) {
   chain_.make_current();
   chain_.replace_slot(high, &DispatchTable::Clear, another_clear);
   chain_.replace_slot(low, &DispatchTable::Clear, third_clear);
-  EXPECT_EQ(installed().Clear, another_clear);
+  EXPECT_EQ(chain_.head(chain_.phase()).Clear, another_clear);
   chain_.restore_slot(high, CallId::Clear);
   for (const Phase phase : phases) EXPECT_EQ(chain_.head(phase).Clear, third_clear);
   chain_.restore_slot(low, CallId::Clear);
@@ -201,7 +294,7 @@ TEST_F(ChainTest, UnitsMayFillTheirSlotsAnew) {
   add<Pass>(chain_);
   auto& at_times = add<FlushesAtTimes>(chain_);
   chain_.make_current();
-  const DispatchTable& head = installed();
+  const DispatchTable& head = chain_.head(chain_.phase());
   chain_.replace_slot(at_times, &DispatchTable::Clear, another_clear);
   at_times.wants = true;
   chain_.refill();

@@ -39,14 +39,16 @@ SavedState::SavedState(const GlContext& context)
   gl_.GetIntegerv(GL_BLEND_EQUATION_RGB, &blend_equations_[0]);
   gl_.GetIntegerv(GL_BLEND_EQUATION_ALPHA, &blend_equations_[1]);
 
+  GLint clip_planes = 0;
+  gl_.GetIntegerv(GL_MAX_CLIP_DISTANCES, &clip_planes);
+  // Nothing may fail once the first of them is off: nobody would switch it on again.
+  capabilities_.reserve(switched_off.size() + std::size_t(std::max(clip_planes, 0)) + 1);
   const auto switch_off = [this](GLenum name) {
     const GLboolean enabled = gl_.IsEnabled(name);
     capabilities_.push_back({name, enabled});
     if (enabled) gl_.Disable(name);
   };
   for (const GLenum name : switched_off) switch_off(name);
-  GLint clip_planes = 0;
-  gl_.GetIntegerv(GL_MAX_CLIP_DISTANCES, &clip_planes);
   for (GLint i = 0; i < clip_planes; ++i) switch_off(GLenum(GL_CLIP_DISTANCE0 + i));
   if (!core_) switch_off(GL_ALPHA_TEST);
 
@@ -69,6 +71,7 @@ bool SavedState::was_enabled(GLenum capability) const {
 }
 
 void SavedState::borrow_texture(GLenum target, int unit) {
+  borrowed_.reserve(borrowed_.size() + 1);
   BorrowedTexture borrowed{target, unit, 0, 0};
   gl_.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
   const GLenum binding = target == GL_TEXTURE_3D   ? GL_TEXTURE_BINDING_3D

@@ -13,14 +13,13 @@ bool DepthWatch::settle(const Run& run, bool first, bool looked_at) {
                                : looked_at ? "somebody looked at it"
                                : session_.disabled_optimizations(Optimization::unseen_depth) ? "asked to"
                                                                                              : "";
+  // First what is seen: what is counted may fail.
+  if (!why.empty()) write_depth(*context_.gl, run);
   account_.note([&](FrameRecord& frame) {
     Amount& runs = frame.amount(Optimization::unseen_depth);
     ++(why.empty() ? runs.left_out : runs.done);
   });
-  if (!why.empty()) {
-    write_depth(*context_.gl, run);
-    count_done(Optimization::unseen_depth, why);
-  }
+  if (!why.empty()) count_done(Optimization::unseen_depth, why);
   return !looked_at;
 }
 

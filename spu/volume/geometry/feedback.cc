@@ -15,6 +15,25 @@ struct Window {
   std::array<GLdouble, 2> depth_range{};
 };
 
+/// The application's feedback buffer, given back afterwards.
+class FeedbackState {
+ public:
+  explicit FeedbackState(const DispatchTable& gl) : gl_(gl) {
+    gl_.GetIntegerv(GL_FEEDBACK_BUFFER_SIZE, &size_);
+    gl_.GetIntegerv(GL_FEEDBACK_BUFFER_TYPE, &type_);
+    gl_.GetPointerv(GL_FEEDBACK_BUFFER_POINTER, &buffer_);
+  }
+  ~FeedbackState() { gl_.FeedbackBuffer(size_, GLenum(type_), static_cast<GLfloat*>(buffer_)); }
+  FeedbackState(const FeedbackState&) = delete;
+  FeedbackState& operator=(const FeedbackState&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+  GLint size_ = 0;
+  GLint type_ = 0;
+  void* buffer_ = nullptr;
+};
+
 ObservedVertex vertex_from(const float* f, const Window& window) {
   ObservedVertex v;
   const double w = f[3];
@@ -72,16 +91,10 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
   if (window.viewport[2] <= 0 || window.viewport[3] <= 0 || window.depth_range[0] == window.depth_range[1])
     return {};
 
-  GLint application_size = 0;
-  GLint application_type = 0;
-  void* application_buffer = nullptr;
-  gl.GetIntegerv(GL_FEEDBACK_BUFFER_SIZE, &application_size);
-  gl.GetIntegerv(GL_FEEDBACK_BUFFER_TYPE, &application_type);
-  gl.GetPointerv(GL_FEEDBACK_BUFFER_POINTER, &application_buffer);
-
   std::vector<float> buffer(first_buffer);
   GLint values = -1;
   while (true) {
+    const FeedbackState application(gl);
     gl.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
     gl.RenderMode(GL_FEEDBACK);
     run.replay(gl);
@@ -89,7 +102,6 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
     if (values >= 0 || buffer.size() >= largest_buffer) break;
     buffer.resize(buffer.size() * 4);
   }
-  gl.FeedbackBuffer(application_size, GLenum(application_type), static_cast<GLfloat*>(application_buffer));
   if (values < 0) return {};
   return parse(std::span(buffer).first(std::size_t(values)), window, run.pipeline().stack);
 }

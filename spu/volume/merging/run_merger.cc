@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
+#include <optional>
 #include <utility>
 
 #include "logging/log.h"
@@ -111,6 +113,7 @@ bool RunMerger::holds(std::unique_ptr<Run>& run, RecognisedRun& seen, KnownVolum
     verified.schedule.begin(image->inputs,
                             intersection(image->request.window, image->request.viewport).pixels());
   if (stages_.verifier.whole_due(verified, false, merged->volume.frames)) draw_natively(*run, image->request);
+  held_.reserve(held_.size() + 1);
   held_volume_ = merged;
   held_.push_back({std::move(run), std::move(seen), std::move(*image), &volume});
   if (held_.size() == merged->textures.size()) settle();
@@ -143,7 +146,15 @@ void RunMerger::settle() {
     nothing_held_();
     const bool all = held.size() == merged.textures.size();
     if (!all || !shows_as_one(merged, held)) {
-      for (HeldRun& each : held) show_alone(each);
+      std::exception_ptr trouble;
+      for (HeldRun& each : held) {
+        try {
+          show_alone(each);
+        } catch (const std::exception&) {
+          trouble = std::current_exception();
+        }
+      }
+      if (trouble) std::rethrow_exception(trouble);
     }
     drawn_.reset();
   }
@@ -175,6 +186,7 @@ volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vecto
 
 bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
   KnownVolume& volume = merged.volume;
+  bool shown = false;
   try {
     const Pipeline& pipeline = held.front().pipeline();
     std::vector<BrickSlices> bricks;
@@ -189,6 +201,7 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
     stages_.composer.hide_behind_geometry(pipeline, image.request);
     const auto lock = stages_.session.lock();
     const volume::FrameCounts counts = show_whole(merged, held, image, stages_.session.service());
+    shown = true;
     for (std::size_t k = 0; k < 3; ++k) volume.counters->size[k] = merged.tiling.size[k];
     if (volume.frames == 0 || stages_.session.options().explain)
       put_text(volume.counters->explanation,
@@ -205,6 +218,7 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
     stages_.session.lost(lost);
     return false;
   } catch (const std::exception& error) {
+    if (shown) throw;
     volume.refusals.handed_back = error.what();
   }
   logging::log(logging::Level::warn, "{} textures of one volume are shown one by one: {}",
@@ -269,12 +283,16 @@ volume::FrameCounts RunMerger::show_by_itself(HeldRun& run) {
 
 void RunMerger::show_alone(HeldRun& run) {
   KnownVolume& volume = *run.volume;
-  stages_.composer.hide_behind_geometry(run.pipeline(), run.image.request);
+  std::optional<volume::FrameCounts> counts;
+  bool hidden = false;
+  const auto hide = [&] {
+    if (!hidden) stages_.composer.hide_behind_geometry(run.pipeline(), run.image.request);
+    hidden = true;
+  };
   try {
-    const volume::FrameCounts counts = show_by_session(run);
+    hide();
+    counts = show_by_session(run);
     ++volume.frames;
-    count_substituted(volume, counts, stages_.account);
-    return;
   } catch (const compositor::ServiceLost& lost) {
     const auto lock = stages_.session.lock();
     stages_.session.lost(lost);
@@ -283,9 +301,12 @@ void RunMerger::show_alone(HeldRun& run) {
   } catch (const std::exception&) {
     // Refused, for want of memory perhaps: below it is told what the last way came to.
   }
+  if (counts) return count_substituted(volume, *counts, stages_.account);
   // The run's calls are gone, and whatever could be seen of it is about to be: it is rendered here.
   try {
-    count_substituted(volume, show_by_itself(run), stages_.account);
+    hide();
+    counts = show_by_itself(run);
+    count_substituted(volume, *counts, stages_.account);
   } catch (const std::exception& error) {
     volume.refusals.handed_back = error.what();
     volumes_.refuse(run.pipeline().volume.texture, Refusal{error.what()}, stages_.account);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/observation/draw_observer.h"
 
+#include <exception>
 #include <utility>
 
 #include "spu/track/share_group.h"
@@ -29,7 +30,7 @@ std::optional<Refusal> DrawObserver::refusal_of(const Pipeline& pipeline) {
 }
 
 bool DrawObserver::begins_run() {
-  if (inside_begin || !context().sufficient()) return false;
+  if (inside_begin || chain_.group().is_left_to_driver() || !context().sufficient()) return false;
   PipelineFinding finding = read_pipeline(context(), chain_.group(), samplers_, stacks.possible());
   if (const auto* left = std::get_if<LeftAlone>(&finding)) {
     refuse_in_this_frame(left->texture, left->refusal);
@@ -50,13 +51,29 @@ bool DrawObserver::begins_run() {
 
 void DrawObserver::close_run() {
   if (!run_) return;
-  std::unique_ptr<Run> run = std::move(run_);
+  closing_ = std::move(run_);
   chain_.set_phase(resting_phase());
-  if (!substitutes(run)) {
+  if (!substitutes(closing_)) {
     settle_held();
-    run->replay(*context().gl);
+    draw(*closing_);
   }
+  closing_.reset();
   chain_.set_phase(resting_phase());
+}
+
+void DrawObserver::draw(Run& run) {
+  if (std::exchange(run.shown, true)) return;
+  run.replay(*context().gl);
+}
+
+void DrawObserver::give_up() {
+  try {
+    settle_held();
+  } catch (...) {
+    // It holds nothing any more.
+  }
+  if (closing_) draw(*closing_);
+  if (run_) draw(*run_);
 }
 
 void DrawObserver::stack_defined() {

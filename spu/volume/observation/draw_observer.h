@@ -30,6 +30,7 @@ class DrawObserver : public Unit {
     close_run();
     settle_held();
   }
+  void give_up() final;
 
   /// A draw is about to happen while watching. Opens a run and answers true when it may be a slice.
   bool opens_run();
@@ -70,11 +71,16 @@ class DrawObserver : public Unit {
   ProgramSamplers& samplers() { return samplers_; }
 
   /// Takes away the open run, unmade.
-  void drop_run() { run_.reset(); }
+  void drop_run() {
+    run_.reset();
+    closing_.reset();
+  }
   void end_stack_watch();
 
  private:
   bool begins_run();
+  /// The application's own drawing, unless the run has been shown.
+  void draw(Run& run);
   /// Null where `pipeline` may begin a run.
   std::optional<Refusal> refusal_of(const Pipeline& pipeline);
 
@@ -83,6 +89,7 @@ class DrawObserver : public Unit {
   ProgramSamplers samplers_;
   Records calls_;  ///< of the open run; kept between runs for its memory
   std::unique_ptr<Run> run_;
+  std::unique_ptr<Run> closing_;  ///< is being looked at
 };
 
 }  // namespace understudy::spu

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -109,6 +110,22 @@ bool all_wait(std::span<const GLsizei> counts) {
                      [](GLsizei count) { return count >= 0 && count <= most_elements; });
 }
 
+/// In scope while a draw is added to a run: all of it is kept, or nothing.
+class WholeDraw {
+ public:
+  explicit WholeDraw(Run& run) : run_(run), begin_(run.mark()) {}
+  ~WholeDraw() {
+    if (std::uncaught_exceptions() > exceptions_) run_.rewind(begin_);
+  }
+  WholeDraw(const WholeDraw&) = delete;
+  WholeDraw& operator=(const WholeDraw&) = delete;
+
+ private:
+  Run& run_;
+  const Run::Mark begin_;
+  const int exceptions_ = std::uncaught_exceptions();
+};
+
 /// Adds one draw of vertices `first[i]`... to the run; false when its arrays are not of a kind that can wait.
 bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> first,
                   std::span<const GLsizei> count) {
@@ -117,6 +134,7 @@ bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> fi
       read_array_sources(observer.context(), sources))
     return false;
   Run& run = observer.run();
+  const WholeDraw whole(run);
   if (sources.client_memory) {
     for (std::size_t i = 0; i < count.size(); ++i) {
       std::vector<std::uint32_t> indices(static_cast<std::size_t>(count[i]));
@@ -177,6 +195,7 @@ bool defer_elements(DrawObserver& observer, GLenum mode, std::span<const Element
   GLint element_buffer = 0;
   gl.GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
   Run& run = observer.run();
+  const WholeDraw whole(run);
   const bool somewhere = std::all_of(ranges.begin(), ranges.end(),
                                      [](const ElementPart& range) { return range.offset != nullptr; });
   if (element_buffer != 0 && !sources.client_memory) {

@@ -48,6 +48,19 @@ class Run {
   bool reads_arrays = false;
   bool inside_begin = false;
   std::size_t draws = 0;
+  /// Its image, or its calls, have reached the framebuffer: whatever happens then, it is not drawn again.
+  bool shown = false;
+
+  /// How much it holds. A draw that cannot be kept whole is taken back to where it began.
+  struct Mark {
+    std::size_t words;
+    std::size_t buffer_draws;
+  };
+  Mark mark() const { return {calls_.words().size(), buffer_draws_.size()}; }
+  void rewind(const Mark& mark) {
+    calls_.rewind(mark.words);
+    buffer_draws_.erase(buffer_draws_.begin() + std::ptrdiff_t(mark.buffer_draws), buffer_draws_.end());
+  }
 
   /// Makes the calls on `gl`, in order.
   void replay(const DispatchTable& gl) const;

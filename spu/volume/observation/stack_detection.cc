@@ -12,9 +12,11 @@ constexpr GLsizei smallest_edge = 16;
 
 void defined(DrawObserver& observer, GLenum target, GLint level, GLsizei width, GLsizei height) {
   if (target != GL_TEXTURE_2D || level != 0 || !observer.stacks.detection.continues(width, height)) return;
-  GLint texture = 0;
-  observer.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
-  if (observer.stacks.detection.add(GLuint(texture))) observer.stack_defined();
+  observer.chain().after_call([&] {
+    GLint texture = 0;
+    observer.next().GetIntegerv(GL_TEXTURE_BINDING_2D, &texture);
+    if (observer.stacks.detection.add(GLuint(texture))) observer.stack_defined();
+  });
 }
 
 void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,

@@ -2,6 +2,7 @@
 #include "spu/volume/program/analysis.h"
 
 #include <exception>
+#include <new>
 
 #include "spu/volume/program/front_end.h"
 #include "spu/volume/program/walk.h"
@@ -19,7 +20,7 @@ StageFinding walked(Stage stage, const ParsedStage& parsed, std::span<const Know
 }  // namespace
 
 StageFinding analyse(Stage stage, std::span<const std::string> sources, std::span<const KnownUniform> known,
-                     const std::optional<std::span<const std::string>>& extensions) noexcept try {
+                     const std::optional<std::span<const std::string>>& extensions) try {
   const auto parsed = parse(stage, sources, extensions);
   if (const auto* failure = std::get_if<Failure>(&parsed)) return *failure;
   return walked(stage, std::get<ParsedStage>(parsed), known);
@@ -29,6 +30,8 @@ StageFinding analyse(Stage stage, std::span<const std::string> sources, std::spa
   return Failure{Failure::Kind::parse, "the shader has no main function"};
 } catch (const NotFollowed& found) {
   return Failure{Failure::Kind::unsupported, found.what};
+} catch (const std::bad_alloc&) {
+  throw;
 } catch (const std::exception& error) {
   return Failure{Failure::Kind::unsupported, std::string("the shader cannot be followed: ") + error.what()};
 }

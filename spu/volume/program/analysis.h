@@ -26,12 +26,13 @@ struct KnownUniform {
 /// objects of one stage, linked together. `extensions` are the driver's, for texts that ask for them by
 /// `#ifdef`: without them such a text is refused. Only for what the driver has compiled: the front end is not
 /// meant for texts that are made to break it. Safe from any thread; the first call of a process initialises the
-/// front end, the first with a version its built-in functions. Throws nothing.
+/// front end, the first with a version its built-in functions. Throws std::bad_alloc
+/// alone.
 StageFinding analyse(Stage stage, std::span<const std::string> sources,
                      std::span<const KnownUniform> known = {},
-                     const std::optional<std::span<const std::string>>& extensions = std::nullopt) noexcept;
+                     const std::optional<std::span<const std::string>>& extensions = std::nullopt);
 
 /// Programs in assembly language: "!!ARBfp1.0" and "!!ARBvp1.0".
-StageFinding analyse_assembly(const std::string& source) noexcept;
+StageFinding analyse_assembly(const std::string& source);
 
 }  // namespace understudy::spu::program

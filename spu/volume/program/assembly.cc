@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <new>
 #include <optional>
 #include <set>
 #include <utility>
@@ -360,7 +361,7 @@ class AssemblyWalk {
 
 }  // namespace
 
-StageFinding analyse_assembly(const std::string& source) noexcept try {
+StageFinding analyse_assembly(const std::string& source) try {
   if (!source.starts_with("!!ARBfp1.0") && !source.starts_with("!!ARBvp1.0"))
     return Failure{Failure::Kind::unsupported, "an assembly program that is neither !!ARBfp1.0 nor !!ARBvp1.0"};
   return AssemblyWalk().facts(source);
@@ -368,6 +369,8 @@ StageFinding analyse_assembly(const std::string& source) noexcept try {
   return Failure{Failure::Kind::unsupported, found.what};
 } catch (const TooLarge&) {
   return Failure{Failure::Kind::too_large, "the program is too large to follow"};
+} catch (const std::bad_alloc&) {
+  throw;
 } catch (const std::exception&) {
   return Failure{Failure::Kind::parse, "the assembly program cannot be read"};
 }

@@ -6,6 +6,9 @@
 #include <glslang/Public/ShaderLang.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
 #include <vector>
 
 #include "spu/volume/program/driver_macros.h"
@@ -29,6 +32,28 @@ EShLanguage language_of(Stage stage) {
   }
   return EShLangFragment;
 }
+
+/// The front end does not clean up behind an exception that runs through it: its locks stay held, and its
+/// tables half made. It is not asked again.
+constinit std::atomic<bool> is_broken = false;
+
+/// In scope while the front end is asked; what it was making when an exception came is left to lie.
+template <class Made>
+class Asked {
+ public:
+  explicit Asked(std::unique_ptr<Made>& made) : made_(made) {}
+  ~Asked() {
+    if (std::uncaught_exceptions() == exceptions_) return;
+    is_broken = true;
+    static_cast<void>(made_.release());
+  }
+  Asked(const Asked&) = delete;
+  Asked& operator=(const Asked&) = delete;
+
+ private:
+  std::unique_ptr<Made>& made_;
+  const int exceptions_ = std::uncaught_exceptions();
+};
 
 bool initialise() {
   static const bool done = glslang::InitializeProcess();
@@ -109,8 +134,10 @@ std::variant<ParsedStage, Failure> parse(Stage stage, std::span<const std::strin
                                          const std::optional<std::span<const std::string>>& extensions) {
   if (sources.empty()) return Failure{Failure::Kind::parse, "no source is known"};
   if (is_too_large(sources)) return Failure{Failure::Kind::too_large, "the shader is too large to read"};
-  if (!initialise()) return Failure{Failure::Kind::unsupported, "the GLSL front end does not start"};
+  if (is_broken) return Failure{Failure::Kind::unsupported, "the GLSL front end does not start"};
   auto held = std::make_unique<ParsedStage::Held>();
+  const Asked asked(held);
+  if (!initialise()) return Failure{Failure::Kind::unsupported, "the GLSL front end does not start"};
   const EShLanguage language = language_of(stage);
   std::string error;
   for (const std::string& source : sources) {

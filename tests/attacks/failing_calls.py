@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One allocation that Understudy makes fails: the viewer shows its image.
+
+    failing_calls.py UNDERSTUDY UNDERSTUDY-VIEWER ENTRY-LIBRARY FAILING-CALLS PLACES
+
+The bundled viewer draws three frames in four modes, alone. Of its allocations PLACES fail, one in each run, spread evenly
+over all that there are. Status and image must be those of the viewer without Understudy,
+to 40 dB. FAILING-CALLS is the library that makes them fail (shortage/failing_calls.cc).
+"""
+
+import concurrent.futures
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SIDE = 41
+MODES = ("table", "rgba", "core", "bricks")
+LEAST_DECIBELS = 40
+PATIENCE_SECONDS = 600  # a machine may be busy; a viewer takes half a second
+AT_ONCE = 2
+
+
+class Viewer:
+    def __init__(self, understudy, viewer, entry, failing, folder):
+        self.understudy, self.viewer, self.folder = understudy, viewer, folder
+        self.libraries = f"{failing} {entry}"
+        self.volume = folder / f"volume.{SIDE}x{SIDE}x{SIDE}"
+        blurred = random.Random(1).randbytes(SIDE)
+        self.volume.write_bytes(bytes(blurred[x] // 4 + 3 * min(x, y, z) for z in range(SIDE) for y in range(SIDE) for x in range(SIDE)))
+
+    def draw(self, mode, image, **environment):
+        words = [self.viewer, self.volume, "--size", SIDE, SIDE, SIDE, "--type", "u8", "--offscreen", "--frames", 3, "--orbit", 5,
+                 "--window-size", 200, 200, "--mode", mode, "--screenshot", image]
+        everything = {name: value for name, value in os.environ.items() if not name.startswith("UNDERSTUDY")}
+        everything |= {"UNDERSTUDY_SPEED_GUARD": "off", "XDG_RUNTIME_DIR": str(self.folder)} | environment
+        return subprocess.run([str(word) for word in words], env=everything, capture_output=True, text=True, errors="replace",
+                              timeout=PATIENCE_SECONDS, check=False)
+
+    def bare(self, mode):
+        image = self.folder / f"{mode}.png"
+        result = self.draw(mode, image)
+        if result.returncode != 0:
+            raise SystemExit(f"the viewer itself does not draw:\n{result.stderr}")
+        return image
+
+    def count(self, mode, what):
+        """How many such calls there are when none fails."""
+        file = self.folder / "count"
+        file.unlink(missing_ok=True)
+        self.draw(mode, self.folder / "unused.png", LD_PRELOAD=self.libraries, FAIL_WHAT=what, FAIL_COUNT=str(file))
+        return int(file.read_text())
+
+    def difference(self, image, other):
+        if not other.exists():
+            return None
+        said = subprocess.run([self.understudy, "compare", image, other], capture_output=True, text=True, check=False).stdout
+        found = re.search(r"PSNR ([\d.]+|inf)", said)
+        return float(found[1]) if found else None
+
+    def trouble(self, mode, bare, what, number):
+        """What is wrong when that call fails; and whether one did."""
+        image = self.folder / f"{mode}.{what}.{number}.png"
+        try:
+            result = self.draw(mode, image, LD_PRELOAD=self.libraries, FAIL_WHAT=what, FAIL_NTH=str(number))
+        except subprocess.TimeoutExpired:
+            return f"no end after {PATIENCE_SECONDS} s", True
+        decibels = self.difference(bare, image)
+        image.unlink(missing_ok=True)
+        failed = "A CALL FAILS" in result.stderr
+        if result.returncode == 0 and decibels is not None and decibels >= LEAST_DECIBELS:
+            return None, failed
+        last = [line for line in result.stderr.splitlines() if "A CALL FAILS" not in line][-2:]
+        return f"status {result.returncode}, PSNR {decibels}, {last}", failed
+
+
+def main():
+    understudy, viewer, entry, failing, places = sys.argv[1:]
+    wrong, runs, failed = [], 0, 0
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(AT_ONCE) as workers:
+        drawn = Viewer(understudy, viewer, entry, failing, Path(folder))
+        for mode in MODES:
+            bare = drawn.bare(mode)
+            for what in ("memory",):
+                total = drawn.count(mode, what)
+                step = max(1, total // int(places))
+                numbers = range(step // 2, total, step)
+                answers = list(workers.map(lambda number: drawn.trouble(mode, bare, what, number), numbers))
+                bad = [f"{mode}, {what} {number}: {said}" for number, (said, _) in zip(numbers, answers) if said]
+                wrong += bad
+                runs += len(answers)
+                failed += sum(hit for _, hit in answers)
+                print(f"{mode}: {total} calls for {what}, {len(answers)} runs, {len(bad)} went wrong", flush=True)
+    for line in wrong[:20]:
+        print(line)
+    # Threads share the work anew in each run, so the last numbers are not always reached.
+    if failed < 0.9 * runs:
+        raise SystemExit(f"only in {failed} of {runs} runs a call failed")
+    return len(wrong) > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

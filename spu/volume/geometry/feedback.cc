@@ -15,7 +15,7 @@ struct Window {
   std::array<GLdouble, 2> depth_range{};
 };
 
-/// The application's feedback buffer, given back afterwards.
+/// The application's feedback buffer, as it was before.
 class FeedbackState {
  public:
   explicit FeedbackState(const DispatchTable& gl) : gl_(gl) {

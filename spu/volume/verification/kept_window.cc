@@ -14,9 +14,6 @@
 namespace understudy::spu {
 namespace {
 
-/// What is less than a step of 8 bits cannot be told from rounding.
-constexpr float least_visible = 1.0F / 255;
-
 /// Which pixels of a rectangle show something.
 class VisiblePixels {
  public:
@@ -48,6 +45,9 @@ class VisiblePixels {
   }
 
  private:
+  /// What is less than a step of 8 bits cannot be told from rounding.
+  static constexpr float least_visible = 1.0F / 255;
+
   volume::Rect rect_;
   std::span<const float> rgba_;
   float background_;

@@ -166,6 +166,7 @@ volume::FrameCounts RunMerger::show_whole(MergedVolume& merged, const std::vecto
   const HeldRun& first = held.front();
   std::vector<BrickVersion> versions;
   for (const HeldRun& each : held)
+    // NOLINTNEXTLINE(performance-inefficient-vector-operation): a few
     versions.push_back({each.pipeline().volume.texture, each.seen.texture_version});
   upload_merged(stages_.context, stages_.group, stages_.session, stages_.uploader, stages_.account, merged,
                 versions, first.pipeline().volume, service);
@@ -190,6 +191,7 @@ bool RunMerger::shows_as_one(MergedVolume& merged, std::vector<HeldRun>& held) {
   try {
     const Pipeline& pipeline = held.front().pipeline();
     std::vector<BrickSlices> bricks;
+    // NOLINTNEXTLINE(performance-inefficient-vector-operation): a few
     for (const HeldRun& each : held) bricks.push_back({each.pipeline().volume.texture, &each.seen});
     MergedSlices whole = merged_slices(merged, bricks, pipeline);
     ImageRequest image;

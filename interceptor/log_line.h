@@ -2,7 +2,7 @@
 // Lines on stderr as logging/log.h writes them, without a C++ library.
 #pragma once
 
-#include "logging/level.h"
+#include "compositor/logging/level.h"
 
 namespace understudy::interceptor {
 

@@ -7,8 +7,8 @@
 #include <exception>
 #include <new>
 
+#include "compositor/logging/log.h"
 #include "dispatch/shell.h"
-#include "logging/log.h"
 #include "spu/lost_context.h"
 
 namespace understudy::spu {

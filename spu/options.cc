@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "compositor/exchange/settings.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/former_names.h"
 
 namespace understudy::spu {

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "compositor/exchange/mpi_communicator.h"
+#include "compositor/logging/log.h"
 #include "compositor/node/node.h"
 #include "compositor/service/backend_line.h"
-#include "logging/log.h"
 #include "volume/glsl/backend.h"
 #include "volume/glsl/brick_size.h"
 

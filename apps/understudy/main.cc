@@ -25,7 +25,7 @@
 #include "apps/understudy/launch/listener.h"
 #include "apps/understudy/launch/relay.h"
 #include "apps/understudy/study/study.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/former_names.h"
 
 namespace launcher = understudy::launcher;

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace understudy::compositor {
 

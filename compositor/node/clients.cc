@@ -8,8 +8,8 @@
 #include <array>
 #include <vector>
 
+#include "compositor/logging/log.h"
 #include "compositor/service/service_protocols.h"
-#include "logging/log.h"
 
 namespace understudy::compositor {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <variant>
 
+#include "compositor/logging/log.h"
 #include "compositor/service.h"
 #include "compositor/service/request_message.h"
-#include "logging/log.h"
 
 namespace understudy::compositor {
 

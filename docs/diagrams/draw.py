@@ -60,21 +60,20 @@ class Drawing:
 
 
 def layers():
-    d = Drawing(860, 552, "Modules; a module may include those below it, never one above")
+    d = Drawing(860, 470, "Modules; a module may include those below it, never one above")
     rows = [("apps/", "programs: understudy, understudy-node, understudy-view, understudy-viewer", "hold no logic that a module could hold", VIEWER),
             ("interceptor/", "exported OpenGL functions, real driver, life of contexts", "does not know what a volume is", ENTRY),
             ("spu/", "dispatch table, chain, stream processing units, recogniser, report", "calls OpenGL through dispatch tables only", UNITS),
             ("compositor/", "blending, exchanges, nodes, render service, connections", "does not know OpenGL", SERVICE),
-            ("volume/", "bricks, partition, classification, ray casters, files, references", "does not know MPI", NODES),
-            ("logging/", "one function for all log lines, with levels", "knows no other module", DRIVER)]
+            ("volume/", "bricks, partition, classification, ray casters, files, references", "does not know MPI", NODES)]
     for number, (name, what, never, fill) in enumerate(rows):
         y = 45 + 82 * number
         d.box(60, y, 620, 60, [name, what, never], fill)
         if number:
             d.arrow([(370, y - 22), (370, y - 1)])
-    d.box(720, 45, 110, 470, ["tests/", "may use all,", "used by none"], PAPER, dashed=True)
+    d.box(720, 45, 110, 388, ["tests/", "may use all,", "used by none"], PAPER, dashed=True)
     d.text(370, 28, "Includes point down only; tests/architecture checks it", 13, style="italic")
-    d.text(370, 539, "MPI is linked by understudy-node alone; the bundled viewer uses no module", 12, style="italic")
+    d.text(370, 457, "MPI is linked by understudy-node alone; the bundled viewer uses no module", 12, style="italic")
     return d
 
 

@@ -17,8 +17,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "compositor/logging/log.h"
 #include "interceptor/core/redraw_request.h"
-#include "logging/log.h"
 #include "spu/chain.h"
 #include "spu/lost_context.h"
 #include "spu/options.h"

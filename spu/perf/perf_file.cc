@@ -8,7 +8,7 @@
 #include <exception>
 #include <memory>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/report/report.h"
 
 namespace understudy::spu {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "compositor/logging/log.h"
 #include "dispatch/call_words.h"
-#include "logging/log.h"
 #include "spu/print/call_text.h"
 #include "spu/shared_by_file.h"
 

@@ -17,7 +17,7 @@
 #include <new>
 #include <utility>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace understudy::spu {
 namespace {

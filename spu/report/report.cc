@@ -23,7 +23,7 @@
 #include <system_error>
 #include <vector>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/report/keys.h"
 #include "spu/report/skipped_work.h"
 #include "volume/frame_counts.h"

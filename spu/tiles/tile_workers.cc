@@ -9,9 +9,9 @@
 #include <exception>
 #include <utility>
 
+#include "compositor/logging/log.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/socket.h"
-#include "logging/log.h"
 #include "spu/remote/gl_server_protocol.h"
 #include "spu/report/counters.h"
 

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <system_error>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/stream/event.h"
 
 namespace understudy::spu {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/pack/pack.h"
 #include "spu/stream/encode.h"
 

@@ -12,7 +12,7 @@
 
 #include "apps/understudy/images/read_image.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/player/player.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"

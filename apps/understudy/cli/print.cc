@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "apps/understudy/cli/play.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/print/record_text.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"

@@ -17,7 +17,7 @@
 #include "apps/understudy/file_scene/file_scene.h"
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "volume/image.h"
 
 namespace understudy::launcher {

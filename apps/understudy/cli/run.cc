@@ -12,7 +12,7 @@
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/trace_option.h"
 #include "apps/understudy/launch/backend_option.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/former_names.h"
 #include "spu/options.h"
 

@@ -23,10 +23,10 @@
 #include "apps/understudy/launch/run_folder.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/signal_inbox.h"
+#include "compositor/logging/log.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/runtime_folder.h"
 #include "compositor/transport/tcp/secret.h"
-#include "logging/log.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/understudy/offscreen/offscreen_contexts.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/player/player.h"
 #include "spu/stream/event.h"
 #include "spu/stream/trace_file.h"

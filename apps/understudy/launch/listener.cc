@@ -14,12 +14,12 @@
 #include "apps/understudy/processes/client_processes.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/signal_inbox.h"
+#include "compositor/logging/log.h"
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
 #include "compositor/transport/tcp/key_file.h"
 #include "compositor/transport/tcp/listener.h"
-#include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {

@@ -14,8 +14,8 @@
 
 #include "apps/understudy/hosts/mpirun_command.h"
 #include "apps/understudy/processes/environment.h"
+#include "compositor/logging/log.h"
 #include "compositor/service/backend_line.h"
-#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {

@@ -19,12 +19,12 @@
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/signal_inbox.h"
 #include "compositor/exchange/settings.h"
+#include "compositor/logging/log.h"
 #include "compositor/relay/render_relay.h"
 #include "compositor/service/limits.h"
 #include "compositor/service/service_protocols.h"
 #include "compositor/transport/tcp/key_file.h"
 #include "compositor/transport/tcp/tcp_connection.h"
-#include "logging/log.h"
 #include "spu/remote/gl_server_relay.h"
 
 namespace understudy::launcher {

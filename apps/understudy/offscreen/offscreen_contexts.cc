@@ -10,7 +10,7 @@
 
 #include "apps/understudy/offscreen/egl_contexts.h"
 #include "apps/understudy/offscreen/osmesa_contexts.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace understudy::launcher {
 namespace {

@@ -16,10 +16,10 @@
 #include <thread>
 #include <utility>
 
+#include "compositor/logging/log.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/socket.h"
 #include "compositor/transport/socket_file.h"
-#include "logging/log.h"
 
 namespace understudy::launcher {
 namespace {

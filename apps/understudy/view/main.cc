@@ -9,7 +9,7 @@
 #include "apps/understudy/cli/help_layout.h"
 #include "apps/understudy/cli/run.h"
 #include "apps/understudy/view/view.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace launcher = understudy::launcher;
 

@@ -17,7 +17,7 @@
 #include "apps/understudy/view/shown_volume.h"
 #include "apps/understudy/view/view_message.h"
 #include "apps/understudy/view/web_server.h"
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace understudy::launcher {
 namespace {

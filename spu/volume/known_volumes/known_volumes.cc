@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 namespace understudy::spu {
 namespace {

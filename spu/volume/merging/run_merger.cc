@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/depth/depth.h"
 #include "spu/volume/merging/merged_geometry.h"

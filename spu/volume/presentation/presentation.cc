@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/volume/presentation/save_frames.h"
 #include "volume/raycast/ray_caster.h"
 

@@ -20,8 +20,8 @@
 #include <thread>
 #include <vector>
 
+#include "compositor/logging/log.h"
 #include "compositor/transport/runtime_folder.h"
-#include "logging/log.h"
 
 namespace understudy::spu {
 namespace {

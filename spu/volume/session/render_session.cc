@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/report/counters.h"
 #include "spu/volume/session/last_image.h"
 #include "spu/volume/session/own_nodes.h"

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 #include "spu/report/skipped_work.h"
 
 namespace understudy::spu {

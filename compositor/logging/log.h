@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "logging/level.h"
+#include "compositor/logging/level.h"
 
 namespace understudy::logging {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines on stderr, in processes of their own: the environment is read once.
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

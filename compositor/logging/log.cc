@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "logging/log.h"
+#include "compositor/logging/log.h"
 
 #include <atomic>
 #include <cstdio>

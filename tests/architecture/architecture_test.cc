@@ -186,8 +186,21 @@ TEST(Architecture, OnlyTheCompositorTheNodesAndBenchmarksKnowMpi) {
 TEST(Architecture, VolumeAndCompositorKnowNoOpenGlStream) {
   EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
                 return (module_of(file.path) == "volume" || module_of(file.path) == "compositor") &&
-                       ((header.starts_with("GL/") && !file.path.starts_with("volume/glsl/")) ||
+                       ((header.starts_with("GL/") && !file.path.starts_with("volume/glsl/") &&
+                         !file.path.starts_with("volume/offscreen/")) ||
                         header.starts_with("dispatch/"));
+              }),
+              IsEmpty());
+}
+
+// interceptor/ exports the same functions; the bundled viewer and the benchmark of calls stand for
+// applications.
+TEST(Architecture, ContextsWithoutAWindowAreMadeInOneFolder) {
+  EXPECT_THAT(includes_where([](const SourceFile& file, const std::string& header) {
+                return (header.starts_with("EGL/") || header == "GL/osmesa.h") &&
+                       !file.path.starts_with("volume/offscreen/") && module_of(file.path) != "interceptor" &&
+                       module_of(file.path) != "tests" && !file.path.starts_with("apps/viewer/") &&
+                       file.path != "apps/bench/calls.cc";
               }),
               IsEmpty());
 }

@@ -13,9 +13,11 @@
 #include <utility>
 #include <variant>
 
+#include "volume/brick/brick_store.h"
 #include "volume/frame_counts.h"
 #include "volume/glsl/glsl_ray_caster.h"
 #include "volume/image.h"
+#include "volume/occlusion.h"
 #include "volume/request.h"
 
 namespace understudy::volume::glsl {

@@ -17,6 +17,7 @@
 #include "volume/footprint.h"
 #include "volume/glsl/brick_passes.h"
 #include "volume/glsl/field_texture.h"
+#include "volume/occlusion.h"
 #include "volume/raycast/map_visibility.h"
 #include "volume/raycast/occupancy_map.h"
 #include "volume/raycast/ray_caster.h"
@@ -367,7 +368,7 @@ void GlslRayCaster::draw(const RenderRequest& request, Image& out, FrameCounts& 
   if (occlusion != nullptr && can_occlude(request)) cover_opaque_tiles(out, request, *occlusion);
 }
 
-void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCounts& counts) {
+void GlslRayCaster::check_drawable(const RenderRequest& request, const Image& out) const {
   if (!store_.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
   validate(store_.description(), request);
   if (const auto reason = obstacle(request))
@@ -375,26 +376,24 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
   if (out.rgba.size() != 4 * out.rect.pixels())
     throw std::invalid_argument(fmt::format("an image of {} x {} pixels with {} values", out.rect.width,
                                             out.rect.height, out.rgba.size()));
-  std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
-  if (store_.empty()) return;
+}
 
-  const Device::Current current(device_);
-  const Functions& gl = device_.gl();
-  if (!resources_) resources_ = std::make_unique<Resources>(device_, store_, brick_cells_);
-  Resources& here = *resources_;
-  if (!changed_.empty()) {
-    if (here.field)
-      here.field->blocks_changed(changed_);
-    else
-      here.bricks->atlas().blocks_changed(changed_);
-    for (const auto& prepared : here.prepared)
-      if (prepared) {
-        prepared->skip = prepared->occupancy_map(store_);
-        prepared->steep = prepared->is_steep(store_);
-        prepared->upload_distances(gl, store_);
-      }
-    changed_.clear();
-  }
+void GlslRayCaster::follow_changes(Resources& here) {
+  if (changed_.empty()) return;
+  if (here.field)
+    here.field->blocks_changed(changed_);
+  else
+    here.bricks->atlas().blocks_changed(changed_);
+  for (const auto& prepared : here.prepared)
+    if (prepared) {
+      prepared->skip = prepared->occupancy_map(store_);
+      prepared->steep = prepared->is_steep(store_);
+      prepared->upload_distances(device_.gl(), store_);
+    }
+  changed_.clear();
+}
+
+const GlslRayCaster::Prepared& GlslRayCaster::prepared_for(const RenderRequest& request, Resources& here) {
   const bool keeps_clear_samples = request.op == Operator::min;
   const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
     return prepared && prepared->keeps_clear_samples == keeps_clear_samples &&
@@ -403,9 +402,50 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
   };
   if (!fits(here.prepared[0])) here.prepared[0].swap(here.prepared[1]);
   if (!fits(here.prepared[0]))
-    here.prepared[0] = std::make_unique<Prepared>(gl, store_, request.classification, keeps_clear_samples,
-                                                  request.optimizations.empty_bricks);
-  const Prepared& prepared = *here.prepared[0];
+    here.prepared[0] = std::make_unique<Prepared>(device_.gl(), store_, request.classification,
+                                                  keeps_clear_samples, request.optimizations.empty_bricks);
+  return *here.prepared[0];
+}
+
+const MarchProgram& GlslRayCaster::program_for(const RenderRequest& request, const Prepared& prepared,
+                                               const Resources& here) {
+  const auto& wrap = store_.description().wrap;
+  MarchVariant variant;
+  variant.colours = store_.description().type == TexelType::rgba8;
+  variant.bordered =
+      request.filter == Filter::linear && std::find(wrap.begin(), wrap.end(), Wrap::border) != wrap.end();
+  variant.filter = request.filter;
+  variant.op = request.op;
+  variant.own_filter = prepared.steep;
+  variant.bricked = here.bricks.has_value();
+  return device_.program(variant);
+}
+
+void GlslRayCaster::draw_whole(const Rect& pixels, Image& out, FrameCounts& counts, Resources& here) const {
+  const Functions& gl = device_.gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, here.framebuffer);
+  gl.Viewport(0, 0, pixels.width, pixels.height);
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
+
+  gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, out.rect.width);
+  gl.ReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_FLOAT, out.at(pixels.x, pixels.y));
+  gl.PixelStorei(GL_PACK_ROW_LENGTH, 0);
+  here.read_counts(gl, counts);
+  device_.check("drawing the volume");
+}
+
+void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCounts& counts) {
+  check_drawable(request, out);
+  std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
+  if (store_.empty()) return;
+
+  const Device::Current current(device_);
+  const Functions& gl = device_.gl();
+  if (!resources_) resources_ = std::make_unique<Resources>(device_, store_, brick_cells_);
+  Resources& here = *resources_;
+  follow_changes(here);
+  const Prepared& prepared = prepared_for(request, here);
   FrameCounts mine;  // what fails is not counted: the CPU will count it
   mine.blocks = store_.blocks();
   mine.blocks_empty = prepared.skip.empty_bricks();
@@ -423,39 +463,16 @@ void GlslRayCaster::draw_all(const RenderRequest& request, Image& out, FrameCoun
   if (here.field) bind(gl, Unit::field, GL_TEXTURE_3D, here.field->name());
   bind(gl, Unit::distances, GL_TEXTURE_3D, prepared.distances.name());
   bind(gl, Unit::table, GL_TEXTURE_1D, prepared.table.name());
-  const TexelType type = store_.description().type;
-  const auto& wrap = store_.description().wrap;
-  MarchVariant variant;
-  variant.colours = type == TexelType::rgba8;
-  variant.bordered =
-      request.filter == Filter::linear && std::find(wrap.begin(), wrap.end(), Wrap::border) != wrap.end();
-  variant.filter = request.filter;
-  variant.op = request.op;
-  variant.own_filter = prepared.steep;
-  variant.bricked = here.bricks.has_value();
-  const MarchProgram& program = device_.program(variant);
+  const MarchProgram& program = program_for(request, prepared, here);
   set_uniforms(program, request, prepared, setup.top, setup.rounding);
-  if (here.bricks) {
-    std::vector<std::size_t> visible = visible_bricks(request, prepared, pixels);
-    if (!visible.empty()) {
-      here.bricks->draw(program, pixels.width, pixels.height, std::move(visible));
-      here.bricks->read_image(out.rect.width, out.at(pixels.x, pixels.y));
-      here.count_walked(mine);
-      device_.check("reading the image");
-    }
-    counts += mine;
-    return;
+  if (!here.bricks) {
+    draw_whole(pixels, out, mine, here);
+  } else if (std::vector<std::size_t> visible = visible_bricks(request, prepared, pixels); !visible.empty()) {
+    here.bricks->draw(program, pixels.width, pixels.height, std::move(visible));
+    here.bricks->read_image(out.rect.width, out.at(pixels.x, pixels.y));
+    here.count_walked(mine);
+    device_.check("reading the image");
   }
-  gl.BindFramebuffer(GL_FRAMEBUFFER, here.framebuffer);
-  gl.Viewport(0, 0, pixels.width, pixels.height);
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
-
-  gl.ReadBuffer(GL_COLOR_ATTACHMENT0);
-  gl.PixelStorei(GL_PACK_ROW_LENGTH, out.rect.width);
-  gl.ReadPixels(0, 0, pixels.width, pixels.height, GL_RGBA, GL_FLOAT, out.at(pixels.x, pixels.y));
-  gl.PixelStorei(GL_PACK_ROW_LENGTH, 0);
-  here.read_counts(gl, mine);
-  device_.check("drawing the volume");
   counts += mine;
 }
 

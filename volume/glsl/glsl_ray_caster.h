@@ -60,6 +60,15 @@ class GlslRayCaster final : public BrickRenderer {
   struct Rays;
   struct Resources;
 
+  /// Throws as draw() does where the request, the store or the image is not one that can be drawn.
+  void check_drawable(const RenderRequest& request, const Image& out) const;
+  /// Brings what is kept of the changed blocks to the graphics card.
+  void follow_changes(Resources& here);
+  const Prepared& prepared_for(const RenderRequest& request, Resources& here);
+  const MarchProgram& program_for(const RenderRequest& request, const Prepared& prepared,
+                                  const Resources& here);
+  /// All rays at once, where one texture holds the field.
+  void draw_whole(const Rect& pixels, Image& out, FrameCounts& counts, Resources& here) const;
   /// The bricks that show something in these pixels, in visibility order.
   std::vector<std::size_t> visible_bricks(const RenderRequest& request, const Prepared& prepared,
                                           const Rect& pixels) const;

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL 3.3 core context without window, on EGL or on OSMesa. Both libraries are opened when one is asked
-// for, never linked: a process without them runs, and OSMesa exports OpenGL's own names.
+// An OpenGL 3.3 core context without window, on EGL or on OSMesa (volume/offscreen/).
 #pragma once
 
 #include <memory>
-#include <stdexcept>
+
+#include "volume/offscreen/system_library.h"
 
 namespace understudy::volume::glsl {
 
-/// There is no such context on this machine; the message says why, and what to install.
-class ContextUnavailable : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using offscreen::ContextUnavailable;
 
 class OffscreenContext {
  public:

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/cli/doctor.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <GL/glx.h>
-#include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -20,6 +17,8 @@
 #include <vector>
 
 #include "apps/understudy/processes/installation.h"
+#include "volume/offscreen/egl.h"
+#include "volume/offscreen/osmesa.h"
 
 namespace understudy::launcher {
 namespace {
@@ -98,42 +97,23 @@ Finding look_at_glx() {
 }
 
 Finding look_at_egl() {
-  const Library egl("libEGL.so.1");
-  if (!egl) return {false, "libEGL.so.1 is missing"};
-  const auto get_platform_display = egl.function<decltype(&eglGetPlatformDisplay)>("eglGetPlatformDisplay");
-  if (get_platform_display == nullptr) return {false, "EGL is older than 1.5"};
-  const EGLDisplay display = get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-  const auto initialize = egl.function<decltype(&eglInitialize)>("eglInitialize");
-  if (display == EGL_NO_DISPLAY || initialize(display, nullptr, nullptr) == EGL_FALSE) {
-    return {false, "no display without a window system (EGL_PLATFORM_SURFACELESS_MESA)"};
-  }
-  egl.function<decltype(&eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API);
-  const std::array<EGLint, 3> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-  EGLConfig config = nullptr;
-  EGLint configs = 0;
-  egl.function<decltype(&eglChooseConfig)>("eglChooseConfig")(display, wanted.data(), &config, 1, &configs);
-  const EGLContext context = egl.function<decltype(&eglCreateContext)>("eglCreateContext")(
-      display, configs > 0 ? config : nullptr, EGL_NO_CONTEXT, nullptr);
-  if (context == EGL_NO_CONTEXT || egl.function<decltype(&eglMakeCurrent)>("eglMakeCurrent")(
-                                       display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE) {
-    return {false, "no desktop OpenGL context without a surface"};
-  }
-  const auto get_address = egl.function<decltype(&eglGetProcAddress)>("eglGetProcAddress");
-  return described(reinterpret_cast<GetString>(get_address("glGetString")));
+  const volume::offscreen::Egl egl;
+  egl.open_display(volume::offscreen::Egl::First::surfaceless, "desktop OpenGL context without a surface",
+                   [&](EGLDisplay display) {
+                     const EGLContext context = egl.create_context(display, {});
+                     return context != EGL_NO_CONTEXT &&
+                            egl.MakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+                   });
+  return described(reinterpret_cast<GetString>(egl.GetProcAddress("glGetString")));
 }
 
 Finding look_at_osmesa() {
-  const Library osmesa("libOSMesa.so.8");
-  if (!osmesa) return {false, "libOSMesa.so.8 is missing"};
-  const OSMesaContext context = osmesa.function<decltype(&OSMesaCreateContextExt)>("OSMesaCreateContextExt")(
-      OSMESA_RGBA, 24, 0, 0, nullptr);
+  const volume::offscreen::Osmesa osmesa;
+  const OSMesaContext context = osmesa.create_context({.depth_bits = 24});
   std::array<GLubyte, 16 * 16 * 4> image{};
-  if (context == nullptr || osmesa.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")(
-                                context, image.data(), GL_UNSIGNED_BYTE, 16, 16) == GL_FALSE) {
-    return {false, "gives no OpenGL context"};
-  }
-  const auto get_address = osmesa.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
-  return described(reinterpret_cast<GetString>(get_address("glGetString")));
+  if (context == nullptr || !osmesa.MakeCurrent(context, image.data(), GL_UNSIGNED_BYTE, 16, 16))
+    return {false, "libOSMesa gives no OpenGL context"};
+  return described(reinterpret_cast<GetString>(osmesa.GetProcAddress("glGetString")));
 }
 
 Finding look_at_mpi() {
@@ -173,6 +153,14 @@ constexpr std::array checks{
     Check{"nodes", look_at_nodes, "apt install libopenmpi-dev openmpi-bin && ./run build"},
 };
 
+Finding finding_of(const Check& check) {
+  try {
+    return check.look();
+  } catch (const volume::offscreen::ContextUnavailable& absent) {
+    return {false, absent.what()};
+  }
+}
+
 /// Drivers may crash, hang or end their process: each check runs in a process of its own.
 Finding look_apart(const Check& check) {
   std::array<int, 2> channel{};
@@ -180,7 +168,7 @@ Finding look_apart(const Check& check) {
   const pid_t probe = fork();
   if (probe == 0) {
     alarm(probe_seconds);
-    const Finding finding = check.look();
+    const Finding finding = finding_of(check);
     const std::string message = (finding.works ? "+" : "-") + finding.what;
     (void)!write(channel[1], message.data(), message.size());
     _exit(0);

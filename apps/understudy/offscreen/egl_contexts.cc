@@ -1,95 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/offscreen/egl_contexts.h"
 
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
-#include <string>
-#include <tuple>
+#include <string_view>
 #include <vector>
 
 #include "dispatch/call_id.h"
+#include "volume/offscreen/egl.h"
 
 namespace understudy::launcher {
 namespace {
 
-/// EGL 1.5's entry points that are used here.
-struct EglFunctions {
-  decltype(&eglGetProcAddress) GetProcAddress;
-  decltype(&eglGetPlatformDisplay) GetPlatformDisplay;
-  decltype(&eglGetDisplay) GetDisplay;
-  decltype(&eglInitialize) Initialize;
-  decltype(&eglTerminate) Terminate;
-  decltype(&eglBindAPI) BindAPI;
-  decltype(&eglGetConfigs) GetConfigs;
-  decltype(&eglGetConfigAttrib) GetConfigAttrib;
-  decltype(&eglCreateContext) CreateContext;
-  decltype(&eglDestroyContext) DestroyContext;
-  decltype(&eglCreatePbufferSurface) CreatePbufferSurface;
-  decltype(&eglDestroySurface) DestroySurface;
-  decltype(&eglMakeCurrent) MakeCurrent;
-  decltype(&eglGetError) GetError;
-};
+using volume::offscreen::Egl;
 
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(dlsym(library, name));
-  if (function == nullptr)
-    throw std::runtime_error(fmt::format("libEGL.so.1 has no {}; install libegl1 of EGL 1.5 or later", name));
-}
-
-EglFunctions open_egl() {
-  void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr)
-    throw std::runtime_error(fmt::format("{}; install libegl1 and libegl-mesa0", dlerror()));
-  EglFunctions egl{};
-  find(library, "eglGetProcAddress", egl.GetProcAddress);
-  find(library, "eglGetPlatformDisplay", egl.GetPlatformDisplay);
-  find(library, "eglGetDisplay", egl.GetDisplay);
-  find(library, "eglInitialize", egl.Initialize);
-  find(library, "eglTerminate", egl.Terminate);
-  find(library, "eglBindAPI", egl.BindAPI);
-  find(library, "eglGetConfigs", egl.GetConfigs);
-  find(library, "eglGetConfigAttrib", egl.GetConfigAttrib);
-  find(library, "eglCreateContext", egl.CreateContext);
-  find(library, "eglDestroyContext", egl.DestroyContext);
-  find(library, "eglCreatePbufferSurface", egl.CreatePbufferSurface);
-  find(library, "eglDestroySurface", egl.DestroySurface);
-  find(library, "eglMakeCurrent", egl.MakeCurrent);
-  find(library, "eglGetError", egl.GetError);
-  return egl;
-}
-
-/// The platform that EGL_PLATFORM names where it works without a window system; else the first one that does.
-EGLDisplay open_display(const EglFunctions& egl) {
+/// EGL_PLATFORM=device looks for devices before Mesa's surfaceless platform.
+Egl::First first_platform() {
   const char* named = std::getenv("EGL_PLATFORM");
-  const bool device_first = named != nullptr && std::string(named) == "device";
-  std::array<EGLenum, 2> platforms = {EGL_PLATFORM_SURFACELESS_MESA, EGL_PLATFORM_DEVICE_EXT};
-  if (device_first) std::swap(platforms[0], platforms[1]);
-  for (const EGLenum platform : platforms) {
-    const EGLDisplay display = egl.GetPlatformDisplay(platform, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display != EGL_NO_DISPLAY && egl.Initialize(display, nullptr, nullptr)) return display;
-  }
-  throw std::runtime_error(
-      "EGL has no display without a window system; install libegl-mesa0 and libgl1-mesa-dri, or a driver with "
-      "EGL_EXT_platform_device");
+  return named != nullptr && std::string_view(named) == "device" ? Egl::First::devices
+                                                                 : Egl::First::surfaceless;
 }
 
 }  // namespace
 
-struct EglContexts::Egl : EglFunctions {
-  EGLDisplay display = EGL_NO_DISPLAY;
-
-  Egl() : EglFunctions(open_egl()), display(open_display(*this)) {
-    if (!BindAPI(EGL_OPENGL_API))
-      throw std::runtime_error("EGL's driver has no desktop OpenGL; install libgl1-mesa-dri");
-  }
+struct EglContexts::Library : Egl {
+  EGLDisplay display = open_display(first_platform(), "desktop OpenGL", [](EGLDisplay) { return true; });
 
   EGLint attribute(EGLConfig config, EGLint name) const {
     EGLint value = 0;
@@ -131,15 +69,8 @@ struct EglContexts::Egl : EglFunctions {
 
   EGLContext context_for(const spu::RecordedContext& wanted, int version, EGLConfig config,
                          EGLContext share) const {
-    std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, version / 100, EGL_CONTEXT_MINOR_VERSION,
-                                      version / 10 % 10};
-    if (version >= 320) {
-      attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                           is_core(wanted) ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
-                                                           : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT});
-    }
-    attributes.push_back(EGL_NONE);
-    return CreateContext(display, config, share, attributes.data());
+    return create_context(display,
+                          {.version = version, .core = is_core(wanted), .config = config, .share = share});
   }
 };
 
@@ -154,7 +85,7 @@ struct EglContexts::Context {
   Surface own;
 };
 
-EglContexts::EglContexts() : egl_(std::make_unique<Egl>()) {
+EglContexts::EglContexts() : egl_(std::make_unique<Library>()) {
   for (std::size_t i = 0; i < spu::call_count; ++i) {
     set_slot(driver_, spu::CallId(i), spu::AnyFunction(egl_->GetProcAddress(spu::call_name(spu::CallId(i)))));
   }

@@ -26,7 +26,7 @@ class EglContexts final : public OffscreenContexts {
   const spu::DispatchTable& driver() const override { return driver_; }
 
  private:
-  struct Egl;
+  struct Library;
   struct Context;
   struct Surface;
 
@@ -34,7 +34,7 @@ class EglContexts final : public OffscreenContexts {
   void end_context(void* context) const override;
   void clear(void* config, void* surface);
 
-  std::unique_ptr<Egl> egl_;
+  std::unique_ptr<Library> egl_;
   std::map<std::uint64_t, Context> contexts_;
   /// By configuration and number of the drawable: contexts of several configurations may draw into a window.
   std::map<std::pair<void*, std::uint64_t>, Surface> surfaces_;

@@ -1,47 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/offscreen/osmesa_contexts.h"
 
-#include <GL/osmesa.h>
-#include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <stdexcept>
 
 #include "dispatch/call_id.h"
+#include "volume/offscreen/osmesa.h"
 
 namespace understudy::launcher {
-
-struct OsmesaContexts::Functions {
-  decltype(&OSMesaCreateContextAttribs) CreateContextAttribs = nullptr;
-  decltype(&OSMesaDestroyContext) DestroyContext = nullptr;
-  decltype(&OSMesaMakeCurrent) MakeCurrent = nullptr;
-  decltype(&OSMesaGetProcAddress) GetProcAddress = nullptr;
-
-  Functions() {
-    void* library = nullptr;
-    std::string troubles;
-    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6"}) {
-      library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-      if (library != nullptr) break;
-      troubles += fmt::format("{}{}", troubles.empty() ? "" : ", ", dlerror());
-    }
-    if (library == nullptr) throw std::runtime_error(troubles + "; install libosmesa6");
-    find(library, "OSMesaCreateContextAttribs", CreateContextAttribs);
-    find(library, "OSMesaDestroyContext", DestroyContext);
-    find(library, "OSMesaMakeCurrent", MakeCurrent);
-    find(library, "OSMesaGetProcAddress", GetProcAddress);
-  }
-
- private:
-  template <class Function>
-  static void find(void* library, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library, name));
-    if (function == nullptr)
-      throw std::runtime_error(
-          fmt::format("libOSMesa has no {}; install libosmesa6 of Mesa 12 or later", name));
-  }
-};
 
 namespace {
 
@@ -53,7 +20,7 @@ constexpr int accumulation_bits = 16;
 
 }  // namespace
 
-OsmesaContexts::OsmesaContexts() : osmesa_(std::make_unique<Functions>()) {
+OsmesaContexts::OsmesaContexts() : osmesa_(std::make_unique<volume::offscreen::Osmesa>()) {
   spu::DispatchTable driver{};
   for (std::size_t i = 0; i < spu::call_count; ++i)
     set_slot(driver, spu::CallId(i), spu::AnyFunction(osmesa_->GetProcAddress(spu::call_name(spu::CallId(i)))));
@@ -68,25 +35,14 @@ OsmesaContexts::~OsmesaContexts() {
 /// Depth and stencil come together or not at all, so that drawables can move between contexts.
 void* OsmesaContexts::make_context(const spu::RecordedContext& wanted, int version) const {
   const bool depth_stencil = has_depth_stencil(wanted);
-  const std::array<int, 17> attributes = {OSMESA_FORMAT,
-                                          OSMESA_RGBA,
-                                          OSMESA_DEPTH_BITS,
-                                          depth_stencil ? 24 : 0,
-                                          OSMESA_STENCIL_BITS,
-                                          depth_stencil ? 8 : 0,
-                                          OSMESA_ACCUM_BITS,
-                                          is_core(wanted) ? 0 : accumulation_bits,
-                                          OSMESA_PROFILE,
-                                          is_core(wanted) ? OSMESA_CORE_PROFILE : OSMESA_COMPAT_PROFILE,
-                                          OSMESA_CONTEXT_MAJOR_VERSION,
-                                          version / 100,
-                                          OSMESA_CONTEXT_MINOR_VERSION,
-                                          version / 10 % 10,
-                                          0};
   const auto share = contexts_.find(wanted.shares_with);
-  return osmesa_->CreateContextAttribs(
-      attributes.data(),
-      share == contexts_.end() ? nullptr : static_cast<OSMesaContext>(share->second.context));
+  return osmesa_->create_context(
+      {.version = version,
+       .core = is_core(wanted),
+       .depth_bits = depth_stencil ? 24 : 0,
+       .stencil_bits = depth_stencil ? 8 : 0,
+       .accumulation_bits = is_core(wanted) ? 0 : accumulation_bits,
+       .share = share == contexts_.end() ? nullptr : static_cast<OSMesaContext>(share->second.context)});
 }
 
 void OsmesaContexts::end_context(void* context) const {

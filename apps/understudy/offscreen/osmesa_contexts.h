@@ -16,6 +16,10 @@
 #include "spu/player/one_buffer.h"
 #include "spu/window_system/shown_image.h"
 
+namespace understudy::volume::offscreen {
+class Osmesa;
+}
+
 namespace understudy::launcher {
 
 class OsmesaContexts final : public OffscreenContexts {
@@ -33,8 +37,6 @@ class OsmesaContexts final : public OffscreenContexts {
   const spu::DispatchTable& driver() const override { return one_buffer_->table(); }
 
  private:
-  struct Functions;
-
   struct Drawable {
     spu::Extent2D extent;
     std::vector<std::uint8_t> memory;             ///< that OSMesa copies images to
@@ -59,7 +61,7 @@ class OsmesaContexts final : public OffscreenContexts {
   /// Takes the contents out of the framebuffer that has them.
   void take_out(Drawable& drawable);
 
-  std::unique_ptr<Functions> osmesa_;
+  std::unique_ptr<volume::offscreen::Osmesa> osmesa_;
   std::unique_ptr<spu::OneBuffer> one_buffer_;
   /// Before the contexts, which may write there until they end.
   std::map<std::uint64_t, Drawable> drawables_;

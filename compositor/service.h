@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -11,14 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "volume/description.h"
-#include "volume/frame_counts.h"
-#include "volume/image.h"
-#include "volume/reference/pixel_integral.h"
+#include "volume/pixel_integral.h"
+#include "volume/volume_id.h"
 
 namespace understudy::volume {
+struct Pixel;
 struct RenderRequest;
-}
+struct TexelBox;
+struct VolumeDescription;
+}  // namespace understudy::volume
 
 namespace understudy::compositor {
 
@@ -43,12 +45,7 @@ class RequestRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The answer to a request.
-struct Rendered {
-  volume::ImageView image;  ///< over its footprint only; valid until the next call but integrals()
-  volume::FrameCounts counts;
-  bool repeated = false;  ///< nothing was cast: it is an image that was there already
-};
+struct Rendered;  // rendered.h
 
 /// All functions but nodes() may throw ServiceLost and RequestRefused. Requests are answered one after the
 /// other; not for two threads at once.
@@ -77,7 +74,7 @@ class RenderService {
   virtual Rendered render(const volume::RenderRequest& request) = 0;
 
   /// What pixels of the request would show if its samples were taken ever more densely
-  /// (volume/reference/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in
+  /// (volume/pixel_integral.h): of as many of `pixels`, in their order, as can be integrated in
   /// `most_ms` on the slowest node. For requests on steps, under `over` with a transfer function and a linear
   /// filter; method, termination, surfaces and light are not looked at.
   virtual std::vector<volume::PixelIntegral> integrals(const volume::RenderRequest& request,

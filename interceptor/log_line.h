@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on stderr as logging/log.h writes them, without a C++ library.
+// Lines on stderr as compositor/logging/log.h writes them, without a C++ library.
 #pragma once
 
 #include "compositor/logging/level.h"

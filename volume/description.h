@@ -9,11 +9,9 @@
 #include "volume/texel_box.h"
 #include "volume/texel_type.h"
 #include "volume/texture_filter.h"
+#include "volume/volume_id.h"
 
 namespace understudy::volume {
-
-/// Chosen by the client of a render service; each client has numbers of its own.
-using VolumeId = std::uint64_t;
 
 /// Each axis of `size` has 1 to max_axis_texels texels (volume/cell_lattice.h).
 struct VolumeDescription {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "volume/cell_lattice.h"
 #include "volume/matrix.h"
 #include "volume/request.h"
 

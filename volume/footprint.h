@@ -2,14 +2,13 @@
 // The pixels that a box of texture space can touch.
 #pragma once
 
-#include "volume/cell_lattice.h"
-#include "volume/description.h"
-#include "volume/rect.h"
-#include "volume/texture_space.h"
-
 namespace understudy::volume {
 
+struct Box;
+struct Rect;
 struct RenderRequest;
+struct TexelBox;
+struct VolumeDescription;
 
 /// Bounds every pixel centre whose ray meets `box` within the request's region and between the near and far
 /// plane; intersected with the request's window. Never too small, at most a pixel too large on each side,

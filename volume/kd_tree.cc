@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "volume/request.h"
+#include "volume/visibility_order.h"
 
 namespace understudy::volume {
 

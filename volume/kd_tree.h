@@ -6,15 +6,15 @@
 #include <array>
 #include <vector>
 
-#include "volume/cell_lattice.h"
-#include "volume/description.h"
 #include "volume/partition.h"
+#include "volume/texel_box.h"
 #include "volume/texture_space.h"
-#include "volume/visibility_order.h"
 
 namespace understudy::volume {
 
+class VisibilityOrder;
 struct RenderRequest;
+struct VolumeDescription;
 
 /// A partition with the boxes that it makes, and their visibility order for a request.
 class KdTree {

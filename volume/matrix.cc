@@ -26,66 +26,81 @@ Vec4 transform(const Matrix4& m, const Vec4& v) {
   return image;
 }
 
+namespace {
+
+/// The four elements from `first` on, `stride` apart: a row or a column. Scales them by the power of two that
+/// brings the largest near one, which is free of rounding, and notes it in `scale`. False where there is none.
+bool balance(Matrix4& a, int first, int stride, double& scale) {
+  double largest = 0;
+  for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[first + stride * k]));
+  if (!(largest > 0) || !std::isfinite(largest)) return false;
+  const double s = std::exp2(-std::ilogb(largest));
+  if (!std::isfinite(s) || s == 0) return false;
+  scale *= s;
+  for (int k = 0; k < 4; ++k) a[first + stride * k] *= s;
+  return true;
+}
+
+struct Pivot {
+  int row = 0;
+  int column = -1;
+  double size = 0;
+};
+
+/// The largest element of the rows from `step` on, in columns that have had no pivot yet.
+Pivot largest_pivot(const Matrix4& a, int step, const std::array<bool, 4>& used) {
+  Pivot best{step, -1, 0};
+  for (int i = step; i < 4; ++i)
+    for (int k = 0; k < 4; ++k)
+      if (!used[k] && std::abs(a[4 * i + k]) > best.size) best = {i, k, std::abs(a[4 * i + k])};
+  return best;
+}
+
+/// One step of Gauss-Jordan on [a | right], with this pivot brought to row `step`.
+void eliminate(Matrix4& a, Matrix4& right, int step, const Pivot& pivot) {
+  for (int k = 0; k < 4; ++k) {
+    std::swap(a[4 * pivot.row + k], a[4 * step + k]);
+    std::swap(right[4 * pivot.row + k], right[4 * step + k]);
+  }
+  const double divisor = a[4 * step + pivot.column];
+  for (int k = 0; k < 4; ++k) {
+    a[4 * step + k] /= divisor;
+    right[4 * step + k] /= divisor;
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double factor = a[4 * i + pivot.column];
+    if (i == step || factor == 0) continue;
+    for (int k = 0; k < 4; ++k) {
+      a[4 * i + k] -= factor * a[4 * step + k];
+      right[4 * i + k] -= factor * right[4 * step + k];
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<Matrix4> inverse(const Matrix4& m) {
-  // Scale by powers of two, which is free of rounding: m = R a C with rows and columns of `a` near one.
+  // m = R a C, with rows and columns of `a` near one.
   std::array<double, 4> row_scale{1, 1, 1, 1}, column_scale{1, 1, 1, 1};
   Matrix4 a = m;
   for (int sweep = 0; sweep < 4; ++sweep) {
-    for (int i = 0; i < 4; ++i) {
-      double largest = 0;
-      for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[4 * i + k]));
-      if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
-      const double s = std::exp2(-std::ilogb(largest));
-      if (!std::isfinite(s) || s == 0) return std::nullopt;
-      row_scale[i] *= s;
-      for (int k = 0; k < 4; ++k) a[4 * i + k] *= s;
-    }
-    for (int i = 0; i < 4; ++i) {
-      double largest = 0;
-      for (int k = 0; k < 4; ++k) largest = std::max(largest, std::abs(a[4 * k + i]));
-      if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
-      const double s = std::exp2(-std::ilogb(largest));
-      if (!std::isfinite(s) || s == 0) return std::nullopt;
-      column_scale[i] *= s;
-      for (int k = 0; k < 4; ++k) a[4 * k + i] *= s;
-    }
+    for (int i = 0; i < 4; ++i)
+      if (!balance(a, 4 * i, 1, row_scale[i])) return std::nullopt;
+    for (int i = 0; i < 4; ++i)
+      if (!balance(a, i, 4, column_scale[i])) return std::nullopt;
   }
 
-  // Gauss-Jordan with full pivoting on [a | I].
+  // Gauss-Jordan with full pivoting.
   constexpr double smallest_pivot = 1e-14;
   Matrix4 right = identity();
   std::array<int, 4> pivot_column{};
   std::array<bool, 4> used{};
   for (int step = 0; step < 4; ++step) {
-    int row = step, column = -1;
-    double best = 0;
-    for (int i = step; i < 4; ++i)
-      for (int k = 0; k < 4; ++k)
-        if (!used[k] && std::abs(a[4 * i + k]) > best) {
-          best = std::abs(a[4 * i + k]);
-          row = i;
-          column = k;
-        }
-    if (!(best > smallest_pivot)) return std::nullopt;
-    used[column] = true;
-    pivot_column[step] = column;
-    for (int k = 0; k < 4; ++k) {
-      std::swap(a[4 * row + k], a[4 * step + k]);
-      std::swap(right[4 * row + k], right[4 * step + k]);
-    }
-    const double pivot = a[4 * step + column];
-    for (int k = 0; k < 4; ++k) {
-      a[4 * step + k] /= pivot;
-      right[4 * step + k] /= pivot;
-    }
-    for (int i = 0; i < 4; ++i) {
-      const double factor = a[4 * i + column];
-      if (i == step || factor == 0) continue;
-      for (int k = 0; k < 4; ++k) {
-        a[4 * i + k] -= factor * a[4 * step + k];
-        right[4 * i + k] -= factor * right[4 * step + k];
-      }
-    }
+    const Pivot pivot = largest_pivot(a, step, used);
+    if (!(pivot.size > smallest_pivot)) return std::nullopt;
+    used[pivot.column] = true;
+    pivot_column[step] = pivot.column;
+    eliminate(a, right, step, pivot);
   }
 
   Matrix4 result{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/occlusion.h"
 
+#include "volume/image.h"
 #include "volume/request.h"
 
 namespace understudy::volume {

@@ -4,10 +4,10 @@
 // it.
 #pragma once
 
-#include "volume/image.h"
-
 namespace understudy::volume {
 
+struct Image;
+struct Rect;
 struct RenderRequest;
 
 /// Pixels, along both axes; tiles begin at multiples of it, in window coordinates.

@@ -8,7 +8,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "volume/description.h"
 #include "volume/matrix.h"
+#include "volume/request.h"
 
 namespace understudy::volume {
 

@@ -2,9 +2,12 @@
 // A camera on a sphere around the volume that looks at its middle, z up unless it rolls.
 #pragma once
 
-#include "volume/request.h"
+#include "volume/texture_space.h"
 
 namespace understudy::volume {
+
+struct RenderRequest;
+struct VolumeDescription;
 
 /// Where the eye is, seen from the volume's middle.
 struct OrbitCamera {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "volume/block_costs.h"
 #include "volume/cell_lattice.h"
 
 namespace understudy::volume {

@@ -7,10 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "volume/block_costs.h"
-#include "volume/description.h"
-
 namespace understudy::volume {
+
+class CostSums;
+struct TexelBox;
+struct VolumeDescription;
 
 /// Most ranks that are believed.
 constexpr int max_ranks = 65536;

@@ -136,86 +136,104 @@ double TracePlayer::measured_ms(int frame, int rank, std::uint64_t samples) cons
   return ms * (1 + scene_.noise * (2 * unit - 1)) * (interrupted && scene_.noise > 0 ? 3 : 1);
 }
 
-std::vector<TraceImage> TracePlayer::play(compositor::Balancer* balancer) {
-  Partition partition = volume::by_blocks(scene_.description, scene_.ranks);
+/// What the ranks have, and have learned, from image to image.
+struct TracePlayer::Group {
+  Partition partition;
+  std::vector<RankWork> work;
+  std::vector<BlockCache> caches;
+  std::vector<int> last_direction;  ///< of each plane
+  double ms_per_block = 0;
+};
+
+void TracePlayer::count_planes(const Partition& next, Group& group, TraceImage& now) {
+  for (std::size_t i = 0; i < next.splits.size(); ++i) {
+    const int way = direction(group.partition.splits[i].cut, next.splits[i].cut);
+    if (way == 0) continue;
+    ++now.planes_moved;
+    now.reversals += way == -group.last_direction[i];
+    group.last_direction[i] = way;
+  }
+}
+
+void TracePlayer::move_blocks(const Version& texels, const Partition& next, Group& group, TraceImage& now) {
   const auto ranks = std::size_t(scene_.ranks);
   const TexelBox blocks = compositor::blocks_owned(lattice_, lattice_);
-  std::vector<RankWork> work;
-  std::vector<BlockCache> caches(ranks, BlockCache(scene_.cache_bytes));
-  std::vector<int> last_direction(partition.splits.size());
-  const double per_ms = 1e6 * scene_.gigabytes_per_second;
-  double ms_per_block = double(bytes_per_texel(scene_.description.type) * BrickStore::block_texels) / per_ms;
+  const auto packed_bytes = [&](const BlockPlace& place) {
+    const std::size_t row = std::size_t(place[2]) * std::size_t(blocks.high[1]) + std::size_t(place[1]);
+    return texels.packed[row * std::size_t(blocks.high[0]) + std::size_t(place[0])];
+  };
+  const auto before = volume::boxes(group.partition, scene_.description),
+             after = volume::boxes(next, scene_.description);
+  std::vector<std::size_t> sent(ranks), received(ranks);
+  for (const BlockMove& move : compositor::moves(scene_.description, before, after))
+    for_each_block(move.blocks, [&](const BlockPlace& place) {
+      const std::size_t bytes = packed_bytes(place);
+      if (group.caches[std::size_t(move.to)].take(place)) {
+        ++now.blocks_from_cache;
+        return;
+      }
+      now.bytes += bytes;
+      sent[std::size_t(move.from)] += bytes;
+      received[std::size_t(move.to)] += bytes;
+    });
+  for (std::size_t rank = 0; rank < ranks; ++rank)
+    for (const TexelBox& given :
+         compositor::difference(compositor::blocks_kept(scene_.description, before[rank]),
+                                compositor::blocks_kept(scene_.description, after[rank])))
+      for_each_block(given, [&](const BlockPlace& place) {
+        group.caches[rank].put(place, std::vector<std::byte>(packed_bytes(place)));
+      });
+  const double busiest = double(std::max(*std::ranges::max_element(sent), *std::ranges::max_element(received)));
+  now.transfer_ms = scene_.transfer_latency_ms + busiest / (1e6 * scene_.gigabytes_per_second);
+  const std::size_t moved = compositor::most_blocks_moved(lattice_, before, after);
+  if (moved > 0) group.ms_per_block = (group.ms_per_block + now.transfer_ms / double(moved)) / 2;
+  group.partition = next;
+}
+
+void TracePlayer::render(int frame, Group& group, TraceImage& now) {
+  const auto parts = volume::boxes(group.partition, scene_.description);
+  group.work.clear();
+  double slowest = 0, fastest = 0, sum = 0, all_samples = 0, all_speed = 0;
+  for (int rank = 0; rank < scene_.ranks; ++rank) {
+    const std::uint64_t taken = samples(frame, parts[std::size_t(rank)]);
+    const double relative_cost = scene_.relative_cost(frame, rank);
+    const double ms = 1e-6 * scene_.ns_per_sample * double(taken) * relative_cost;
+    slowest = std::max(slowest, ms);
+    fastest = rank == 0 ? ms : std::min(fastest, ms);
+    sum += ms;
+    all_samples += double(taken);
+    all_speed += 1 / relative_cost;
+    group.work.push_back({measured_ms(frame, rank, taken), taken});
+    now.render_ms = std::max(now.render_ms, group.work.back().ms);
+  }
+  now.ideal_ms = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
+  now.deviation = sum > 0 ? (slowest - fastest) * double(scene_.ranks) / sum : 0;
+  now.imbalance = now.ideal_ms > 0 ? slowest / now.ideal_ms : 1;
+  for (const Partition::Split& split : group.partition.splits) now.cuts.push_back(split.cut);
+}
+
+std::vector<TraceImage> TracePlayer::play(compositor::Balancer* balancer) {
+  Group group;
+  group.partition = volume::by_blocks(scene_.description, scene_.ranks);
+  group.caches.assign(std::size_t(scene_.ranks), BlockCache(scene_.cache_bytes));
+  group.last_direction.resize(group.partition.splits.size());
+  group.ms_per_block = double(bytes_per_texel(scene_.description.type) * BrickStore::block_texels) /
+                       (1e6 * scene_.gigabytes_per_second);
   std::vector<TraceImage> trace;
   std::uint64_t drawn_version = scene_.request(0).version;
   for (int frame = 0; frame < scene_.images; ++frame) {
     TraceImage& now = trace.emplace_back();
-    const volume::RenderRequest request = scene_.request(frame);
-    const Version& texels = version(request.version);
-    const auto packed_bytes = [&](const BlockPlace& place) {
-      const std::size_t row = std::size_t(place[2]) * std::size_t(blocks.high[1]) + std::size_t(place[1]);
-      return texels.packed[row * std::size_t(blocks.high[0]) + std::size_t(place[0])];
-    };
-    if (request.version != drawn_version)
-      for (BlockCache& cache : caches) cache.clear();
-    drawn_version = request.version;
+    const Version& texels = version(scene_.request(frame).version);
+    if (texels.number != drawn_version)
+      for (BlockCache& cache : group.caches) cache.clear();
+    drawn_version = texels.number;
     if (balancer != nullptr) {
-      const Partition next = balancer->decide({partition, lattice_, work, expected(frame), ms_per_block});
-      for (std::size_t i = 0; i < next.splits.size(); ++i) {
-        const int way = direction(partition.splits[i].cut, next.splits[i].cut);
-        if (way == 0) continue;
-        ++now.planes_moved;
-        now.reversals += way == -last_direction[i];
-        last_direction[i] = way;
-      }
-      if (now.planes_moved > 0) {
-        const auto before = volume::boxes(partition, scene_.description),
-                   after = volume::boxes(next, scene_.description);
-        std::vector<std::size_t> sent(ranks), received(ranks);
-        for (const BlockMove& move : compositor::moves(scene_.description, before, after))
-          for_each_block(move.blocks, [&](const BlockPlace& place) {
-            const std::size_t bytes = packed_bytes(place);
-            if (caches[std::size_t(move.to)].take(place)) {
-              ++now.blocks_from_cache;
-              return;
-            }
-            now.bytes += bytes;
-            sent[std::size_t(move.from)] += bytes;
-            received[std::size_t(move.to)] += bytes;
-          });
-        for (std::size_t rank = 0; rank < ranks; ++rank)
-          for (const TexelBox& given :
-               compositor::difference(compositor::blocks_kept(scene_.description, before[rank]),
-                                      compositor::blocks_kept(scene_.description, after[rank])))
-            for_each_block(given, [&](const BlockPlace& place) {
-              caches[rank].put(place, std::vector<std::byte>(packed_bytes(place)));
-            });
-        const double busiest =
-            double(std::max(*std::ranges::max_element(sent), *std::ranges::max_element(received)));
-        now.transfer_ms = scene_.transfer_latency_ms + busiest / per_ms;
-        const std::size_t moved = compositor::most_blocks_moved(lattice_, before, after);
-        if (moved > 0) ms_per_block = (ms_per_block + now.transfer_ms / double(moved)) / 2;
-        partition = next;
-      }
+      const Partition next =
+          balancer->decide({group.partition, lattice_, group.work, expected(frame), group.ms_per_block});
+      count_planes(next, group, now);
+      if (now.planes_moved > 0) move_blocks(texels, next, group, now);
     }
-    const auto parts = volume::boxes(partition, scene_.description);
-    work.clear();
-    double slowest = 0, fastest = 0, sum = 0, all_samples = 0, all_speed = 0;
-    for (int rank = 0; rank < scene_.ranks; ++rank) {
-      const std::uint64_t taken = samples(frame, parts[std::size_t(rank)]);
-      const double relative_cost = scene_.relative_cost(frame, rank);
-      const double ms = 1e-6 * scene_.ns_per_sample * double(taken) * relative_cost;
-      slowest = std::max(slowest, ms);
-      fastest = rank == 0 ? ms : std::min(fastest, ms);
-      sum += ms;
-      all_samples += double(taken);
-      all_speed += 1 / relative_cost;
-      work.push_back({measured_ms(frame, rank, taken), taken});
-      now.render_ms = std::max(now.render_ms, work.back().ms);
-    }
-    now.ideal_ms = 1e-6 * scene_.ns_per_sample * all_samples / all_speed;
-    now.deviation = sum > 0 ? (slowest - fastest) * double(ranks) / sum : 0;
-    now.imbalance = now.ideal_ms > 0 ? slowest / now.ideal_ms : 1;
-    for (const Partition::Split& split : partition.splits) now.cuts.push_back(split.cut);
+    render(frame, group, now);
   }
   return trace;
 }

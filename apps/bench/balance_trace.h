@@ -81,6 +81,11 @@ class TracePlayer {
     std::vector<std::size_t> packed;  ///< bytes of every block as it travels, x fastest
   };
 
+  struct Group;
+
+  void count_planes(const volume::Partition& next, Group& group, TraceImage& now);
+  void move_blocks(const Version& texels, const volume::Partition& next, Group& group, TraceImage& now);
+  void render(int image, Group& group, TraceImage& now);
   const Version& version(std::uint64_t number);
   const volume::BlockCosts& expected(int image);
   std::uint64_t samples(int image, const volume::TexelBox& box);

@@ -224,6 +224,52 @@ std::vector<std::byte> read(const std::string& file, std::size_t count) {
   return bytes;
 }
 
+/// Every exchange, and the one that costs least by the estimate.
+std::vector<Way> our_ways(Ours& apart, Ours& on_one_machine, const bench::PartialImage& mine) {
+  using compositor::Layout;
+  std::vector<Way> ways;
+  for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
+    ways.push_back(apart.way(std::string(name_of(compositor::Algorithm(a))), compositor::Algorithm(a),
+                             Layout::rgba32f, mine.order));
+  ways.push_back(apart.way("auto", {}, Layout::rgba32f, mine.order));
+  ways.push_back(apart.way("auto, unpacked", {}, Layout::rgba32f, mine.order, false));
+  // As nodes do it where all ranks are on one machine.
+  for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
+    ways.push_back(on_one_machine.way(fmt::format("{}, in place", name_of(compositor::Algorithm(a))),
+                                      compositor::Algorithm(a), Layout::rgba32f, mine.order, false));
+  ways.push_back(on_one_machine.way("auto, in place", {}, Layout::rgba32f, mine.order, false));
+  ways.push_back(apart.way("auto, half", {}, Layout::rgba16f, mine.order));
+  ways.push_back(apart.way("auto, byte", {}, Layout::rgba8, mine.order));
+  return ways;
+}
+
+/// Fills the errors of `ways`, on rank 0.
+void judge(std::vector<Way>& ways, const bench::PartialImage& mine, std::span<const Rect> footprints,
+           int pixels, Communicator& communicator) {
+  const std::vector<Image> images = gathered(mine.image, footprints, communicator);
+  std::vector<double> product;
+  if (communicator.rank() == 0) product = product_of(images, mine.order, pixels);
+  for (Way& way : ways) {
+    way.prepare(mine.image);
+    way.compose();
+    if (communicator.rank() == 0) way.error = largest_error(way.image(), product, pixels);
+  }
+}
+
+void print(const Way& way, int ranks, bench::Scene scene, int pixels, std::size_t covered) {
+  fmt::print("{}\n", nlohmann::ordered_json{{"ranks", ranks},
+                                            {"scene", name_of(scene)},
+                                            {"pixels", pixels},
+                                            {"covered", covered},
+                                            {"way", way.name},
+                                            {"ms", 1e3 * median(way.seconds)},
+                                            {"least_ms", 1e3 * *std::ranges::min_element(way.seconds)},
+                                            {"bytes", way.sent.bytes},
+                                            {"messages", way.sent.messages},
+                                            {"error", way.error}}
+                         .dump());
+}
+
 void run(const Settings& settings, Communicator& communicator) {
   const auto side = std::size_t(settings.side);
   const std::vector<std::byte> texels = read(settings.file, side * side * side);
@@ -237,20 +283,7 @@ void run(const Settings& settings, Communicator& communicator) {
     for (const bench::Scene scene : bench::all_scenes) {
       const bench::PartialImage mine =
           partial_image(scene, pixels, texels, settings.side, communicator.rank(), communicator.size());
-      std::vector<Way> ways;
-      for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
-        ways.push_back(ours.way(std::string(name_of(compositor::Algorithm(a))), compositor::Algorithm(a),
-                                compositor::Layout::rgba32f, mine.order));
-      ways.push_back(ours.way("auto", {}, compositor::Layout::rgba32f, mine.order));
-      ways.push_back(ours.way("auto, unpacked", {}, compositor::Layout::rgba32f, mine.order, false));
-      // As nodes do it where all ranks are on one machine.
-      for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
-        ways.push_back(on_one_machine.way(fmt::format("{}, in place", name_of(compositor::Algorithm(a))),
-                                          compositor::Algorithm(a), compositor::Layout::rgba32f, mine.order,
-                                          false));
-      ways.push_back(on_one_machine.way("auto, in place", {}, compositor::Layout::rgba32f, mine.order, false));
-      ways.push_back(ours.way("auto, half", {}, compositor::Layout::rgba16f, mine.order));
-      ways.push_back(ours.way("auto, byte", {}, compositor::Layout::rgba8, mine.order));
+      std::vector<Way> ways = our_ways(ours, on_one_machine, mine);
 #ifdef UNDERSTUDY_ICET
       icet.begin(pixels, mine.order);
       ImageView shown;
@@ -263,32 +296,12 @@ void run(const Settings& settings, Communicator& communicator) {
       if (!settings.only.empty())
         std::erase_if(ways, [&](const Way& way) { return std::ranges::count(settings.only, way.name) == 0; });
       const std::vector<Rect> footprints = footprints_of(mine.image.rect, communicator);
-      {
-        const std::vector<Image> images = gathered(mine.image, footprints, communicator);
-        std::vector<double> product;
-        if (communicator.rank() == 0) product = product_of(images, mine.order, pixels);
-        for (Way& way : ways) {
-          way.prepare(mine.image);
-          way.compose();
-          if (communicator.rank() == 0) way.error = largest_error(way.image(), product, pixels);
-        }
-      }
+      judge(ways, mine, footprints, pixels, communicator);
       measure(ways, mine.image, settings.rounds);
       if (communicator.rank() != 0) continue;
       std::size_t covered = 0;
       for (const Rect& footprint : footprints) covered += footprint.pixels();
-      for (const Way& way : ways)
-        fmt::print("{}\n", nlohmann::ordered_json{{"ranks", communicator.size()},
-                                                  {"scene", name_of(scene)},
-                                                  {"pixels", pixels},
-                                                  {"covered", covered},
-                                                  {"way", way.name},
-                                                  {"ms", 1e3 * median(way.seconds)},
-                                                  {"least_ms", 1e3 * *std::ranges::min_element(way.seconds)},
-                                                  {"bytes", way.sent.bytes},
-                                                  {"messages", way.sent.messages},
-                                                  {"error", way.error}}
-                               .dump());
+      for (const Way& way : ways) print(way, communicator.size(), scene, pixels, covered);
       std::fflush(stdout);
     }
 }

@@ -7,6 +7,8 @@
 #include <random>
 
 #include "compositor/crop.h"
+#include "volume/brick/brick_store.h"
+#include "volume/cell_lattice.h"
 #include "volume/footprint.h"
 #include "volume/frame_counts.h"
 #include "volume/kd_tree.h"

@@ -198,18 +198,59 @@ struct Errors {
   double rms() const { return std::sqrt(squares / double(count)); }
 };
 
-nlohmann::ordered_json measure(const Settings& settings) {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                    std::size_t(settings.threads));
+VolumeDescription description_of(const Settings& settings, const RenderRequest& asked) {
   VolumeDescription volume;
   volume.id = 1;
   volume.version = 1;
   volume.size = settings.size;
   volume.type = settings.type;
   volume.stored = {{0, 0, 0}, settings.size};
+  volume.ghost_layer = ghost_layer_needed(volume, asked);
+  return volume;
+}
+
+/// Adds to `figures` how far the image is from the sum of the same samples, and from the integral.
+void judge(const Settings& settings, const VolumeDescription& volume, std::span<const std::byte> texels,
+           const RenderRequest& asked, const Image& image, nlohmann::ordered_json& figures) {
+  const Field field = texture_field(volume, Filter::linear, texels);
+  const Medium medium = Medium::of_samples(std::get<TransferFunction>(asked.classification), 1);
+  Errors arithmetic, total;
+  double reference_seconds = 0;
+  std::size_t rays = 0;
+  for (int y = settings.stride / 2; y < settings.pixels; y += settings.stride) {
+    for (int x = settings.stride / 2; x < settings.pixels; x += settings.stride) {
+      const Rect pixel{x, y, 1, 1};
+      const float* ours = &image.rgba[4 * (std::size_t(y) * std::size_t(settings.pixels) + std::size_t(x))];
+      if (settings.method != Method::adaptive) {
+        const ReferenceImage same =
+            walks_segments(asked) ? segment_sum(field, volume, asked, pixel) : slice_sum(field, asked, pixel);
+        arithmetic.add(ours, same.at(x, y));
+      }
+      if (!settings.surfaces.empty() || settings.light) continue;  // the integral knows neither
+      const double before = processor_seconds();
+      total.add(ours, pixel_integral(field, settings.size, asked, medium, x, y).data());
+      reference_seconds += processor_seconds() - before;
+      ++rays;
+    }
+  }
+  // The kernel's own definition of adaptive steps has no other judge than the integral.
+  if (settings.method != Method::adaptive) {
+    figures["max_arithmetic"] = arithmetic.largest;
+    figures["rms_arithmetic"] = arithmetic.rms();
+  }
+  if (rays > 0) {
+    figures["max_total"] = total.largest;
+    figures["rms_total"] = total.rms();
+    figures["reference_rays_per_second"] = double(rays) / reference_seconds;
+  }
+}
+
+nlohmann::ordered_json measure(const Settings& settings) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    std::size_t(settings.threads));
   std::vector<std::byte> texels = texels_of(settings);
   const RenderRequest asked = request(settings);
-  volume.ghost_layer = ghost_layer_needed(volume, asked);
+  const VolumeDescription volume = description_of(settings, asked);
   BrickStore store(volume, cell_lattice(volume).box());
   store.add_slices(volume.stored, texels);
   store.finish();
@@ -251,38 +292,7 @@ nlohmann::ordered_json measure(const Settings& settings) {
                                  {"epsilon", settings.epsilon},
                                  {"instruction_set", instruction_set()},
                                  {"renderer", device ? device->description() : "CPU"}};
-  if (settings.unjudged) return figures;
-  const Field field = texture_field(volume, Filter::linear, texels);
-  const Medium medium = Medium::of_samples(std::get<TransferFunction>(asked.classification), 1);
-  Errors arithmetic, total;
-  double reference_seconds = 0;
-  std::size_t rays = 0;
-  for (int y = settings.stride / 2; y < settings.pixels; y += settings.stride) {
-    for (int x = settings.stride / 2; x < settings.pixels; x += settings.stride) {
-      const Rect pixel{x, y, 1, 1};
-      const float* ours = &image.rgba[4 * (std::size_t(y) * std::size_t(settings.pixels) + std::size_t(x))];
-      if (settings.method != Method::adaptive) {
-        const ReferenceImage same =
-            walks_segments(asked) ? segment_sum(field, volume, asked, pixel) : slice_sum(field, asked, pixel);
-        arithmetic.add(ours, same.at(x, y));
-      }
-      if (!settings.surfaces.empty() || settings.light) continue;  // the integral knows neither
-      const double before = processor_seconds();
-      total.add(ours, pixel_integral(field, settings.size, asked, medium, x, y).data());
-      reference_seconds += processor_seconds() - before;
-      ++rays;
-    }
-  }
-  // The kernel's own definition of adaptive steps has no other judge than the integral.
-  if (settings.method != Method::adaptive) {
-    figures["max_arithmetic"] = arithmetic.largest;
-    figures["rms_arithmetic"] = arithmetic.rms();
-  }
-  if (rays > 0) {
-    figures["max_total"] = total.largest;
-    figures["rms_total"] = total.rms();
-    figures["reference_rays_per_second"] = double(rays) / reference_seconds;
-  }
+  if (!settings.unjudged) judge(settings, volume, texels, asked, image, figures);
   return figures;
 }
 

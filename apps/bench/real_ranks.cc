@@ -20,7 +20,9 @@
 #include "apps/bench/frame_parts.h"
 #include "apps/bench/frame_time.h"
 #include "apps/understudy/launch/own_node_group.h"
+#include "compositor/rendered.h"
 #include "compositor/service/loading_service.h"
+#include "compositor/service/remote_service.h"
 #include "volume/file/synthetic.h"
 #include "volume/file/texel_stream.h"
 #include "volume/frame_counts.h"
@@ -169,9 +171,11 @@ void calibrate(bench::Costs& costs, const Settings& settings, const Scene& scene
   costs.per_pixel_cast = std::max(0.0, left) / double(all.ranks.front().cast.pixels());
 }
 
-void run(const Settings& settings) {
-  const std::vector<Scene> scenes{scene_of(settings, 1, "shells"), scene_of(settings, 2, "lobes")};
-  std::map<Way, WayMeasured> measured;
+using MeasuredWays = std::map<Way, WayMeasured>;
+using RenderTimes = std::map<std::pair<int, std::size_t>, double>;  ///< by ranks and scene
+
+MeasuredWays measure_all(const Settings& settings, const std::vector<Scene>& scenes) {
+  MeasuredWays measured;
   // Numbers of ranks follow each other fastest, so that a machine that is busier for a while is so for all.
   for (int round = 0; round < settings.rounds; ++round)
     for (std::size_t a = 0; a < compositor::algorithm_count; ++a)
@@ -180,19 +184,21 @@ void run(const Settings& settings) {
           const Way way{ranks, Algorithm(a), gather};
           measure(settings, scenes, way, measured[way]);
         }
-  bench::Costs costs = message_cost(settings);
-  // Rendering does not depend on how the parts become one: its shortest time is that of all ways.
-  std::map<std::pair<int, std::size_t>, double> render;  // by ranks and scene
-  WayMeasured one_rank = measured.begin()->second;
-  for (const auto& [way, of_way] : measured) {
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
+  return measured;
+}
+
+/// Rendering does not depend on how the parts become one: its shortest time is that of all ways.
+RenderTimes render_times(const MeasuredWays& measured, std::size_t scenes) {
+  RenderTimes render;
+  for (const auto& [way, of_way] : measured)
+    for (std::size_t i = 0; i < scenes; ++i) {
       const auto [known, first] = render.try_emplace({way.ranks, i}, of_way.scenes[i].render);
       if (!first) known->second = std::min(known->second, of_way.scenes[i].render);
     }
-    one_rank.sparser.render = std::min(one_rank.sparser.render, of_way.sparser.render);
-  }
-  one_rank.scenes.back().render = render.at({1, scenes.size() - 1});
-  calibrate(costs, settings, scenes.back(), one_rank);
+  return render;
+}
+
+void print(const Settings& settings, const bench::Costs& costs) {
   fmt::print("{}\n", nlohmann::ordered_json{{"cores", settings.cores},
                                             {"ns_per_sample", 1e9 * costs.per_sample},
                                             {"ns_per_pixel_cast", 1e9 * costs.per_pixel_cast},
@@ -203,35 +209,50 @@ void run(const Settings& settings) {
                                             {"ns_per_pixel_blended", 1e9 * costs.per_pixel_blended},
                                             {"ns_per_pixel_written", 1e9 * costs.per_pixel_written}}
                          .dump());
+}
+
+void print(const Scene& scene, const Way& way, const Measured& real, double measured_render,
+           const bench::FrameParts& parts, const bench::Costs& costs) {
+  const compositor::CountedExchange counted =
+      bench::counted(parts, way.algorithm, way.gather, scene.request.op, compositor::Layout::rgba32f);
+  const bench::FrameTime time = bench::time_of(parts, counted, costs);
+  fmt::print("{}\n", nlohmann::ordered_json{{"scene", scene.name},
+                                            {"ranks", way.ranks},
+                                            {"exchange", compositor::name_of(way.algorithm)},
+                                            {"gather", name_of(way.gather)},
+                                            {"samples", parts.samples()},
+                                            {"samples_counted", real.counts.samples_taken},
+                                            {"messages", counted.messages},
+                                            {"messages_counted", real.counts.messages},
+                                            {"bytes", counted.bytes},
+                                            {"bytes_counted", real.counts.bytes_exchanged},
+                                            {"render_ms", 1e3 * time.render},
+                                            {"render_ms_measured", measured_render},
+                                            {"exchange_ms", 1e3 * time.exchange},
+                                            {"exchange_ms_measured", real.exchange},
+                                            {"frame_ms", 1e3 * (time.render + time.exchange)},
+                                            {"frame_ms_measured", real.frame}}
+                         .dump());
+}
+
+void run(const Settings& settings) {
+  const std::vector<Scene> scenes{scene_of(settings, 1, "shells"), scene_of(settings, 2, "lobes")};
+  const MeasuredWays measured = measure_all(settings, scenes);
+  bench::Costs costs = message_cost(settings);
+  const RenderTimes render = render_times(measured, scenes.size());
+  WayMeasured one_rank = measured.begin()->second;
+  for (const auto& [way, of_way] : measured)
+    one_rank.sparser.render = std::min(one_rank.sparser.render, of_way.sparser.render);
+  one_rank.scenes.back().render = render.at({1, scenes.size() - 1});
+  calibrate(costs, settings, scenes.back(), one_rank);
+  print(settings, costs);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Scene& scene = scenes[i];
     for (int ranks = 1; ranks <= settings.most_ranks; ++ranks) {
       const volume::KdTree tree(scene.load.volume, ranks);
       const bench::FrameParts parts = bench::cast_parts(scene.load.volume, scene.texels, scene.request, tree);
-      for (const auto& [way, of_way] : measured) {
-        if (way.ranks != ranks) continue;
-        const Measured& real = of_way.scenes[i];
-        const compositor::CountedExchange counted =
-            bench::counted(parts, way.algorithm, way.gather, scene.request.op, compositor::Layout::rgba32f);
-        const bench::FrameTime time = bench::time_of(parts, counted, costs);
-        fmt::print("{}\n", nlohmann::ordered_json{{"scene", scene.name},
-                                                  {"ranks", ranks},
-                                                  {"exchange", compositor::name_of(way.algorithm)},
-                                                  {"gather", name_of(way.gather)},
-                                                  {"samples", parts.samples()},
-                                                  {"samples_counted", real.counts.samples_taken},
-                                                  {"messages", counted.messages},
-                                                  {"messages_counted", real.counts.messages},
-                                                  {"bytes", counted.bytes},
-                                                  {"bytes_counted", real.counts.bytes_exchanged},
-                                                  {"render_ms", 1e3 * time.render},
-                                                  {"render_ms_measured", render.at({ranks, i})},
-                                                  {"exchange_ms", 1e3 * time.exchange},
-                                                  {"exchange_ms_measured", real.exchange},
-                                                  {"frame_ms", 1e3 * (time.render + time.exchange)},
-                                                  {"frame_ms_measured", real.frame}}
-                               .dump());
-      }
+      for (const auto& [way, of_way] : measured)
+        if (way.ranks == ranks) print(scene, way, of_way.scenes[i], render.at({ranks, i}), parts, costs);
     }
   }
 }

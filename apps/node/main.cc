@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "compositor/exchange/mpi_communicator.h"
 #include "compositor/logging/log.h"
@@ -20,6 +21,7 @@
 #include "volume/glsl/backend.h"
 #include "volume/glsl/brick_size.h"
 
+namespace understudy {
 namespace {
 
 /// What the kernel says could be had without swapping; where it does not say, nothing.
@@ -32,17 +34,23 @@ std::size_t available_memory() {
   return 0;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  using namespace understudy;
-  using namespace compositor;
-  logging::set_program("understudy-node");
-  CLI::App app(
-      "One rank of Understudy's node group; `understudy serve` starts it as mpirun -n N understudy-node ...");
+struct NodeOptions {
   std::string control;
-  app.add_option("--control", control, "The launcher's Unix socket")->required();
-  ExchangeSettings exchange;
+  compositor::ExchangeSettings exchange;
+  std::string backend = "cpu";
+  std::string gpu_memory = "auto";
+  compositor::BalanceSettings balance;
+  bool any_file = false;
+  std::vector<std::string> data;
+  int image_ms = 0;
+
+  volume::ReadableFiles files() const {
+    return any_file ? volume::ReadableFiles() : volume::ReadableFiles(data);
+  }
+};
+
+void add_exchange_options(CLI::App& app, compositor::ExchangeSettings& exchange) {
+  using namespace compositor;
   const auto choice = [&](const char* flag, bool (*set)(ExchangeSettings&, std::string_view),
                           const char* help) {
     app.add_option_function<std::string>(
@@ -57,66 +65,85 @@ int main(int argc, char** argv) {
   choice("--gather", set_gather, "How the parts of an image come to the application");
   choice("--overlap", set_overlap, "Whether images are composited while they are drawn");
   choice("--packed", set_packed, "Whether pixels are packed for their way");
-  std::string backend = "cpu";
-  app.add_option("--backend", backend, "Who casts the rays")->check([](const std::string& name) -> std::string {
-    if (volume::glsl::backend_of(name)) return {};
-    return fmt::format("'{}' is none of {}", name, volume::glsl::backend_names);
-  });
-  std::string gpu_memory = "auto";
-  app.add_option("--gpu-memory", gpu_memory, "Bytes of texels in textures")
+}
+
+void add_options(CLI::App& app, NodeOptions& options) {
+  app.add_option("--control", options.control, "The launcher's Unix socket")->required();
+  add_exchange_options(app, options.exchange);
+  app.add_option("--backend", options.backend, "Who casts the rays")
+      ->check([](const std::string& name) -> std::string {
+        if (volume::glsl::backend_of(name)) return {};
+        return fmt::format("'{}' is none of {}", name, volume::glsl::backend_names);
+      });
+  app.add_option("--gpu-memory", options.gpu_memory, "Bytes of texels in textures")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(volume::glsl::least_texture_memory, ~std::uint64_t(0)));
-  BalanceSettings balance;
   app.add_option_function<std::string>(
       "--balance",
-      [&](const std::string& name) {
-        if (!set_balance(balance.balance, name))
+      [&balance = options.balance.balance](const std::string& name) {
+        if (!compositor::set_balance(balance, name))
           throw CLI::ValidationError("--balance", "there is no '" + name + "'");
       },
       "Who gets how much of a volume: off, muller or predicted");
-  std::vector<std::string> data;
-  bool any_file = false;
-  app.add_flag("--any-file", any_file, "Applications may load every file that this user may read");
-  app.add_option("--data", data, "Folders that applications may load volumes from; none: they send them");
-  int image_ms = 0;
-  app.add_option("--image-time", image_ms,
+  app.add_flag("--any-file", options.any_file, "Applications may load every file that this user may read");
+  app.add_option("--data", options.data,
+                 "Folders that applications may load volumes from; none: they send them");
+  app.add_option("--image-time", options.image_ms,
                  "Milliseconds of one image, where applications are pending clients to each other; 0: no limit")
       ->check(CLI::NonNegativeNumber);
-  CLI11_PARSE(app, argc, argv);
+}
 
+void print_move(const compositor::MoveFigures& move) {
+  fmt::print(stderr,
+             "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} bytes), "
+             "{} were here from before; {:.1f} ms\n",
+             move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
+             move.blocks_from_cache, move.ms);
+  std::fflush(stderr);
+}
+
+int run_rank(NodeOptions& options, int argc, char** argv) {
+  using namespace compositor;
   MpiCommunicator communicator(argc, argv);
+  const int neighbours = communicator.ranks_on_this_machine();
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned share = std::max(1U, cores / unsigned(communicator.ranks_on_this_machine()));
+  const unsigned share = std::max(1U, cores / unsigned(neighbours));
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
   // Mesa's software renderer would take all cores for each rank.
   setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
   volume::glsl::TextureMemoryWish memory;
-  memory.sharers = communicator.ranks_on_this_machine();
-  if (gpu_memory != "auto") memory.bytes = std::stoull(gpu_memory);
+  memory.sharers = neighbours;
+  if (options.gpu_memory != "auto") memory.bytes = std::stoull(options.gpu_memory);
   volume::glsl::BackendChooser chooser(
-      *volume::glsl::backend_of(backend),
+      *volume::glsl::backend_of(options.backend),
       [&](const std::string& choice) {
         fmt::print(stderr, "{}node {}: {}\n", backend_line, communicator.rank(), choice);
         std::fflush(stderr);
       },
       memory);
-  balance.memory_left = [&] { return available_memory() / std::size_t(communicator.ranks_on_this_machine()); };
-  balance.moved = [&](const MoveFigures& move) {
-    if (communicator.rank() != 0) return;
-    fmt::print(
-        stderr,
-        "node 0: volume {}: {} planes moved, as times deviated by {:.2f}; {} blocks came here ({} bytes), "
-        "{} were here from before; {:.1f} ms\n",
-        move.volume, move.planes, move.deviation, move.blocks_received, move.bytes_received,
-        move.blocks_from_cache, move.ms);
-    std::fflush(stderr);
+  options.balance.memory_left = [&] { return available_memory() / std::size_t(neighbours); };
+  options.balance.moved = [&](const MoveFigures& move) {
+    if (communicator.rank() == 0) print_move(move);
   };
   try {
-    const volume::ReadableFiles files = any_file ? volume::ReadableFiles() : volume::ReadableFiles(data);
-    return run_node(communicator, control, limits::stall_patience, exchange, chooser.factory(), balance, files,
-                    client_limits(communicator.ranks_on_this_machine(), std::chrono::milliseconds(image_ms)))
+    return run_node(communicator, options.control, limits::stall_patience, options.exchange, chooser.factory(),
+                    options.balance, options.files(),
+                    client_limits(neighbours, std::chrono::milliseconds(options.image_ms)))
                ? 0
                : 1;
   } catch (const std::exception& error) {
     communicator.abandon(error.what());
   }
+}
+
+}  // namespace
+}  // namespace understudy
+
+int main(int argc, char** argv) {
+  understudy::logging::set_program("understudy-node");
+  CLI::App app(
+      "One rank of Understudy's node group; `understudy serve` starts it as mpirun -n N understudy-node ...");
+  understudy::NodeOptions options;
+  understudy::add_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+  return understudy::run_rank(options, argc, argv);
 }

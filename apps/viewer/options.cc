@@ -44,27 +44,32 @@ CLI::Validator number_between(double low, double high) {
       fmt::format("FLOAT in [{} - {}]", low, high));
 }
 
-}  // namespace
-
-std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
-  CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
-  app.name("understudy-viewer");
+/// What options say in words, until they are looked up.
+struct Texts {
   std::string mode = "table", op = "over", preset = "engine", table, type, surface = "any", step = "whole";
   VolumeSize size{};
   Vec3 spacing{};
+  CLI::Option* size_option = nullptr;
+  CLI::Option* type_option = nullptr;
+  CLI::Option* spacing_option = nullptr;
+};
 
+void add_volume_options(CLI::App& app, Options& options, Texts& texts) {
   app.add_option("volume", options.volume_path,
                  "Volume file: raw voxels (name.XxYxZ, or with --size), also .gz; NRRD; NIfTI")
       ->required();
-  auto* size_option =
-      app.add_option("--size", size, "Voxels along x, y and z of a raw file")->type_name("X Y Z");
-  auto* type_option = app.add_option("--type", type, "Voxel type of a raw file")
+  texts.size_option =
+      app.add_option("--size", texts.size, "Voxels along x, y and z of a raw file")->type_name("X Y Z");
+  texts.type_option = app.add_option("--type", texts.type, "Voxel type of a raw file")
                           ->check(CLI::IsMember({"u8", "i8", "u16", "i16", "f32"}));
   app.add_flag("--big-endian", options.hints.big_endian, "The raw file has the most significant byte first");
-  auto* spacing_option = app.add_option("--spacing", spacing, "Distances between voxels, instead of the file's")
-                             ->type_name("X Y Z");
+  texts.spacing_option =
+      app.add_option("--spacing", texts.spacing, "Distances between voxels, instead of the file's")
+          ->type_name("X Y Z");
+}
 
-  app.add_option("--mode", mode,
+void add_mode_options(CLI::App& app, Options& options, Texts& texts) {
+  app.add_option("--mode", texts.mode,
                  "rgba (colours per voxel, fixed function), table (1-D table in GLSL 1.20), core (OpenGL 3.3 "
                  "core), time (a "
                  "new time step every frame), bricks (many small textures), lit (directional light), preint "
@@ -73,25 +78,28 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
       ->check(CLI::IsMember({"rgba", "table", "core", "time", "bricks", "lit", "preint", "stacks"}))
       ->capture_default_str();
   app.add_option(
-         "--time-step", step,
+         "--time-step", texts.step,
          "With --mode time, what changes from frame to frame: whole (every voxel), part (those in the middle, "
          "and only they are uploaded) or again (the same, but all are uploaded)")
       ->check(CLI::IsMember({"whole", "part", "again"}))
       ->capture_default_str();
-  app.add_option("--operator", op, "How slices are blended: over, under (front to back), max, min or add")
+  app.add_option("--operator", texts.op, "How slices are blended: over, under (front to back), max, min or add")
       ->check(CLI::IsMember({"over", "under", "max", "min", "add"}))
       ->capture_default_str();
   app.add_option("--slices", options.slices,
                  "Slices across the box's diagonal (default: one per finest voxel edge)")
       ->check(CLI::Range(1, max_slices));
-  app.add_option("--preset", preset, "Transfer function by name or number:" + preset_list())
+  app.add_option("--preset", texts.preset, "Transfer function by name or number:" + preset_list())
       ->check(is_preset)
       ->capture_default_str();
-  app.add_option("--table", table,
+  app.add_option("--table", texts.table,
                  "Transfer function of your own instead: a JSON file of control points, with values and "
                  "opacities from 0 to "
                  "1 as {\"knots\": [{\"at\": 0.2, \"colour\": [1, 0.5, 0.2], \"opacity\": 0}, ...]}")
       ->type_name("FILE");
+}
+
+void add_scene_options(CLI::App& app, Options& options) {
   app.add_flag("--opaque", options.opaque_ball, "A solid ball within the volume");
   app.add_flag("--second", options.second_volume,
                "The volume twice, half as large, the second in the next preset's colours");
@@ -101,7 +109,9 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
   app.add_option("--background", options.background, "Background colour, each 0 to 1")
       ->check(number_between(0.0, 1.0))
       ->type_name("R G B");
+}
 
+void add_camera_options(CLI::App& app, Options& options) {
   app.add_option("--azimuth", options.camera.azimuth, "Degrees around the z axis")
       ->check(number_between(-1e6, 1e6))
       ->capture_default_str();
@@ -119,9 +129,11 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
       ->check(CLI::Range(1, max_window_edge))
       ->type_name("W H")
       ->capture_default_str();
+}
 
+void add_output_options(CLI::App& app, Options& options, Texts& texts) {
   app.add_flag("--offscreen", options.offscreen, "Draw with EGL, without a window or a display");
-  app.add_option("--offscreen-surface", surface, "What to draw into off screen")
+  app.add_option("--offscreen-surface", texts.surface, "What to draw into off screen")
       ->check(CLI::IsMember({"any", "pbuffer", "framebuffer"}))
       ->capture_default_str();
   app.add_option(
@@ -136,6 +148,41 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
                  "Write every frame as frame_NNNN.png into a folder");
   app.add_option("--describe", options.description, "Write as JSON what is needed to recompute the last frame");
   app.add_flag("--print-times", options.print_times, "Print the milliseconds of each frame, and their median");
+}
+
+void take(const Texts& texts, Options& options) {
+  if (texts.size_option->count() > 0) options.hints.size = texts.size;
+  if (texts.type_option->count() > 0) options.hints.type = scalar_type_named(texts.type);
+  if (texts.spacing_option->count() > 0) options.hints.spacing = texts.spacing;
+  options.mode = *mode_named(texts.mode);
+  options.time_step = std::map<std::string, TimeStep>{
+      {"whole", TimeStep::whole},
+      {"part", TimeStep::part},
+      {"again",
+       TimeStep::again}}.at(texts.step);
+  options.op = *operator_named(texts.op);
+  options.preset = find_preset(texts.preset);
+  if (!texts.table.empty()) {
+    options.preset_file = std::make_shared<const PresetFile>(texts.table);
+    options.preset = &options.preset_file->preset();
+  }
+  options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},
+                                                            {"pbuffer", OffscreenSurface::pbuffer},
+                                                            {"framebuffer", OffscreenSurface::framebuffer}}
+                        .at(texts.surface);
+}
+
+}  // namespace
+
+std::optional<int> parse_command_line(int argc, const char* const* argv, Options& options) {
+  CLI::App app{"Shows a volume as slices through textures, in a window or off screen."};
+  app.name("understudy-viewer");
+  Texts texts;
+  add_volume_options(app, options, texts);
+  add_mode_options(app, options, texts);
+  add_scene_options(app, options);
+  add_camera_options(app, options);
+  add_output_options(app, options, texts);
   app.footer(
       "Drag with the left button to rotate, with the right to zoom (or turn the wheel). Keys: 1 to 5 presets,\n"
       "o orthographic or perspective, q or Esc quits.\n"
@@ -148,25 +195,7 @@ std::optional<int> parse_command_line(int argc, const char* const* argv, Options
                                 : static_cast<int>(ExitCode::bad_command_line);
   }
 
-  if (size_option->count() > 0) options.hints.size = size;
-  if (type_option->count() > 0) options.hints.type = scalar_type_named(type);
-  if (spacing_option->count() > 0) options.hints.spacing = spacing;
-  options.mode = *mode_named(mode);
-  options.time_step = std::map<std::string, TimeStep>{
-      {"whole", TimeStep::whole},
-      {"part", TimeStep::part},
-      {"again",
-       TimeStep::again}}.at(step);
-  options.op = *operator_named(op);
-  options.preset = find_preset(preset);
-  if (!table.empty()) {
-    options.preset_file = std::make_shared<const PresetFile>(table);
-    options.preset = &options.preset_file->preset();
-  }
-  options.surface = std::map<std::string, OffscreenSurface>{{"any", OffscreenSurface::any},
-                                                            {"pbuffer", OffscreenSurface::pbuffer},
-                                                            {"framebuffer", OffscreenSurface::framebuffer}}
-                        .at(surface);
+  take(texts, options);
   const bool leaves_something =
       !options.screenshot.empty() || !options.screenshot_folder.empty() || !options.description.empty();
   if (options.frames == 0 && (options.offscreen || leaves_something)) options.frames = 1;

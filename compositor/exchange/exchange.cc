@@ -50,23 +50,50 @@ class Player {
         memory_(memory) {}
 
   void play(const Round& round) {
-    const Rank me = communicator_.rank();
+    const Mine mine = mine_of(round);
+    if (mine.given.empty() && mine.arriving.empty()) return;
+    std::vector<PixelMessage> arrived = transferred(mine);
+    if (communicator_.rank() == 0 && std::ranges::any_of(round.pieces, &Piece::written))
+      write_round(round, mine, arrived);
+    else
+      blend_round(round, mine, arrived);
+  }
+
+  Exchanged finish() && {
+    if (communicator_.rank() != 0) return {};
+    if (memory_.empty()) return {std::move(image_), bytes_to_tell_};
+    if (!written_ && !schedule_.whole.empty()) {
+      write_part(image_.rect);
+      clear_between({&image_.rect, 1});
+    }
+    return {{}, bytes_to_tell_};
+  }
+
+ private:
+  /// This rank's part in a round.
+  struct Mine {
     std::vector<const Piece*> given, arriving;
     const Piece* kept = nullptr;
+  };
+
+  Mine mine_of(const Round& round) const {
+    const Rank me = communicator_.rank();
+    Mine mine;
     for (const Piece& piece : round.pieces) {
       if (piece.from == me && piece.to == me)
-        kept = &piece;
+        mine.kept = &piece;
       else if (piece.from == me)
-        given.push_back(&piece);
+        mine.given.push_back(&piece);
       else if (piece.to == me)
-        arriving.push_back(&piece);
+        mine.arriving.push_back(&piece);
     }
-    if (given.empty() && arriving.empty()) return;
+    return mine;
+  }
 
+  /// What is given, as messages. Pieces that are written into the image's memory leave a head alone.
+  std::vector<PixelMessage> encoded(const std::vector<const Piece*>& given) {
     std::vector<PixelMessage> messages;
-    std::vector<Outgoing> outgoing;
     messages.reserve(given.size());
-    outgoing.reserve(given.size());
     for (const Piece* piece : given) {
       if (piece->written) {
         write_part(piece->rect);
@@ -82,51 +109,52 @@ class Player {
       bytes_to_tell_ += messages.back().size();
     }
     if (!messages.empty()) messages.front().tell(std::exchange(bytes_to_tell_, 0));
-    for (std::size_t i = 0; i < given.size(); ++i)
-      outgoing.push_back({given[i]->to, messages[i].bytes(), true});
+    return messages;
+  }
+
+  /// Sends what is given; returns what arrives.
+  std::vector<PixelMessage> transferred(const Mine& mine) {
+    std::vector<PixelMessage> messages = encoded(mine.given);
+    std::vector<Outgoing> outgoing;
+    outgoing.reserve(messages.size());
+    for (std::size_t i = 0; i < messages.size(); ++i)
+      outgoing.push_back({mine.given[i]->to, messages[i].bytes(), true});
 
     std::vector<PixelMessage> arrived;
     std::vector<Incoming> incoming;
-    arrived.reserve(arriving.size());
-    for (const Piece* piece : arriving) {
+    arrived.reserve(mine.arriving.size());
+    for (const Piece* piece : mine.arriving) {
       PixelMessage& room = arrived.emplace_back(piece->written ? PixelMessage(head_bytes)
                                                                : space_for_pixels(piece->rect, layout_));
       incoming.push_back({piece->from, room.room(), &room.received(), &room.seen()});
     }
     communicator_.transfer(outgoing, incoming);
-
     for (const PixelMessage& message : arrived) bytes_to_tell_ += message.told();
-    if (me == 0 && std::ranges::any_of(round.pieces, &Piece::written)) {
-      if (kept != nullptr) write_part(kept->rect);
-      for (std::size_t i = 0; i < arriving.size(); ++i)
-        if (!arriving[i]->written) write_arrived(PixelReader(arrived[i], arriving[i]->rect, layout_));
-      std::vector<Rect> pieces;
-      for (const Piece& piece : round.pieces) pieces.push_back(piece.rect);
-      clear_between(pieces);
-      written_ = true;
-      return;
-    }
+    return arrived;
+  }
 
+  /// Rank 0's last round, where ranks write into the image's memory.
+  void write_round(const Round& round, const Mine& mine, std::vector<PixelMessage>& arrived) {
+    if (mine.kept != nullptr) write_part(mine.kept->rect);
+    for (std::size_t i = 0; i < arrived.size(); ++i)
+      if (!mine.arriving[i]->written) write_arrived(PixelReader(arrived[i], mine.arriving[i]->rect, layout_));
+    std::vector<Rect> pieces;
+    for (const Piece& piece : round.pieces) pieces.push_back(piece.rect);
+    clear_between(pieces);
+    written_ = true;
+  }
+
+  void blend_round(const Round& round, const Mine& mine, std::vector<PixelMessage>& arrived) {
+    const auto me = std::size_t(communicator_.rank());
     std::vector<Contribution> contributions;
-    if (kept != nullptr) contributions.push_back({schedule_.position[std::size_t(me)], kept->rect, {}});
-    for (std::size_t i = 0; i < arriving.size(); ++i) {
-      contributions.push_back({schedule_.position[std::size_t(arriving[i]->from)], arriving[i]->rect,
-                               PixelReader(arrived[i], arriving[i]->rect, layout_)});
+    if (mine.kept != nullptr) contributions.push_back({schedule_.position[me], mine.kept->rect, {}});
+    for (std::size_t i = 0; i < arrived.size(); ++i) {
+      contributions.push_back({schedule_.position[std::size_t(mine.arriving[i]->from)], mine.arriving[i]->rect,
+                               PixelReader(arrived[i], mine.arriving[i]->rect, layout_)});
     }
-    blend_all(contributions, round.afterwards[std::size_t(me)]);
+    blend_all(contributions, round.afterwards[me]);
   }
 
-  Exchanged finish() && {
-    if (communicator_.rank() != 0) return {};
-    if (memory_.empty()) return {std::move(image_), bytes_to_tell_};
-    if (!written_ && !schedule_.whole.empty()) {
-      write_part(image_.rect);
-      clear_between({&image_.rect, 1});
-    }
-    return {{}, bytes_to_tell_};
-  }
-
- private:
   struct Contribution {
     int position = 0;
     Rect rect;

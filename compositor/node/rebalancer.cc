@@ -12,6 +12,7 @@
 #include "compositor/balance/moves.h"
 #include "volume/cell_lattice.h"
 #include "volume/raycast/expected_samples.h"
+#include "volume/request.h"
 
 namespace understudy::compositor {
 
@@ -81,68 +82,93 @@ bool Rebalancer::all_agree(bool mine) {
   return std::ranges::count(votes, 0) == 0;
 }
 
+/// What of an image can be known, and fail, on one rank alone: its request, and what this rank expects it to
+/// cost.
+struct Rebalancer::Expected {
+  std::optional<volume::RenderRequest> request;
+  Volume* volume = nullptr;
+  std::vector<TexelBox> boxes;
+  std::optional<BlockCosts> costs;
+  std::vector<float> mine, all;          ///< of the cubes that each rank's box touches
+  std::size_t most_here = 0;             ///< blocks, where the ranks have not told each other yet
+  std::vector<std::size_t> most_blocks;  ///< room for all ranks' answers
+};
+
+Rebalancer::Volume& Rebalancer::volume_of(VolumeKey key) {
+  auto known = volumes_.find(key);
+  if (known == volumes_.end())
+    known = volumes_
+                .emplace(key,
+                         Volume{make_balancer(settings_.balance), BlockCache(settings_.cache_bytes), {}, 0, {}})
+                .first;
+  return known->second;
+}
+
+void Rebalancer::expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode,
+                        Expected& expected) {
+  const volume::RenderRequest& request = expected.request.emplace(decode());
+  const BrickStore& bricks = renderer_.bricks(client, request);
+  const TexelBox lattice = bricks.lattice().box();
+  expected.boxes = volume::boxes(renderer_.partition(client, request), bricks.description());
+  expected.volume = &volume_of({client, request.volume});
+  BlockCosts& costs = expected.costs.emplace(lattice, cost_edge(lattice));
+  volume::add_expected_samples(bricks, request, costs);
+  std::size_t most = 0;
+  for (const TexelBox& box : expected.boxes)
+    most = std::max(most, volume::texels_in(cubes_touched(costs, box)));
+  if (expected.volume->most_blocks.empty()) {
+    expected.most_here = most_blocks_here(bricks);
+    expected.most_blocks.resize(expected.boxes.size());
+  }
+  expected.mine.resize(most);
+  expected.all.resize(most * expected.boxes.size());
+  std::size_t next = 0;
+  for_each_place(
+      cubes_touched(costs, expected.boxes[std::size_t(communicator_.rank())]),
+      [&](const BlockPlace& cube) { expected.mine[next++] = float(costs.values()[costs.index(cube)]); });
+}
+
+/// All ranks tell each other what they expect: `costs` are then those of the whole image.
+void Rebalancer::gather_costs(Expected& expected) {
+  if (expected.volume->most_blocks.empty()) {
+    communicator_.gather_to_all(bytes_of(expected.most_here),
+                                std::as_writable_bytes(std::span(expected.most_blocks)));
+    expected.volume->most_blocks = std::move(expected.most_blocks);
+  }
+  communicator_.gather_to_all(std::as_bytes(std::span(expected.mine)),
+                              std::as_writable_bytes(std::span(expected.all)));
+  BlockCosts& costs = *expected.costs;
+  std::ranges::fill(costs.values(), 0.0);
+  for (std::size_t rank = 0; rank < expected.boxes.size(); ++rank) {
+    const float* value = expected.all.data() + rank * expected.mine.size();
+    for_each_place(cubes_touched(costs, expected.boxes[rank]),
+                   [&](const BlockPlace& cube) { costs.values()[costs.index(cube)] += double(*value++); });
+  }
+}
+
 volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
                                                const std::function<volume::RenderRequest()>& decode) {
   // Nothing that may fail on one rank alone stands between two calls in which all take part.
-  std::optional<volume::RenderRequest> request;
-  std::optional<BlockCosts> costs;
-  std::vector<float> mine, all;
-  std::vector<TexelBox> boxes;
-  std::size_t most_here = 0;
-  std::vector<std::size_t> most_blocks;
-  Volume* volume = nullptr;
+  Expected expected;
   std::exception_ptr trouble;
   try {
-    request = decode();
-    const BrickStore& bricks = renderer_.bricks(client, *request);
-    const TexelBox lattice = bricks.lattice().box();
-    boxes = volume::boxes(renderer_.partition(client, *request), bricks.description());
-    const VolumeKey key{client, request->volume};
-    auto known = volumes_.find(key);
-    if (known == volumes_.end())
-      known =
-          volumes_
-              .emplace(key,
-                       Volume{make_balancer(settings_.balance), BlockCache(settings_.cache_bytes), {}, 0, {}})
-              .first;
-    volume = &known->second;
-    costs.emplace(lattice, cost_edge(lattice));
-    volume::add_expected_samples(bricks, *request, *costs);
-    std::size_t most = 0;
-    for (const TexelBox& box : boxes) most = std::max(most, volume::texels_in(cubes_touched(*costs, box)));
-    if (volume->most_blocks.empty()) {
-      most_here = most_blocks_here(bricks);
-      most_blocks.resize(boxes.size());
-    }
-    mine.resize(most);
-    all.resize(most * boxes.size());
-    std::size_t next = 0;
-    for_each_place(cubes_touched(*costs, boxes[std::size_t(communicator_.rank())]),
-                   [&](const BlockPlace& cube) { mine[next++] = float(costs->values()[costs->index(cube)]); });
+    expect(client, decode, expected);
   } catch (...) {
     trouble = std::current_exception();
   }
   const bool agreed = all_agree(trouble == nullptr);
   if (trouble) std::rethrow_exception(trouble);
-  if (!agreed) return std::move(*request);  // another rank refuses it
+  if (!agreed) return std::move(*expected.request);  // another rank refuses it
 
-  if (volume->most_blocks.empty()) {
-    communicator_.gather_to_all(bytes_of(most_here), std::as_writable_bytes(std::span(most_blocks)));
-    volume->most_blocks = std::move(most_blocks);
-  }
-  communicator_.gather_to_all(std::as_bytes(std::span(mine)), std::as_writable_bytes(std::span(all)));
-  std::ranges::fill(costs->values(), 0.0);
-  for (std::size_t rank = 0; rank < boxes.size(); ++rank) {
-    const float* value = all.data() + rank * mine.size();
-    for_each_place(cubes_touched(*costs, boxes[rank]),
-                   [&](const BlockPlace& cube) { costs->values()[costs->index(cube)] += double(*value++); });
-  }
+  gather_costs(expected);
+  const volume::RenderRequest& request = *expected.request;
+  Volume& volume = *expected.volume;
   try {
-    const Partition now = renderer_.partition(client, *request);
-    const Partition next = volume->balancer->decide(
-        {now, costs->lattice(), volume->work, *costs, volume->ms_per_block, volume->most_blocks});
-    volume->work.clear();  // learned from
-    if (next != now) move({client, request->volume}, *volume, *request, next);
+    const Partition now = renderer_.partition(client, request);
+    const Partition next = volume.balancer->decide({now, expected.costs->lattice(), volume.work,
+                                                    *expected.costs, volume.ms_per_block, volume.most_blocks});
+    volume.work.clear();  // learned from
+    if (next != now) move({client, request.volume}, volume, request, next);
   } catch (const RankLost&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -151,7 +177,7 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
   } catch (const std::exception& error) {
     communicator_.abandon(error.what());
   }
-  return std::move(*request);
+  return std::move(*expected.request);
 }
 
 // What this rank holds, and what more it has memory for if all blocks take as much as they can: those of one
@@ -201,79 +227,104 @@ void Rebalancer::move(VolumeKey key, Volume& volume, const volume::RenderRequest
   settings_.moved(figures);
 }
 
+/// Blocks on their way between this rank and each other one.
+struct Rebalancer::Traffic {
+  explicit Traffic(std::size_t ranks)
+      : to(ranks),
+        from(ranks),
+        wanted(ranks),
+        asked(ranks),
+        outgoing(ranks),
+        incoming(ranks),
+        sizes(ranks),
+        announced(ranks) {}
+
+  std::vector<std::vector<BlockPlace>> to, from;
+  std::vector<std::vector<std::byte>> wanted,
+      asked;  ///< a byte for each of `from` and of `to`: 0 if not to be sent
+  std::vector<std::vector<std::byte>> outgoing, incoming;  ///< blocks, packed
+  std::vector<std::uint64_t> sizes, announced;             ///< of these, in bytes
+};
+
 // Every rank tells those that have blocks for it which of them it does not keep from earlier; these say how
 // many bytes they are, and send them.
 void Rebalancer::send_blocks(Volume& volume, const BrickStore& bricks, std::span<const TexelBox> before,
                              std::span<const TexelBox> after,
                              std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures) {
-  const auto ranks = std::size_t(communicator_.size());
   const int me = communicator_.rank();
-  std::vector<std::vector<BlockPlace>> to(ranks), from(ranks);
+  Traffic traffic{std::size_t(communicator_.size())};
   for (const BlockMove& move : moves(bricks.description(), before, after)) {
-    if (move.to == me)
-      for_each_place(move.blocks,
-                     [&](const BlockPlace& place) { from[std::size_t(move.from)].push_back(place); });
-    if (move.from == me)
-      for_each_place(move.blocks, [&](const BlockPlace& place) { to[std::size_t(move.to)].push_back(place); });
+    const auto note = [&](std::vector<BlockPlace>& places) {
+      for_each_place(move.blocks, [&](const BlockPlace& place) { places.push_back(place); });
+    };
+    if (move.to == me) note(traffic.from[std::size_t(move.from)]);
+    if (move.from == me) note(traffic.to[std::size_t(move.to)]);
   }
-  std::vector<std::vector<std::byte>> wanted(ranks), asked(ranks), outgoing_bytes(ranks), incoming_bytes(ranks);
-  std::vector<std::uint64_t> sizes(ranks), announced(ranks);
-  std::vector<Outgoing> outgoing;
-  std::vector<Incoming> incoming;
-  const auto transfer = [&] {
-    communicator_.transfer(outgoing, incoming);
-    outgoing.clear();
-    incoming.clear();
-  };
-
-  for (std::size_t rank = 0; rank < ranks; ++rank) {
-    for (const BlockPlace& place : from[rank]) {
-      std::optional<std::vector<std::byte>> kept = volume.given_away.take(place);
-      wanted[rank].push_back(std::byte(kept ? 0 : 1));
-      if (!kept) continue;
-      received[place] = std::move(*kept);
-      ++figures.blocks_from_cache;
-    }
-    asked[rank].resize(to[rank].size());
-    if (!wanted[rank].empty()) outgoing.push_back({int(rank), wanted[rank]});
-    if (!asked[rank].empty()) incoming.push_back({int(rank), asked[rank]});
-  }
-  transfer();
-
+  ask_for_blocks(traffic, volume, received, figures);
+  announce_blocks(traffic, bricks);
+  exchange_blocks(traffic);
   const std::size_t texel = bytes_per_texel(bricks.description().type);
-  for (std::size_t rank = 0; rank < ranks; ++rank) {
-    std::vector<std::byte>& bytes = outgoing_bytes[rank];
-    for (std::size_t i = 0; i < to[rank].size(); ++i) {
-      if (asked[rank][i] == std::byte(0)) continue;
-      const std::vector<std::byte> packed = bricks.packed(to[rank][i]);
-      bytes.push_back(std::byte(packed.size() > texel));
-      bytes.insert(bytes.end(), packed.begin(), packed.end());
-    }
-    sizes[rank] = bytes.size();
-    if (!to[rank].empty()) outgoing.push_back({int(rank), bytes_of(sizes[rank])});
-    if (!from[rank].empty()) incoming.push_back({int(rank), bytes_of(announced[rank])});
-  }
-  transfer();
-
-  for (std::size_t rank = 0; rank < ranks; ++rank) {
-    incoming_bytes[rank].resize(announced[rank]);
-    if (sizes[rank] > 0) outgoing.push_back({int(rank), outgoing_bytes[rank]});
-    if (announced[rank] > 0) incoming.push_back({int(rank), incoming_bytes[rank]});
-  }
-  transfer();
-
-  for (std::size_t rank = 0; rank < ranks; ++rank) {
-    std::span<const std::byte> bytes(incoming_bytes[rank]);
+  for (std::size_t rank = 0; rank < traffic.from.size(); ++rank) {
+    std::span<const std::byte> bytes(traffic.incoming[rank]);
     figures.bytes_received += bytes.size();
-    for (std::size_t i = 0; i < from[rank].size(); ++i) {
-      if (wanted[rank][i] == std::byte(0)) continue;
+    for (std::size_t i = 0; i < traffic.from[rank].size(); ++i) {
+      if (traffic.wanted[rank][i] == std::byte(0)) continue;
       const std::size_t size = texel * (bytes.front() == std::byte(0) ? 1 : BrickStore::block_texels);
       const std::span<const std::byte> packed = bytes.subspan(1, size);
-      received[from[rank][i]].assign(packed.begin(), packed.end());
+      received[traffic.from[rank][i]].assign(packed.begin(), packed.end());
       bytes = bytes.subspan(1 + size);
       ++figures.blocks_received;
     }
   }
+}
+
+void Rebalancer::ask_for_blocks(Traffic& traffic, Volume& volume,
+                                std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures) {
+  std::vector<Outgoing> outgoing;
+  std::vector<Incoming> incoming;
+  for (std::size_t rank = 0; rank < traffic.from.size(); ++rank) {
+    for (const BlockPlace& place : traffic.from[rank]) {
+      std::optional<std::vector<std::byte>> kept = volume.given_away.take(place);
+      traffic.wanted[rank].push_back(std::byte(kept ? 0 : 1));
+      if (!kept) continue;
+      received[place] = std::move(*kept);
+      ++figures.blocks_from_cache;
+    }
+    traffic.asked[rank].resize(traffic.to[rank].size());
+    if (!traffic.wanted[rank].empty()) outgoing.push_back({int(rank), traffic.wanted[rank]});
+    if (!traffic.asked[rank].empty()) incoming.push_back({int(rank), traffic.asked[rank]});
+  }
+  communicator_.transfer(outgoing, incoming);
+}
+
+void Rebalancer::announce_blocks(Traffic& traffic, const BrickStore& bricks) {
+  const std::size_t texel = bytes_per_texel(bricks.description().type);
+  std::vector<Outgoing> outgoing;
+  std::vector<Incoming> incoming;
+  for (std::size_t rank = 0; rank < traffic.to.size(); ++rank) {
+    std::vector<std::byte>& bytes = traffic.outgoing[rank];
+    for (std::size_t i = 0; i < traffic.to[rank].size(); ++i) {
+      if (traffic.asked[rank][i] == std::byte(0)) continue;
+      const std::vector<std::byte> packed = bricks.packed(traffic.to[rank][i]);
+      bytes.push_back(std::byte(packed.size() > texel));
+      bytes.insert(bytes.end(), packed.begin(), packed.end());
+    }
+    traffic.sizes[rank] = bytes.size();
+    if (!traffic.to[rank].empty()) outgoing.push_back({int(rank), bytes_of(traffic.sizes[rank])});
+    if (!traffic.from[rank].empty()) incoming.push_back({int(rank), bytes_of(traffic.announced[rank])});
+  }
+  communicator_.transfer(outgoing, incoming);
+}
+
+void Rebalancer::exchange_blocks(Traffic& traffic) {
+  std::vector<Outgoing> outgoing;
+  std::vector<Incoming> incoming;
+  for (std::size_t rank = 0; rank < traffic.sizes.size(); ++rank) {
+    traffic.incoming[rank].resize(traffic.announced[rank]);
+    if (traffic.sizes[rank] > 0) outgoing.push_back({int(rank), traffic.outgoing[rank]});
+    if (traffic.announced[rank] > 0) incoming.push_back({int(rank), traffic.incoming[rank]});
+  }
+  communicator_.transfer(outgoing, incoming);
 }
 
 void Rebalancer::texels_changed(VolumeKey key, const volume::VolumeDescription& description,

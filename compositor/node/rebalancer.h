@@ -15,7 +15,6 @@
 #include "compositor/balance/block_cache.h"
 #include "compositor/exchange/communicator.h"
 #include "compositor/service/rank_renderer.h"
-#include "volume/request.h"
 
 namespace understudy::compositor {
 
@@ -67,10 +66,20 @@ class Rebalancer {
     std::vector<std::size_t> most_blocks;  ///< by rank; empty: to be asked for
   };
 
+  struct Expected;
+  struct Traffic;
+
+  Volume& volume_of(VolumeKey key);
+  void expect(std::uint64_t client, const std::function<volume::RenderRequest()>& decode, Expected& expected);
+  void gather_costs(Expected& expected);
   void move(VolumeKey key, Volume& volume, const volume::RenderRequest& request, const volume::Partition& next);
   void send_blocks(Volume& volume, const volume::BrickStore& bricks, std::span<const volume::TexelBox> before,
                    std::span<const volume::TexelBox> after,
                    std::map<BlockPlace, std::vector<std::byte>>& received, MoveFigures& figures);
+  void ask_for_blocks(Traffic& traffic, Volume& volume, std::map<BlockPlace, std::vector<std::byte>>& received,
+                      MoveFigures& figures);
+  void announce_blocks(Traffic& traffic, const volume::BrickStore& bricks);
+  void exchange_blocks(Traffic& traffic);
   bool all_agree(bool mine);
   std::size_t most_blocks_here(const volume::BrickStore& bricks) const;
 

@@ -2,6 +2,7 @@
 // The render service inside the application: one rank, all cores, no socket.
 #include <array>
 
+#include "compositor/rendered.h"
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/rank_renderer.h"

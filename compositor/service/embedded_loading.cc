@@ -2,10 +2,12 @@
 // One rank in this process that reads its files itself.
 #include <array>
 
+#include "compositor/rendered.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/loading_service.h"
 #include "compositor/service/loads.h"
 #include "compositor/service/rank_renderer.h"
+#include "volume/brick/histogram.h"
 #include "volume/file/file_error.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"

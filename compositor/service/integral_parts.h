@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "volume/image.h"
-#include "volume/reference/pixel_integral.h"
+#include "volume/pixel_integral.h"
 #include "volume/request.h"
 
 namespace understudy::compositor {

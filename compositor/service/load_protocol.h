@@ -10,7 +10,7 @@
 #include "compositor/service/loading_service.h"
 #include "compositor/transport/message.h"
 #include "volume/brick/histogram.h"
-#include "volume/description.h"
+#include "volume/volume_id.h"
 
 namespace understudy::compositor {
 

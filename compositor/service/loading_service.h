@@ -9,12 +9,16 @@
 #include <vector>
 
 #include "compositor/service.h"
-#include "compositor/service/remote_service.h"
-#include "volume/brick/histogram.h"
 #include "volume/description.h"
 #include "volume/file/texel_stream.h"
 
+namespace understudy::volume {
+struct HistogramBins;
+}
+
 namespace understudy::compositor {
+
+struct Patience;
 
 struct LoadRequest {
   /// Size and texel type are those of the file; all of it is stored.

@@ -11,10 +11,14 @@
 #include <vector>
 
 #include "compositor/transport/message.h"
-#include "volume/description.h"
 #include "volume/frame_counts.h"
 #include "volume/rect.h"
 #include "volume/texel_box.h"
+#include "volume/volume_id.h"
+
+namespace understudy::volume {
+struct VolumeDescription;
+}
 
 namespace understudy::compositor {
 

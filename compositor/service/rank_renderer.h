@@ -14,23 +14,26 @@
 #include <vector>
 
 #include "compositor/service/client_limits.h"
-#include "compositor/service/integral_parts.h"
 #include "compositor/transport/socket.h"
-#include "volume/brick/brick_store.h"
-#include "volume/brick/histogram.h"
-#include "volume/description.h"
-#include "volume/frame_counts.h"
-#include "volume/image.h"
-#include "volume/partition.h"
 #include "volume/raycast/brick_renderer.h"
+#include "volume/rect.h"
+#include "volume/volume_id.h"
 
 namespace understudy::volume {
+struct FrameCounts;
+struct HistogramBins;
+struct Image;
+struct Partition;
 struct RenderRequest;
-}
+struct TexelBox;
+struct VolumeDescription;
+}  // namespace understudy::volume
 
 namespace understudy::compositor {
 
 /// Volume ids belong to the application that gave them.
+struct IntegralPart;
+
 struct VolumeKey {
   std::uint64_t client = 0;
   volume::VolumeId volume = 0;

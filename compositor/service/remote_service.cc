@@ -10,6 +10,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "compositor/rendered.h"
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/load_protocol.h"

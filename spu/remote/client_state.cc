@@ -236,20 +236,6 @@ void ClientState::note(CallId call, const std::uint64_t* words) {
     case CallId::DeleteBuffersARB:
       return delete_buffers(GLsizei(words[0]),
                             reinterpret_cast<const GLuint*>(static_cast<std::uintptr_t>(words[1])));
-    case CallId::ClientActiveTexture:
-    case CallId::ClientActiveTextureARB:
-      client_.active_texture = GLenum(words[0]) - GL_TEXTURE0;
-      return;
-    case CallId::EnableClientState:
-      restarts_ |= GLenum(words[0]) == GL_PRIMITIVE_RESTART_NV;
-      return enable_array(GLenum(words[0]), true);
-    case CallId::DisableClientState:
-      return enable_array(GLenum(words[0]), false);
-    case CallId::PushClientAttrib:
-      pushed_.push_back({GLbitfield(words[0]), client_});
-      return;
-    case CallId::PopClientAttrib:
-      return pop();
     case CallId::FeedbackBuffer:
       feedback_ = {words[2], std::size_t(std::max<std::int64_t>(std::int32_t(words[0]), 0)) * 4};
       return;
@@ -260,6 +246,27 @@ void ClientState::note(CallId call, const std::uint64_t* words) {
       left_mode_ = mode_;
       mode_ = GLenum(words[0]);
       return;
+    case CallId::PushClientAttrib:
+      pushed_.push_back({GLbitfield(words[0]), client_});
+      return;
+    case CallId::PopClientAttrib:
+      return pop();
+    default:
+      return follow_arrays(call, words);
+  }
+}
+
+void ClientState::follow_arrays(CallId call, const std::uint64_t* words) {
+  switch (call) {
+    case CallId::ClientActiveTexture:
+    case CallId::ClientActiveTextureARB:
+      client_.active_texture = GLenum(words[0]) - GL_TEXTURE0;
+      return;
+    case CallId::EnableClientState:
+      restarts_ |= GLenum(words[0]) == GL_PRIMITIVE_RESTART_NV;
+      return enable_array(GLenum(words[0]), true);
+    case CallId::DisableClientState:
+      return enable_array(GLenum(words[0]), false);
     case CallId::Enable:
     case CallId::EnableClientStateIndexedEXT:
       restarts_ |=

@@ -78,6 +78,7 @@ class ClientState {
   void enable_array(GLenum array, bool enabled);
   void pop();
   void follow_pointer(CallId call, const std::uint64_t* words);
+  void follow_arrays(CallId call, const std::uint64_t* words);
   void follow_vertex_array(CallId call, const std::uint64_t* words);
   const Array& fixed_array(GLenum array) const;
   const Array& generic_array(GLuint index) const;

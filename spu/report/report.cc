@@ -1,42 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/report/report.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/random.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cerrno>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <stdexcept>
-#include <system_error>
 #include <vector>
 
-#include "compositor/logging/log.h"
 #include "spu/report/keys.h"
 #include "spu/report/skipped_work.h"
+#include "spu/report/volume_report.h"
 #include "volume/frame_counts.h"
 
 namespace understudy::spu {
 namespace {
 
 using Json = nlohmann::ordered_json;
-/// A fixed field that a dying process may have left without its closing zero.
-template <std::size_t size>
-std::string text_in(const char (&field)[size]) {
-  return {field, strnlen(field, size)};
-}
 
 /// Those that are volumes still: bricks that have become one with others are not.
 std::vector<const VolumeCounters*> volumes_of(const ProcessCounters& process) {
@@ -66,18 +48,6 @@ std::uint64_t calls_of(const ProcessCounters& process) {
 
 bool did_something(const ProcessCounters& process) {
   return process.frames.load() > 0 || process.volumes.load() > 0 || calls_of(process) > 0;
-}
-
-ReasonCounts counts_in(std::span<const ReasonCount> counted) {
-  ReasonCounts reasons;
-  for (const ReasonCount& reason : counted) {
-    if (const std::uint64_t count = reason.count.load(); count > 0) reasons[text_in(reason.reason)] += count;
-  }
-  return reasons;
-}
-
-ReasonCounts reasons_of(const VolumeCounters& volume) {
-  return counts_in(volume.left_because);
 }
 
 Json median(std::vector<double> values) {
@@ -162,89 +132,6 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
               {report_key::exchanged, exchanged(frame.counts)}};
   if (frame.error_rms >= 0) detail[report_key::error_rms] = frame.error_rms;
   return detail;
-}
-
-double verified_rms(const VolumeCounters& volume) {
-  const auto frames = static_cast<double>(volume.verified_frames.load());
-  return frames > 0 ? std::sqrt(volume.verify_sum_sq / frames) : 0;
-}
-
-Json verified(const VolumeCounters& volume) {
-  const std::uint64_t frames = volume.verified_frames.load();
-  const std::uint64_t tiles = volume.verified_tiles.load();
-  Json json{{report_key::frames, frames},
-            {report_key::tiles, tiles},
-            {report_key::lost, volume.verify_lost.load()},
-            {report_key::worst_tile, nullptr},
-            {report_key::worst_frame, nullptr},
-            {report_key::max, nullptr},
-            {report_key::rms, nullptr},
-            {report_key::psnr, nullptr}};
-  if (frames + tiles > 0) {
-    json[report_key::worst_tile] = volume.verify_worst_tile;
-    json[report_key::worst_frame] = volume.verify_worst_frame;
-  }
-  if (frames > 0) {
-    const double rms = verified_rms(volume);
-    json[report_key::max] = volume.verify_max;
-    json[report_key::rms] = rms;
-    if (rms > 0) json[report_key::psnr] = -20 * std::log10(rms);
-  }
-  return json;
-}
-
-bool has_budget(const BudgetCounters& budget) {
-  return budget.asked_error > 0 || budget.asked_ms > 0;
-}
-
-Json report_of(const BudgetCounters& budget) {
-  if (!has_budget(budget)) return nullptr;
-  const auto or_null = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
-  return {{report_key::asked, or_null(budget.asked_error)},
-          {report_key::asked_ms, or_null(budget.asked_ms)},
-          {report_key::measured, budget.calibrations > 0 ? Json(budget.measured) : Json(nullptr)},
-          {report_key::time, or_null(budget.ms)},
-          {report_key::setting, text_in(budget.setting)},
-          {report_key::rays_integrated, budget.rays},
-          {report_key::images_over, budget.images_over},
-          {report_key::calibrations, budget.calibrations},
-          {report_key::note, text_in(budget.note)}};
-}
-
-/// "error asked 0.0020, measured 0.0013", and how, or why not.
-std::string sentence_of(const BudgetCounters& budget) {
-  std::string asked;
-  if (budget.asked_error > 0) {
-    asked = fmt::format("error asked {:.4f}", budget.asked_error);
-  } else {
-    asked = fmt::format("time asked {:.4g} ms, taken {:.4g} ms", budget.asked_ms, budget.ms);
-  }
-  if (budget.calibrations > 0)
-    asked += fmt::format(", {} {:.4f} ({:.3g} ms an image, {})",
-                         budget.asked_error > 0 ? "measured" : "error measured", budget.measured, budget.ms,
-                         text_in(budget.setting));
-  if (budget.note[0] != '\0') asked += "; " + text_in(budget.note);
-  return asked;
-}
-
-Json report_of(const VolumeCounters& volume, std::int32_t pid) {
-  Json because = Json::object();
-  for (const auto& [reason, count] : reasons_of(volume)) because[reason] = count;
-  return {{report_key::pid, pid},
-          {report_key::texture, volume.texture},
-          {report_key::size, volume.size},
-          {report_key::texture_format, text_in(volume.texture_format)},
-          {report_key::draws,
-           {{report_key::substituted, volume.draws_substituted.load()},
-            {report_key::left, volume.draws_left.load()}}},
-          {report_key::probes, volume.probes.load()},
-          {report_key::texels,
-           {{report_key::bytes_sent, volume.texel_bytes_sent.load()},
-            {report_key::bytes_left_out, volume.texel_bytes_left_out.load()}}},
-          {report_key::left_because, because},
-          {report_key::verify, verified(volume)},
-          {report_key::budget, report_of(volume.budget)},
-          {report_key::explanation, text_in(volume.explanation)}};
 }
 
 struct Totals {
@@ -390,41 +277,6 @@ std::string listed(const ReasonCounts& reasons) {
 
 }  // namespace
 
-void UnmapCounters::operator()(const ProcessCounters* counters) const {
-  munmap(const_cast<ProcessCounters*>(counters), sizeof(ProcessCounters));
-}
-
-std::vector<MappedCounters> read_counters(const std::filesystem::path& folder) {
-  std::vector<MappedCounters> found;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() != ".counters" || found.size() >= max_counted_processes) continue;
-    const int file = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-    if (file < 0) continue;
-    struct stat status {};
-    void* mapped = MAP_FAILED;
-    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
-        status.st_size >= static_cast<off_t>(sizeof(ProcessCounters))) {
-      mapped = mmap(nullptr, sizeof(ProcessCounters), PROT_READ, MAP_SHARED, file, 0);
-    }
-    close(file);
-    if (mapped == MAP_FAILED) continue;
-    MappedCounters counters(static_cast<const ProcessCounters*>(mapped));
-    if (counters->magic == counters_magic) found.push_back(std::move(counters));
-  }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a->pid < b->pid; });
-  return found;
-}
-
-std::size_t processes_without_figures(const std::filesystem::path& folder) {
-  std::size_t count = 0;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    count +=
-        entry.path().extension() == ".counters" && entry.is_regular_file(error) && entry.file_size(error) == 0;
-  return count;
-}
-
 bool lost_server(Processes processes) {
   return std::any_of(processes.begin(), processes.end(),
                      [](const ProcessCounters* process) { return process->remote.lost.load() != 0; });
@@ -530,55 +382,6 @@ std::string explanation_text(Processes processes) {
       text += fmt::format("understudy: {}\n", line);
   }
   return text;
-}
-
-void replace_file(const std::filesystem::path& path, const std::string& text) {
-  const auto fail = [&](const char* what) {
-    throw std::runtime_error(
-        fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
-  };
-  // A report may be wanted where others can write: a name that they cannot guess, and no connection of theirs.
-  std::uint64_t random = 0;
-  if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
-  const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
-  std::FILE* file = std::fopen(beside.c_str(), "wxe");
-  if (file == nullptr) fail("write");
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed || std::rename(beside.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
-    std::remove(beside.c_str());
-    errno = reason;
-    fail("finish");
-  }
-}
-
-bool write_report_now(const std::string& path) noexcept {
-  static std::atomic<bool> complained = false;
-  try {
-    const ProcessCounters* const self = &process_counters();
-    replace_file(path, report_json(Processes(&self, 1)));
-    return true;
-  } catch (const std::exception& error) {
-    if (!complained.exchange(true)) logging::write(logging::Level::error, error.what());
-    return false;
-  }
-}
-
-void write_report_when_due(const std::string& path) noexcept {
-  using Clock = std::chrono::steady_clock;
-  constexpr int share = 50;  // one part writing in 50 parts of run time
-  constexpr std::chrono::milliseconds soonest(500);
-  static std::atomic<Clock::rep> due = 0;
-  const Clock::time_point start = Clock::now();
-  Clock::rep expected = due.load();
-  if (start.time_since_epoch().count() < expected) return;
-  // One thread writes; the others pass.
-  if (!due.compare_exchange_strong(expected, (start + std::chrono::hours(1)).time_since_epoch().count()))
-    return;
-  write_report_now(path);
-  const Clock::duration cost = Clock::now() - start;
-  due = (Clock::now() + std::max<Clock::duration>(soonest, share * cost)).time_since_epoch().count();
 }
 
 }  // namespace understudy::spu

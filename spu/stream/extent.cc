@@ -212,6 +212,20 @@ std::optional<std::size_t> least_pointee_bytes(CallId call, std::size_t paramete
   return text ? 1 : pointee_bytes(call, parameter, words);
 }
 
+namespace {
+
+/// The type of indices is the first enumerant behind their number.
+std::optional<std::size_t> index_bytes(const CallShape& shape, const ParameterShape& pointer,
+                                       std::int64_t count, const std::uint64_t* words) {
+  for (std::size_t p = 0; p < shape.parameter_count; ++p) {
+    if (p > pointer.counted_by && shape.parameters()[p].type == ValueType::enumeration)
+      return std::size_t(count > 0 ? count : 0) * component_size(GLenum(words[p]));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::size_t> pointee_bytes(CallId call, std::size_t parameter, const std::uint64_t* words) {
   const CallShape& shape = call_shape(call);
   const ParameterShape& pointer = shape.parameters()[parameter];
@@ -235,13 +249,8 @@ std::optional<std::size_t> pointee_bytes(CallId call, std::size_t parameter, con
       return pixel_bytes(GLenum(words[shape.image.format]), GLenum(words[shape.image.type]));
     case ExtentRule::clear_value:
       return (GLenum(count) == GL_COLOR ? 4 : 1) * value;
-    case ExtentRule::indices: {
-      for (std::size_t p = 0; p < shape.parameter_count; ++p) {
-        if (p > pointer.counted_by && shape.parameters()[p].type == ValueType::enumeration)
-          return std::size_t(count > 0 ? count : 0) * component_size(GLenum(words[p]));
-      }
-      return std::nullopt;
-    }
+    case ExtentRule::indices:
+      return index_bytes(shape, pointer, count, words);
     case ExtentRule::list_names: {
       const auto size = list_name_size(GLenum(words[1]));
       if (!size) return std::nullopt;

@@ -2,70 +2,14 @@
 #include "spu/track/state_rows.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <vector>
+
+#include "spu/track/state_row_kinds.h"
 
 namespace understudy::spu {
 namespace {
 
-using enum CallId;
-
-constexpr StateRow plain(StateGroup group, CallId set, std::initializer_list<StateQuery> queries) {
-  StateRow row{.group = group, .set = set};
-  std::copy(queries.begin(), queries.end(), row.queries.begin());
-  return row;
-}
-constexpr StateRow value(CallId set, std::initializer_list<StateQuery> queries) {
-  return plain(StateGroup::values, set, queries);
-}
-/// The call's first argument is the query's name.
-constexpr StateRow named(CallId set, GLenum name, int count = 1) {
-  StateRow row = value(set, {{name, count}});
-  row.named = true;
-  return row;
-}
-constexpr StateRow targeted(StateGroup group, CallId set, GLenum target,
-                            std::initializer_list<StateQuery> queries) {
-  StateRow row = plain(group, set, queries);
-  row.target = target;
-  return row;
-}
-constexpr StateRow from(int version, StateRow row) {
-  row.from_version = version;
-  return row;
-}
-constexpr StateRow below(int version, StateRow row) {
-  row.below_version = version;
-  return row;
-}
-constexpr StateRow compatibility(StateRow row) {
-  row.compatibility = true;
-  return row;
-}
-constexpr StateRow core(StateRow row) {
-  row.core = true;
-  return row;
-}
-/// One item each, whose number, counted from `first`, is an argument.
-constexpr StateRow each(Per per, GLenum first, StateRow row) {
-  row.per = per;
-  row.numbered = true;
-  row.first_number = first;
-  return row;
-}
-constexpr StateRow asked(Question question, StateRow row) {
-  row.question = question;
-  return row;
-}
-/// One item a texture unit, which is selected.
-constexpr StateRow of_unit(Per per, StateRow row) {
-  row.per = per;
-  row.selector = Selector::texture_unit;
-  return row;
-}
-constexpr StateRow capability(GLenum name) {
-  return asked(Question::enabled, plain(StateGroup::capabilities, Enable, {{name, 1}}));
-}
+using namespace state_row_kinds;
 
 constexpr StateRow framebuffer_rows[] = {
     below(300, plain(StateGroup::of_framebuffer, DrawBuffer, {{GL_DRAW_BUFFER, 1}})),
@@ -166,124 +110,6 @@ constexpr StateRow binding_rows[] = {
     from(330,
          of_unit(Per::texture_unit, each(Per::texture_unit, 0,
                                          plain(StateGroup::bindings, BindSampler, {{GL_SAMPLER_BINDING, 1}})))),
-};
-
-constexpr StateRow light(GLenum name, int count, StateGroup group = StateGroup::values) {
-  StateRow row = plain(group, Lightfv, {{name, count}});
-  row.named = true;
-  if (group == StateGroup::eye_space) row.matrix_mode = GL_MODELVIEW;
-  return compatibility(asked(Question::light, each(Per::light, GL_LIGHT0, row)));
-}
-constexpr StateRow clip_plane_row() {
-  StateRow row = plain(StateGroup::eye_space, ClipPlane, {{GL_CLIP_PLANE0, 4}});
-  row.matrix_mode = GL_MODELVIEW;
-  return compatibility(asked(Question::clip_plane, each(Per::clip_plane, GL_CLIP_PLANE0, row)));
-}
-constexpr StateRow texture_gen(GLenum coordinate, GLenum name, int count) {
-  const bool eye = name == GL_EYE_PLANE;
-  StateRow row =
-      targeted(eye ? StateGroup::eye_space : StateGroup::values, TexGendv, coordinate, {{name, count}});
-  row.named = true;
-  if (eye) row.matrix_mode = GL_MODELVIEW;
-  return compatibility(asked(Question::texture_gen, of_unit(Per::texture_coordinates, row)));
-}
-constexpr StateRow texture_env(GLenum name, int count = 1, GLenum target = GL_TEXTURE_ENV, int version = 130) {
-  StateRow row = targeted(StateGroup::values, TexEnvfv, target, {{name, count}});
-  row.named = true;
-  return from(version, compatibility(asked(Question::texture_env, of_unit(Per::texture_coordinates, row))));
-}
-constexpr StateRow material(GLenum face, GLenum name, int count) {
-  StateRow row = targeted(StateGroup::values, Materialfv, face, {{name, count}});
-  row.named = true;
-  return compatibility(asked(Question::material, row));
-}
-constexpr StateRow fixed(CallId set, GLenum name, int count = 1) {
-  return compatibility(named(set, name, count));
-}
-
-constexpr StateRow fixed_function_rows[] = {
-    light(GL_POSITION, 4, StateGroup::eye_space),
-    light(GL_SPOT_DIRECTION, 3, StateGroup::eye_space),
-    clip_plane_row(),
-    texture_gen(GL_S, GL_EYE_PLANE, 4),
-    texture_gen(GL_T, GL_EYE_PLANE, 4),
-    texture_gen(GL_R, GL_EYE_PLANE, 4),
-    texture_gen(GL_Q, GL_EYE_PLANE, 4),
-    light(GL_AMBIENT, 4),
-    light(GL_DIFFUSE, 4),
-    light(GL_SPECULAR, 4),
-    light(GL_SPOT_EXPONENT, 1),
-    light(GL_SPOT_CUTOFF, 1),
-    light(GL_CONSTANT_ATTENUATION, 1),
-    light(GL_LINEAR_ATTENUATION, 1),
-    light(GL_QUADRATIC_ATTENUATION, 1),
-    fixed(LightModelfv, GL_LIGHT_MODEL_AMBIENT, 4),
-    fixed(LightModelf, GL_LIGHT_MODEL_LOCAL_VIEWER),
-    fixed(LightModelf, GL_LIGHT_MODEL_TWO_SIDE),
-    from(120, fixed(LightModelf, GL_LIGHT_MODEL_COLOR_CONTROL)),
-    material(GL_FRONT, GL_AMBIENT, 4),
-    material(GL_FRONT, GL_DIFFUSE, 4),
-    material(GL_FRONT, GL_SPECULAR, 4),
-    material(GL_FRONT, GL_EMISSION, 4),
-    material(GL_FRONT, GL_SHININESS, 1),
-    material(GL_FRONT, GL_COLOR_INDEXES, 3),
-    material(GL_BACK, GL_AMBIENT, 4),
-    material(GL_BACK, GL_DIFFUSE, 4),
-    material(GL_BACK, GL_SPECULAR, 4),
-    material(GL_BACK, GL_EMISSION, 4),
-    material(GL_BACK, GL_SHININESS, 1),
-    material(GL_BACK, GL_COLOR_INDEXES, 3),
-    compatibility(value(ColorMaterial, {{GL_COLOR_MATERIAL_FACE, 1}, {GL_COLOR_MATERIAL_PARAMETER, 1}})),
-    compatibility(value(ShadeModel, {{GL_SHADE_MODEL, 1}})),
-    compatibility(value(AlphaFunc, {{GL_ALPHA_TEST_FUNC, 1}, {GL_ALPHA_TEST_REF, 1}})),
-    fixed(Fogfv, GL_FOG_COLOR, 4),
-    fixed(Fogf, GL_FOG_MODE),
-    fixed(Fogf, GL_FOG_DENSITY),
-    fixed(Fogf, GL_FOG_START),
-    fixed(Fogf, GL_FOG_END),
-    fixed(Fogf, GL_FOG_INDEX),
-    from(140, fixed(Fogf, GL_FOG_COORD_SRC)),
-    texture_gen(GL_S, GL_TEXTURE_GEN_MODE, 1),
-    texture_gen(GL_T, GL_TEXTURE_GEN_MODE, 1),
-    texture_gen(GL_R, GL_TEXTURE_GEN_MODE, 1),
-    texture_gen(GL_Q, GL_TEXTURE_GEN_MODE, 1),
-    texture_gen(GL_S, GL_OBJECT_PLANE, 4),
-    texture_gen(GL_T, GL_OBJECT_PLANE, 4),
-    texture_gen(GL_R, GL_OBJECT_PLANE, 4),
-    texture_gen(GL_Q, GL_OBJECT_PLANE, 4),
-    texture_env(GL_TEXTURE_ENV_MODE),
-    texture_env(GL_TEXTURE_ENV_COLOR, 4),
-    texture_env(GL_COMBINE_RGB),
-    texture_env(GL_COMBINE_ALPHA),
-    texture_env(GL_SRC0_RGB),
-    texture_env(GL_SRC1_RGB),
-    texture_env(GL_SRC2_RGB),
-    texture_env(GL_SRC0_ALPHA),
-    texture_env(GL_SRC1_ALPHA),
-    texture_env(GL_SRC2_ALPHA),
-    texture_env(GL_OPERAND0_RGB),
-    texture_env(GL_OPERAND1_RGB),
-    texture_env(GL_OPERAND2_RGB),
-    texture_env(GL_OPERAND0_ALPHA),
-    texture_env(GL_OPERAND1_ALPHA),
-    texture_env(GL_OPERAND2_ALPHA),
-    texture_env(GL_RGB_SCALE),
-    texture_env(GL_ALPHA_SCALE),
-    texture_env(GL_TEXTURE_LOD_BIAS, 1, GL_TEXTURE_FILTER_CONTROL, 140),
-    texture_env(GL_COORD_REPLACE, 1, GL_POINT_SPRITE, 200),
-    compatibility(value(ListBase, {{GL_LIST_BASE, 1}})),
-};
-
-constexpr StateRow matrix(GLenum mode, GLenum name) {
-  StateRow row = plain(StateGroup::matrices, LoadMatrixd, {{name, 16}});
-  row.matrix_mode = mode;
-  return compatibility(row);
-}
-
-constexpr StateRow matrix_rows[] = {
-    matrix(GL_MODELVIEW, GL_MODELVIEW_MATRIX),
-    matrix(GL_PROJECTION, GL_PROJECTION_MATRIX),
-    of_unit(Per::texture_coordinates, matrix(GL_TEXTURE, GL_TEXTURE_MATRIX)),
 };
 
 constexpr StateRow polygon_mode(GLenum face, int element) {
@@ -416,29 +242,6 @@ constexpr StateRow pixel_rows[] = {
     compatibility(value(PixelZoom, {{GL_ZOOM_X, 1}, {GL_ZOOM_Y, 1}})),
 };
 
-constexpr StateRow current(CallId set, GLenum name, int count) {
-  return compatibility(plain(StateGroup::current, set, {{name, count}}));
-}
-constexpr StateRow current_texture_coordinates() {
-  StateRow row =
-      each(Per::texture_coordinates, GL_TEXTURE0, current(MultiTexCoord4f, GL_CURRENT_TEXTURE_COORDS, 4));
-  row.selector = Selector::texture_unit;
-  return row;
-}
-
-constexpr StateRow current_rows[] = {
-    current(Color4f, GL_CURRENT_COLOR, 4),
-    from(140, current(SecondaryColor3f, GL_CURRENT_SECONDARY_COLOR, 3)),
-    current(Normal3f, GL_CURRENT_NORMAL, 3),
-    current(Indexf, GL_CURRENT_INDEX, 1),
-    from(140, current(FogCoordf, GL_CURRENT_FOG_COORD, 1)),
-    current(EdgeFlag, GL_EDGE_FLAG, 1),
-    from(130, current_texture_coordinates()),
-    from(200, each(Per::vertex_attribute, 0,
-                   asked(Question::vertex_attribute,
-                         plain(StateGroup::current, VertexAttrib4f, {{GL_CURRENT_VERTEX_ATTRIB, 4}})))),
-};
-
 constexpr StateRow fixed_capability(GLenum name) {
   return compatibility(capability(name));
 }
@@ -542,10 +345,9 @@ std::span<const StateRow> state_rows() {
     std::vector<StateRow> all;
     for (const std::span<const StateRow> part :
          {std::span<const StateRow>(framebuffer_rows), std::span<const StateRow>(vertex_array_rows),
-          std::span<const StateRow>(binding_rows), std::span<const StateRow>(fixed_function_rows),
-          std::span<const StateRow>(matrix_rows), std::span<const StateRow>(raster_rows),
-          std::span<const StateRow>(fragment_rows), std::span<const StateRow>(pixel_rows),
-          std::span<const StateRow>(current_rows), std::span<const StateRow>(capability_rows),
+          std::span<const StateRow>(binding_rows), fixed_function_rows(),
+          std::span<const StateRow>(raster_rows), std::span<const StateRow>(fragment_rows),
+          std::span<const StateRow>(pixel_rows), std::span<const StateRow>(capability_rows),
           std::span<const StateRow>(selector_rows)}) {
       all.insert(all.end(), part.begin(), part.end());
     }

@@ -160,10 +160,18 @@ RecordAction Prefix::action_of_call(CallId call, const Record& record, ThreadSta
   return RecordAction::keep;
 }
 
+namespace {
+
+/// A call's word by its place, 0 where the record ends before.
+std::uint64_t word_of(const Record& record, std::size_t place) {
+  return place + 1 < record.words.size() ? record.words[place + 1] : 0;
+}
+
+}  // namespace
+
 /// What OpenGL is about to write to. Not between glBegin and glEnd.
 void Prefix::look_before(CallId call, const Record& record, const ThreadState& thread) {
   const std::string_view name = call_name(call);
-  const auto word = [&](std::size_t p) { return p + 1 < record.words.size() ? record.words[p + 1] : 0; };
   switch (role_of(call)) {
     case CallRole::draw:
     case CallRole::begin:
@@ -184,6 +192,14 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
   if (thread.compiling && kind_of(call) == CallKind::draw) {
     std::erase_if(uploads_, [](const auto& entry) { return std::get<1>(entry.first) == ObjectKind::buffer; });
   }
+  look_at_texture(call, record);
+  look_at_buffer(call, record);
+  note_upload(call, record);
+}
+
+void Prefix::look_at_texture(CallId call, const Record& record) {
+  const std::string_view name = call_name(call);
+  const auto word = [&](std::size_t p) { return word_of(record, p); };
   if (name.starts_with("glCopyTexImage") || name.starts_with("glCopyTexSubImage") ||
       name.starts_with("glGenerateMipmap")) {
     mark_bound_texture(GLenum(word(0)));
@@ -201,6 +217,10 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
     mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(0))));
   if (call == CallId::CopyImageSubData && word(7) != GL_RENDERBUFFER)
     mark(ObjectKind::texture, GLuint(player_.here(ObjectKind::texture, word(6))));
+}
+
+void Prefix::look_at_buffer(CallId call, const Record& record) {
+  const auto word = [&](std::size_t p) { return word_of(record, p); };
   if ((call == CallId::BindBufferBase || call == CallId::BindBufferRange) && word(0) != GL_UNIFORM_BUFFER)
     mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(2))));
   if (call == CallId::CopyBufferSubData) {
@@ -211,7 +231,6 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
     if (binding != GL_NONE) player_.driver().GetIntegerv(binding, &buffer);
     mark(ObjectKind::buffer, GLuint(buffer));
   }
-  note_upload(call, record);
 }
 
 void Prefix::supersede(const Image& image, const Upload& upload) {

@@ -78,6 +78,8 @@ class Prefix {
   RecordAction action_of_event(const Record& record, const ThreadState& thread) const;
   RecordAction action_of_call(CallId call, const Record& record, ThreadState& thread);
   void look_before(CallId call, const Record& record, const ThreadState& thread);
+  void look_at_texture(CallId call, const Record& record);
+  void look_at_buffer(CallId call, const Record& record);
   void note_upload(CallId call, const Record& record);
   void note_answers(const Record& record);
   void supersede(const Image& image, const Upload& upload);

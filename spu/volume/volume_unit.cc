@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/volume_unit.h"
 
+#include "compositor/service.h"
+#include "spu/track/share_group.h"
 #include "spu/volume/depth/deferred_depth_write.h"
 #include "spu/volume/observation/conditional_render.h"
 #include "spu/volume/observation/draw_slots.h"

@@ -19,9 +19,10 @@
 
 #include "spu/volume/known_volumes/known_volumes.h"
 #include "spu/volume/observation/draw_observer.h"
-#include "spu/volume/session/render_session.h"
 
 namespace understudy::spu {
+
+class RenderSession;
 
 struct Stages;
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compositor/service/loading_service.h"
+#include "compositor/service/remote_service.h"
 #include "tests/clients/command_test.h"
 
 namespace attacks {

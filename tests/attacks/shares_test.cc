@@ -8,6 +8,7 @@
 
 #include "apps/understudy/launch/restarts.h"
 #include "compositor/node/turns.h"
+#include "compositor/rendered.h"
 #include "compositor/service/rank_renderer.h"
 #include "tests/attacks/server.h"
 #include "tests/clients/command_test.h"

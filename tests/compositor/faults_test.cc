@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "compositor/rendered.h"
 #include "compositor/service/image_buffer.h"
 #include "compositor/service/remote_service.h"
 #include "compositor/service/request_message.h"

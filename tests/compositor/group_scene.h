@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "compositor/rendered.h"
 #include "compositor/service.h"
 #include "compositor/service/broker.h"
 #include "tests/compositor/scratch_folder.h"

@@ -13,6 +13,7 @@
 #include "compositor/node/node.h"
 #include "compositor/service/load_protocol.h"
 #include "compositor/service/loading_service.h"
+#include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 #include "volume/brick/brick_store.h"
 #include "volume/frame_counts.h"

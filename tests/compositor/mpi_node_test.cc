@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/bench/frame_parts.h"
+#include "compositor/rendered.h"
 #include "compositor/service/remote_service.h"
 #include "tests/compositor/group_scene.h"
 #include "tests/compositor/mpi_group.h"

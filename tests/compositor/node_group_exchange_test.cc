@@ -9,6 +9,7 @@
 
 #include "compositor/exchange/schedule.h"
 #include "compositor/exchange/settings.h"
+#include "compositor/rendered.h"
 #include "tests/compositor/node_group.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"

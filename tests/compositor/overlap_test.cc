@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compositor/exchange/thread_communicator.h"
+#include "compositor/rendered.h"
 #include "tests/compositor/node_group.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"

@@ -18,6 +18,7 @@
 #include "tests/compositor/group_scene.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
+#include "volume/occlusion.h"
 #include "volume/partition.h"
 #include "volume/request.h"
 

@@ -8,6 +8,7 @@
 
 #include "bricked_cube.h"
 #include "colour_target.h"
+#include "compositor/service.h"
 #include "drawing.h"
 
 namespace understudy::spu::testing {

@@ -11,6 +11,9 @@
 #include <string>
 #include <thread>
 
+#include "compositor/rendered.h"
+#include "compositor/service.h"
+#include "spu/report/counters.h"
 #include "tests/volume/fields.h"
 #include "tests/volume/scenes.h"
 #include "volume/footprint.h"

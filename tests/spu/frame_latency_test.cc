@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/rendered.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
 #include "volume/request.h"

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/rendered.h"
 #include "slice_scenes.h"
 #include "spu/report/counters.h"
 #include "spu/volume/session/last_image.h"

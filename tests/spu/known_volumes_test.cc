@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "mock_driver.h"
+#include "spu/track/share_group.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "volume/request.h"
+
 namespace understudy::spu {
 namespace {
 

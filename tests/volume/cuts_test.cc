@@ -5,6 +5,7 @@
 
 #include "tests/volume/parts.h"
 #include "tests/volume/scenes.h"
+#include "volume/block_costs.h"
 #include "volume/partition.h"
 #include "volume/request.h"
 

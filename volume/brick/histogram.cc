@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "volume/brick/brick_store.h"
+#include "volume/cell_lattice.h"
 #include "volume/texel_box.h"
 #include "volume/texel_type.h"
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "volume/brick/brick_store.h"
-
 namespace understudy::volume {
+
+class BrickStore;
 
 constexpr int max_histogram_bins = 256;
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/raycast/brick_renderer.h"
 
+#include "volume/brick/brick_store.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
+#include "volume/occlusion.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/request.h"
 

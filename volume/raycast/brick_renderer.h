@@ -8,13 +8,12 @@
 #include <memory>
 #include <span>
 
-#include "volume/brick/brick_store.h"
-#include "volume/frame_counts.h"
-#include "volume/image.h"
-#include "volume/occlusion.h"
-
 namespace understudy::volume {
 
+class BrickStore;
+class Occlusion;
+struct FrameCounts;
+struct Image;
 struct RenderRequest;
 
 class BrickRenderer {

@@ -15,6 +15,8 @@
 
 #include "volume/brick_grid.h"
 #include "volume/footprint.h"
+#include "volume/frame_counts.h"
+#include "volume/image.h"
 #include "volume/occlusion.h"
 #include "volume/raycast/fog_table.h"
 #include "volume/raycast/kernel.h"

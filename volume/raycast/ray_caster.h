@@ -15,15 +15,15 @@
 #include <span>
 
 #include "volume/blending_operator.h"
-#include "volume/brick/brick_store.h"
-#include "volume/description.h"
-#include "volume/frame_counts.h"
-#include "volume/image.h"
-#include "volume/occlusion.h"
 
 namespace understudy::volume {
 
+class BrickStore;
+class Occlusion;
+struct FrameCounts;
+struct Image;
 struct RenderRequest;
+struct VolumeDescription;
 
 /// Most slice planes that are believed.
 constexpr int max_planes = 1 << 22;

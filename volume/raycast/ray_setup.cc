@@ -323,7 +323,6 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const 
   };
   const auto negated = [](const IndexBound& b) { return IndexBound{times(-1, b.value), times(-1, b.slope)}; };
 
-  const CellLattice& lattice = store.lattice();
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 unit{};
     unit[axis] = 1;
@@ -332,8 +331,41 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const 
 
     Vec3 texels{};
     texels[axis] = store.description().size[axis];
-    position[axis] = at_sample(texels, -0.5 - lattice.origin[axis]);
+    position[axis] = at_sample(texels, -0.5 - store.lattice().origin[axis]);
+  }
+  clip_z = at_sample(row(2), m[11]);
+  clip_w = at_sample(a3, w3);
+  const auto plus = [](const IndexBound& a, const IndexBound& b) {
+    return IndexBound{sum(a.value, b.value), sum(a.slope, b.slope)};
+  };
+  bounds.push_back(plus(clip_w, clip_z));           // near plane
+  bounds.push_back(plus(clip_w, negated(clip_z)));  // far plane; both together imply w >= 0
+  for (const HalfSpace& plane : request.clip_planes) bounds.push_back(at_sample(plane.normal, plane.offset));
 
+  last_plane = planes.count - 1;
+  set_viewport(request.viewport);
+  set_cells(request, store, owned);
+  ends = walks_segments(request);
+  cut = request.cut_at_bricks != 0 && request.method == Method::pre_integrated;
+  segments = ends && (request.method != Method::post_classified || !request.surfaces.empty());
+  steps = request.steps;
+  if (steps) {
+    const auto& metric = steps->metric;
+    for (std::size_t row = 0; row < 3; ++row)
+      speed[row] = project({metric[3 * row], metric[3 * row + 1], metric[3 * row + 2]}, direction);
+  }
+}
+
+void RaySetup::set_viewport(const Rect& viewport) {
+  pixel_to_x = 2.0 / viewport.width;
+  first_x = (0.5 - viewport.x) * pixel_to_x - 1;
+  pixel_to_y = 2.0 / viewport.height;
+  first_y = (0.5 - viewport.y) * pixel_to_y - 1;
+}
+
+void RaySetup::set_cells(const RenderRequest& request, const BrickStore& store, const TexelBox& owned) {
+  const CellLattice& lattice = store.lattice();
+  for (int axis = 0; axis < 3; ++axis) {
     const int low = owned.low[axis] - lattice.origin[axis], high = owned.high[axis] - lattice.origin[axis];
     owned_low[axis] = float(low);
     owned_high[axis] = float(high);
@@ -345,29 +377,6 @@ RaySetup::RaySetup(const RenderRequest& request, const BrickStore& store, const 
     top[axis] = one_texel ? 0.0F : std::nextafter(float(lattice.cells[axis]), 0.0F);
     const double reach = std::max(std::abs(request.region.low[axis]), std::abs(request.region.high[axis]));
     rounding[axis] = float(4e-7 * (store.description().size[axis] * (reach + 1) + lattice.cells[axis]));
-  }
-  clip_z = at_sample(row(2), m[11]);
-  clip_w = at_sample(a3, w3);
-  const auto plus = [](const IndexBound& a, const IndexBound& b) {
-    return IndexBound{sum(a.value, b.value), sum(a.slope, b.slope)};
-  };
-  bounds.push_back(plus(clip_w, clip_z));           // near plane
-  bounds.push_back(plus(clip_w, negated(clip_z)));  // far plane; both together imply w >= 0
-  for (const HalfSpace& plane : request.clip_planes) bounds.push_back(at_sample(plane.normal, plane.offset));
-
-  pixel_to_x = 2.0 / request.viewport.width;
-  first_x = (0.5 - request.viewport.x) * pixel_to_x - 1;
-  pixel_to_y = 2.0 / request.viewport.height;
-  first_y = (0.5 - request.viewport.y) * pixel_to_y - 1;
-  last_plane = planes.count - 1;
-  ends = walks_segments(request);
-  cut = request.cut_at_bricks != 0 && request.method == Method::pre_integrated;
-  segments = ends && (request.method != Method::post_classified || !request.surfaces.empty());
-  steps = request.steps;
-  if (steps) {
-    const auto& metric = steps->metric;
-    for (std::size_t row = 0; row < 3; ++row)
-      speed[row] = project({metric[3 * row], metric[3 * row + 1], metric[3 * row + 2]}, direction);
   }
 }
 

@@ -23,6 +23,7 @@
 
 namespace understudy::volume {
 
+struct Rect;
 struct RenderRequest;
 
 /// c + x X + y Y over normalised device coordinates.
@@ -68,6 +69,11 @@ struct RaySetup {
   std::array<float, 3> top{};
   /// Bound of the rounding of positions, in cells.
   std::array<float, 3> rounding{};
+
+ private:
+  void set_viewport(const Rect& viewport);
+  /// What is known of the cells on each axis: owned_low to rounding.
+  void set_cells(const RenderRequest& request, const BrickStore& store, const TexelBox& owned);
 };
 
 constexpr int tile_width = 32;

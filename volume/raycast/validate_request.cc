@@ -155,24 +155,35 @@ void validate_fog(const Fog& fog, Operator op) {
     refuse("the direction of the fog holds a value that is not finite");
 }
 
-}  // namespace
-
-void validate(const VolumeDescription& volume, const RenderRequest& request) {
+void validate_camera(const RenderRequest& request) {
   if (!all_finite(request.texture_to_clip))
     refuse("the matrix from texture to clip space holds a value that is not finite");
   if (!inverse(request.texture_to_clip)) refuse("the matrix from texture to clip space is singular");
   if (!believable(request.viewport) || !believable(request.window) || request.viewport.empty())
     refuse("viewport of {} x {} pixels at ({}, {})", request.viewport.width, request.viewport.height,
            request.viewport.x, request.viewport.y);
-  if (request.steps) validate_steps(*request.steps, request.region);
-  const SlicePlanes& planes = request.planes;
-  if (request.steps) {
-    // They are not looked at.
-  } else if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
+  if (!all_finite(request.depth_range)) refuse("the depth range holds a value that is not finite");
+}
+
+void validate_planes(const SlicePlanes& planes) {
+  if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
     refuse("the slice planes hold a value that is not finite");
-  if (!request.steps && !(length(planes.normal) > 0)) refuse("the slice planes have no direction");
+  if (!(length(planes.normal) > 0)) refuse("the slice planes have no direction");
+}
+
+/// Where samples lie: with steps, all of the planes but their number is left alone.
+void validate_places(const RenderRequest& request) {
+  if (request.steps)
+    validate_steps(*request.steps, request.region);
+  else
+    validate_planes(request.planes);
+  const SlicePlanes& planes = request.planes;
   if (planes.count < 0 || planes.count > max_planes)
     refuse("{} slice planes (0 to {} are possible)", planes.count, max_planes);
+}
+
+/// What of the volume is shown: the region of the slices, on one side of each clip plane.
+void validate_region(const VolumeDescription& volume, const RenderRequest& request) {
   if (!all_finite(request.region.low) || !all_finite(request.region.high))
     refuse("the region of the slices holds a value that is not finite");
   for (int axis = 0; axis < 3; ++axis) {
@@ -182,19 +193,31 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
       refuse("slices reach beyond a repeating texture along axis {} ({} to {})", axis, request.region.low[axis],
              request.region.high[axis]);
   }
-  validate_cut(volume, request.cut_at_bricks);
   if (request.clip_planes.size() > max_clip_planes)
     refuse("{} clip planes (at most {} are possible)", request.clip_planes.size(), max_clip_planes);
   for (const HalfSpace& plane : request.clip_planes)
     if (!all_finite(plane.normal) || !std::isfinite(plane.offset))
       refuse("a clip plane holds a value that is not finite");
-  if (!all_finite(request.depth_range)) refuse("the depth range holds a value that is not finite");
+}
+
+/// Where rays end.
+void validate_ends(const RenderRequest& request) {
   if (!(request.termination >= 0 && request.termination < 1))
     refuse("termination threshold {} is outside [0, 1)", request.termination);
   if (request.depth &&
       (!believable(request.depth->rect) || request.depth->depth.size() != request.depth->rect.pixels()))
     refuse("the depth image holds {} values for {} x {} pixels", request.depth->depth.size(),
            request.depth->rect.width, request.depth->rect.height);
+}
+
+}  // namespace
+
+void validate(const VolumeDescription& volume, const RenderRequest& request) {
+  validate_camera(request);
+  validate_places(request);
+  validate_region(volume, request);
+  validate_cut(volume, request.cut_at_bricks);
+  validate_ends(request);
   validate_classification(volume, request.classification);
   validate_slice_segment(volume, request);
   if (request.fog) validate_fog(*request.fog, request.op);

@@ -2,14 +2,15 @@
 // The volume rendering integral of one pixel of a request: what its samples, taken ever more densely, tend to.
 #pragma once
 
+#include <array>
 #include <optional>
 
-#include "volume/brick/brick_store.h"
 #include "volume/reference/ray_integral.h"
 #include "volume/texture_space.h"
 
 namespace understudy::volume {
 
+class BrickStore;
 struct RenderRequest;
 
 /// The part of a pixel's ray that lies in the request's region, on the right side of its clip planes and before
@@ -28,9 +29,6 @@ std::optional<PixelRay> pixel_ray(const RenderRequest& request, int x, int y);
 /// for a way one step long. `size` is the texture's, in texels. Zero where the ray misses.
 std::array<double, 4> pixel_integral(const Field& field, const std::array<int, 3>& size,
                                      const RenderRequest& request, const Medium& medium, int x, int y);
-
-/// What a pixel shows: premultiplied colour and opacity.
-using PixelIntegral = std::array<double, 4>;
 
 /// The part of that which the cells of one rank show: parts of all ranks, composed in visibility order, are the
 /// whole. `tolerance` as of ray_integral().

@@ -11,6 +11,7 @@
 #include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/own_node_group.h"
 #include "apps/understudy/processes/environment.h"
+#include "compositor/service/remote_service.h"
 #include "compositor/transport/tcp/address.h"
 #include "spu/options.h"
 

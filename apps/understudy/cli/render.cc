@@ -18,6 +18,7 @@
 #include "apps/understudy/file_scene/load_progress.h"
 #include "apps/understudy/images/image.h"
 #include "compositor/logging/log.h"
+#include "compositor/rendered.h"
 #include "volume/image.h"
 
 namespace understudy::launcher {

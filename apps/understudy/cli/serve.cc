@@ -160,6 +160,66 @@ int serve(const ServeArguments& arguments) {
   return 0;
 }
 
+void add_group_options(CLI::App& subcommand, ServeArguments& arguments) {
+  subcommand
+      .add_option("-n,--nodes", arguments.nodes,
+                  "number of MPI ranks, on this machine or on those of --hostfile; default: the slots of the "
+                  "hostfile, or the tasks of a Slurm allocation")
+      ->check(CLI::Range(1, spu::max_nodes));
+  add_hostfile_option(subcommand, arguments.hostfile);
+  add_backend_option(subcommand, arguments.choices.backend);
+  add_gpu_memory_option(subcommand, arguments.choices.gpu_memory);
+  add_balance_option(subcommand, arguments.choices.balance);
+  subcommand
+      .add_option("--socket", arguments.socket,
+                  "where viewers find them; without XDG_RUNTIME_DIR: in a private folder, which is told")
+      ->capture_default_str();
+  subcommand
+      .add_option("--folder", arguments.folder,
+                  "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      .add_option("--data", arguments.choices.data,
+                  "folders that clients may load volumes from (understudy render, view); without: none, "
+                  "clients send what is drawn")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory);
+  subcommand
+      .add_option("--image-time", arguments.choices.image_ms,
+                  "how long one image may take, in milliseconds; 0: as long as its client waits for it")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+/// Who may come in from other machines. Returns --listen.
+CLI::Option* add_listener_options(CLI::App& subcommand, ServeArguments& arguments) {
+  subcommand
+      .add_option("--secret-file", arguments.secret_file,
+                  "with --listen: the secret that clients must have; created if the file does not exist")
+      ->type_name("FILE");
+  CLI::Option* listen =
+      subcommand
+          .add_option("--listen", arguments.listen,
+                      "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
+                      "all of its networks; port 0 takes any that is free")
+          ->type_name("[HOST]:PORT");
+  CLI::Option* key = subcommand
+                         .add_option("--key", arguments.key_file,
+                                     "with --listen: this server's own key (understudy key FILE), beside or in "
+                                     "place of a secret")
+                         ->type_name("FILE")
+                         ->needs(listen);
+  CLI::Option* clients =
+      subcommand
+          .add_option("--clients", arguments.clients,
+                      "with --key: the public keys of clients that may come in, a FILE.pub a line")
+          ->type_name("FILE")
+          ->needs(key);
+  key->needs(clients);
+  return listen;
+}
+
 }  // namespace
 
 void add_serve(CLI::App& app, std::function<int()>& chosen) {
@@ -169,61 +229,10 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
   if (const auto runtime = compositor::private_runtime_folder())
     arguments->socket = *runtime / "understudy-nodes.sock";
   CLI::App* subcommand = app.add_subcommand("serve", "keeps render nodes running for viewers that come and go");
-  subcommand
-      ->add_option("-n,--nodes", arguments->nodes,
-                   "number of MPI ranks, on this machine or on those of --hostfile; default: the slots of the "
-                   "hostfile, or the tasks of a Slurm allocation")
-      ->check(CLI::Range(1, spu::max_nodes));
-  add_hostfile_option(*subcommand, arguments->hostfile);
-  add_backend_option(*subcommand, arguments->choices.backend);
-  add_gpu_memory_option(*subcommand, arguments->choices.gpu_memory);
-  add_balance_option(*subcommand, arguments->choices.balance);
-  subcommand
-      ->add_option("--socket", arguments->socket,
-                   "where viewers find them; without XDG_RUNTIME_DIR: in a private folder, which is told")
-      ->capture_default_str();
-  subcommand
-      ->add_option("--folder", arguments->folder,
-                   "take over DIR, empty and with mode 0700, put the socket in it, and remove it at the end")
-      ->type_name("DIR")
-      ->check(CLI::ExistingDirectory);
-  subcommand
-      ->add_option("--data", arguments->choices.data,
-                   "folders that clients may load volumes from (understudy render, view); without: none, "
-                   "clients send what is drawn")
-      ->type_name("FOLDER")
-      ->check(CLI::ExistingDirectory);
-  subcommand
-      ->add_option("--image-time", arguments->choices.image_ms,
-                   "how long one image may take, in milliseconds; 0: as long as its client waits for it")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_group_options(*subcommand, *arguments);
   add_exchange_options(*subcommand, arguments->choices);
   add_tiles_option(*subcommand, arguments->tiles);
-  subcommand
-      ->add_option("--secret-file", arguments->secret_file,
-                   "with --listen: the secret that clients must have; created if the file does not exist")
-      ->type_name("FILE");
-  CLI::Option* listen =
-      subcommand
-          ->add_option("--listen", arguments->listen,
-                       "accept clients of other machines at HOST:PORT. Without HOST only this machine, 0.0.0.0 "
-                       "all of its networks; port 0 takes any that is free")
-          ->type_name("[HOST]:PORT");
-  CLI::Option* key =
-      subcommand
-          ->add_option("--key", arguments->key_file,
-                       "with --listen: this server's own key (understudy key FILE), beside or in "
-                       "place of a secret")
-          ->type_name("FILE")
-          ->needs(listen);
-  CLI::Option* clients =
-      subcommand
-          ->add_option("--clients", arguments->clients,
-                       "with --key: the public keys of clients that may come in, a FILE.pub a line")
-          ->type_name("FILE")
-          ->needs(key);
-  key->needs(clients);
+  CLI::Option* listen = add_listener_options(*subcommand, *arguments);
   subcommand
       ->add_flag("--gl-server", arguments->server,
                  "also execute the OpenGL calls of viewers without OpenGL (understudy run --remote --connect "

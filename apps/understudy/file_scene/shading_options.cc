@@ -145,31 +145,53 @@ void add_shading_options(CLI::App& subcommand, ShadingArguments& arguments) {
       ->type_name("A,D,S,N");
 }
 
-Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent) {
-  Shading shading;
-  if (arguments.method == "pre-integrated") shading.method = volume::Method::pre_integrated;
-  if (arguments.method == "adaptive") shading.method = volume::Method::adaptive;
-  shading.tolerance = arguments.tolerance;
+namespace {
+
+volume::Method method_of(const ShadingArguments& arguments) {
+  if (arguments.method == "pre-integrated") return volume::Method::pre_integrated;
+  if (arguments.method == "adaptive") return volume::Method::adaptive;
+  return volume::Method::post_classified;
+}
+
+volume::Operator operator_of(const ShadingArguments& arguments) {
+  if (arguments.op == "max") return volume::Operator::max;
+  if (arguments.op == "add") return volume::Operator::add;
+  if (arguments.op == "first-hit") return volume::Operator::first_hit;
+  return volume::Operator::over;
+}
+
+/// In blocks. Throws std::invalid_argument.
+std::uint8_t cut_of(const ShadingArguments& arguments, volume::Method method) {
   constexpr int block = volume::BrickStore::block_cells;
   if (arguments.cut_at_bricks < 0 || arguments.cut_at_bricks % block != 0 ||
       arguments.cut_at_bricks / block > 255)
     throw std::invalid_argument(fmt::format("--cut-at-bricks {}: give a multiple of {}, up to {}",
                                             arguments.cut_at_bricks, block, 255 * block));
-  shading.cut_at_bricks = std::uint8_t(arguments.cut_at_bricks / block);
-  if (shading.cut_at_bricks != 0 && shading.method != volume::Method::pre_integrated)
+  if (arguments.cut_at_bricks != 0 && method != volume::Method::pre_integrated)
     throw std::invalid_argument("--cut-at-bricks is for segments; give --method pre-integrated as well");
-  if (arguments.op == "max") shading.op = volume::Operator::max;
-  if (arguments.op == "add") shading.op = volume::Operator::add;
-  if (arguments.op == "first-hit") shading.op = volume::Operator::first_hit;
-  const bool samples_alone = shading.method == volume::Method::post_classified && arguments.surfaces.empty() &&
-                             arguments.light.empty() && arguments.light_from.empty();
-  if (arguments.op != "over" && !samples_alone)
+  return std::uint8_t(arguments.cut_at_bricks / block);
+}
+
+/// Throws std::invalid_argument where the operator or the method cannot be had with surfaces or light.
+void check_combination(const ShadingArguments& arguments, volume::Method method) {
+  const bool plain = arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty();
+  if (arguments.op != "over" && !(plain && method == volume::Method::post_classified))
     throw std::invalid_argument(fmt::format(
         "--operator {} is for samples alone; leave out --method, --surface and --light", arguments.op));
-  if (shading.method == volume::Method::adaptive &&
-      !(arguments.surfaces.empty() && arguments.light.empty() && arguments.light_from.empty()))
+  if (method == volume::Method::adaptive && !plain)
     throw std::invalid_argument(
         "--method adaptive knows neither surfaces nor light; give --method pre-integrated, or leave them out");
+}
+
+}  // namespace
+
+Shading shading_of(const ShadingArguments& arguments, const volume::Vec3& extent) {
+  Shading shading;
+  shading.method = method_of(arguments);
+  shading.tolerance = arguments.tolerance;
+  shading.cut_at_bricks = cut_of(arguments, shading.method);
+  shading.op = operator_of(arguments);
+  check_combination(arguments, shading.method);
   shading.shows_volume = !arguments.no_volume;
   if (arguments.surfaces.size() > volume::max_surfaces)
     throw std::invalid_argument(fmt::format("{} surfaces are more than can be drawn; give at most {}",

@@ -129,12 +129,11 @@ bool has_error_map(const Setting& setting) {
   return setting.step == 1 && (setting.termination < 1e-4);
 }
 
-void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
-                 const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
-                 bool with_savings, Progress& progress) {
+/// Settings that `results` has no point of, and that can be measured; why others cannot is noted there.
+std::vector<Setting> missing_settings(SceneResults& results, bool quick, OtherPrograms* others) {
   std::vector<Setting> missing;
   results.absent.clear();
-  for (const Setting& setting : settings(arguments.quick)) {
+  for (const Setting& setting : settings(quick)) {
     if (results.find(setting) != nullptr) continue;
     std::optional<std::string> absence;
     if (is_other_program(setting.scheme))
@@ -144,6 +143,37 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     else
       missing.push_back(setting);
   }
+  return missing;
+}
+
+/// Adds the point of `setting`, and its error map where there is one. False where another program fails.
+bool study_setting(const Setting& setting, Scene& scene, SceneResults& results, const fs::path& folder,
+                   bool quick, OtherPrograms* others) {
+  Scene::Rays rays;
+  try {
+    results.points.push_back(
+        is_other_program(setting.scheme)
+            ? others->measure(scene, setting, rays)
+            : measure(scene, setting, quick ? quick_repetitions : whole_repetitions, rays));
+  } catch (const std::runtime_error& error) {
+    if (!is_other_program(setting.scheme)) throw;
+    results.absent[name_of(setting.scheme)] = error.what();
+    return false;
+  }
+  if (has_error_map(setting)) {
+    std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
+    std::ranges::replace_if(
+        file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
+    write_error_map(folder / file, scene, rays);
+    results.error_maps[text_of(setting)] = file;
+  }
+  return true;
+}
+
+void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
+                 const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
+                 bool with_savings, Progress& progress) {
+  const std::vector<Setting> missing = missing_settings(results, arguments.quick, others);
   const bool optimizations_of =
       with_savings &&
       (results.savings.empty() ||
@@ -170,24 +200,7 @@ void study_scene(const SceneDescription& description, SceneResults& results, Res
     const Setting& setting = missing[i];
     progress.show(reference_share + (1 - reference_share) * double(i) / double(missing.size()),
                   text_of(setting));
-    Scene::Rays rays;
-    try {
-      results.points.push_back(
-          is_other_program(setting.scheme)
-              ? others->measure(scene, setting, rays)
-              : measure(scene, setting, arguments.quick ? quick_repetitions : whole_repetitions, rays));
-    } catch (const std::runtime_error& error) {
-      if (!is_other_program(setting.scheme)) throw;
-      results.absent[name_of(setting.scheme)] = error.what();
-      continue;
-    }
-    if (has_error_map(setting)) {
-      std::string file = fmt::format("{}_{}.png", results.name, text_of(setting));
-      std::ranges::replace_if(
-          file, [](char c) { return std::string_view(" ,()'").find(c) != std::string_view::npos; }, '-');
-      write_error_map(folder / file, scene, rays);
-      results.error_maps[text_of(setting)] = file;
-    }
+    if (!study_setting(setting, scene, results, folder, arguments.quick, others)) continue;
     mark_front(results.points);
     write_results(folder, all);
   }

@@ -38,6 +38,47 @@ void widen(Volume& volume, double slope, double intercept) {
   volume.type = ScalarType::f32;
 }
 
+/// Voxels as the file has them where the viewer knows their type and the file does not scale them.
+void give_type(Volume& volume, const nifti_image& image, double slope, double intercept,
+               const std::string& path) {
+  switch (image.datatype) {
+    case NIFTI_TYPE_UINT8:
+      scale_or_keep<std::uint8_t>(volume, ScalarType::u8, slope, intercept);
+      break;
+    case NIFTI_TYPE_INT8:
+      scale_or_keep<std::int8_t>(volume, ScalarType::i8, slope, intercept);
+      break;
+    case NIFTI_TYPE_UINT16:
+      scale_or_keep<std::uint16_t>(volume, ScalarType::u16, slope, intercept);
+      break;
+    case NIFTI_TYPE_INT16:
+      scale_or_keep<std::int16_t>(volume, ScalarType::i16, slope, intercept);
+      break;
+    case NIFTI_TYPE_FLOAT32:
+      scale_or_keep<float>(volume, ScalarType::f32, slope, intercept);
+      break;
+    case NIFTI_TYPE_INT32:
+      widen<std::int32_t>(volume, slope, intercept);
+      break;
+    case NIFTI_TYPE_UINT32:
+      widen<std::uint32_t>(volume, slope, intercept);
+      break;
+    case NIFTI_TYPE_INT64:
+      widen<std::int64_t>(volume, slope, intercept);
+      break;
+    case NIFTI_TYPE_UINT64:
+      widen<std::uint64_t>(volume, slope, intercept);
+      break;
+    case NIFTI_TYPE_FLOAT64:
+      widen<double>(volume, slope, intercept);
+      break;
+    default:
+      throw Error(ExitCode::bad_file,
+                  fmt::format("{}: voxels of type {} are not scalars; extract one component first", path,
+                              nifti_datatype_string(image.datatype)));
+  }
+}
+
 }  // namespace
 
 bool is_nifti(const std::string& path) {
@@ -77,42 +118,7 @@ Volume load_nifti(const std::string& path) {
       image->scl_slope != 0 && std::isfinite(image->scl_slope) && std::isfinite(image->scl_inter);
   const double slope = scaled ? image->scl_slope : 1.0;
   const double intercept = scaled ? image->scl_inter : 0.0;
-  switch (image->datatype) {
-    case NIFTI_TYPE_UINT8:
-      scale_or_keep<std::uint8_t>(volume, ScalarType::u8, slope, intercept);
-      break;
-    case NIFTI_TYPE_INT8:
-      scale_or_keep<std::int8_t>(volume, ScalarType::i8, slope, intercept);
-      break;
-    case NIFTI_TYPE_UINT16:
-      scale_or_keep<std::uint16_t>(volume, ScalarType::u16, slope, intercept);
-      break;
-    case NIFTI_TYPE_INT16:
-      scale_or_keep<std::int16_t>(volume, ScalarType::i16, slope, intercept);
-      break;
-    case NIFTI_TYPE_FLOAT32:
-      scale_or_keep<float>(volume, ScalarType::f32, slope, intercept);
-      break;
-    case NIFTI_TYPE_INT32:
-      widen<std::int32_t>(volume, slope, intercept);
-      break;
-    case NIFTI_TYPE_UINT32:
-      widen<std::uint32_t>(volume, slope, intercept);
-      break;
-    case NIFTI_TYPE_INT64:
-      widen<std::int64_t>(volume, slope, intercept);
-      break;
-    case NIFTI_TYPE_UINT64:
-      widen<std::uint64_t>(volume, slope, intercept);
-      break;
-    case NIFTI_TYPE_FLOAT64:
-      widen<double>(volume, slope, intercept);
-      break;
-    default:
-      throw Error(ExitCode::bad_file,
-                  fmt::format("{}: voxels of type {} are not scalars; extract one component first", path,
-                              nifti_datatype_string(image->datatype)));
-  }
+  give_type(volume, *image, slope, intercept, path);
   return volume;
 }
 

@@ -7,6 +7,10 @@
 #include <array>
 #include <cmath>
 
+#include "compositor/rendered.h"
+#include "compositor/service.h"
+#include "spu/report/counters.h"
+#include "volume/image.h"
 #include "volume/raycast/segment_scene.h"
 
 namespace understudy::spu {

@@ -11,14 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "compositor/service.h"
-#include "spu/report/counters.h"
 #include "spu/volume/budget/calibration.h"
 #include "spu/volume/budget/free_sampling.h"
-#include "volume/image.h"
 #include "volume/request.h"
 
+namespace understudy::compositor {
+class RenderService;
+}
+
 namespace understudy::spu {
+
+struct BudgetCounters;
 
 struct BudgetAsked {
   double error = 0;  ///< greatest difference of a channel from the integral, in (0, 1]; 0: none named

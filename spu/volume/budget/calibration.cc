@@ -9,7 +9,10 @@
 #include <random>
 #include <utility>
 
+#include "compositor/rendered.h"
+#include "compositor/service.h"
 #include "volume/footprint.h"
+#include "volume/image.h"
 #include "volume/raycast/segment_scene.h"
 #include "volume/request.h"
 

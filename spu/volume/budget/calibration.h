@@ -6,14 +6,18 @@
 #include <span>
 #include <vector>
 
-#include "compositor/service.h"
 #include "spu/volume/budget/free_sampling.h"
-#include "volume/description.h"
-#include "volume/image.h"
+#include "volume/pixel_integral.h"
+#include "volume/rect.h"
 
-namespace understudy::volume {
-struct RenderRequest;
+namespace understudy::compositor {
+class RenderService;
 }
+namespace understudy::volume {
+struct ImageView;
+struct RenderRequest;
+struct VolumeDescription;
+}  // namespace understudy::volume
 
 namespace understudy::spu {
 

@@ -3,6 +3,13 @@
 
 #include <cmath>
 
+#include "spu/report/counters.h"
+#include "spu/report/optimization.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -8,17 +8,23 @@
 #include <string_view>
 #include <vector>
 
-#include "spu/report/counters.h"
-#include "spu/track/share_group.h"
 #include "spu/volume/classification/known_colours.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/program_check/program_reader.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/schedule.h"
+#include "volume/fog.h"
 
 namespace understudy::spu {
+
+class FrameAccount;
+
+class RenderSession;
+
+struct VolumeCounters;
+
+class ShareGroup;
+
+struct GlContext;
 
 /// The colours of a run of slices.
 struct SliceColours {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -6,6 +6,7 @@
 #include "spu/volume/classification/colour_map_probe.h"
 #include "spu/volume/classification/segment_probe.h"
 #include "spu/volume/classification/table_probe.h"
+#include "spu/volume/context/context.h"
 
 namespace understudy::spu {
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "spu/volume/classification/fog.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/refusal/refusal.h"
@@ -20,6 +19,8 @@
 #include "volume/classification.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
 constexpr int probed_entries = 16 * 255 + 1;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <variant>
 
+#include "volume/request.h"
+
 namespace understudy::spu {
 
 void round_samples(volume::RenderRequest& request) {

@@ -10,7 +10,10 @@
 #include <cstdint>
 
 #include "spu/volume/texture/texels.h"
-#include "volume/request.h"
+
+namespace understudy::volume {
+struct RenderRequest;
+}
 
 namespace understudy::spu {
 

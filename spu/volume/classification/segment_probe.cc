@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "spu/volume/classification/pre_integration.h"
+#include "spu/volume/context/context.h"
 #include "volume/blending_operator.h"
 
 namespace understudy::spu {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "spu/volume/context/context.h"
 #include "volume/blending_operator.h"
 
 namespace understudy::spu {

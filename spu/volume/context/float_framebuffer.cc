@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
 
 namespace understudy::spu {

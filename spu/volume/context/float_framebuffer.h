@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 #include "volume/depth_image.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 class FloatFramebuffer {
  public:

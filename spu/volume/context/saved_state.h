@@ -10,9 +10,11 @@
 #include <array>
 #include <vector>
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 class SavedState {
  public:

@@ -4,11 +4,12 @@
 
 #include <optional>
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/target.h"
 #include "volume/depth_image.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// Window depth of `rect` of the framebuffer bound for drawing, `target`. Nothing where it has none. Of a
 /// multisampled framebuffer one sample's depth stands for the pixel: along the edges of opaque geometry the

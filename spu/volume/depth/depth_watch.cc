@@ -3,7 +3,11 @@
 
 #include <string_view>
 
+#include "spu/report/optimization.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/depth/deferred_depth_write.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 
 namespace understudy::spu {
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "spu/volume/observation/run.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
 
 namespace understudy::spu {
+
+class FrameAccount;
+
+class RenderSession;
 
 class DepthWatch {
  public:

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstring>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

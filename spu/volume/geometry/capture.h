@@ -3,13 +3,14 @@
 // off, and transform feedback writes down the clip position and everything that the fragment stage would read.
 #pragma once
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/fit.h"
 #include "spu/volume/geometry/polygon.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/pipeline/program_stages.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// Values of one vertex, in the order of ProgramStages::inputs, four floats an input.
 using InputValues = std::vector<std::array<float, 4>>;

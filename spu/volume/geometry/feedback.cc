@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -5,11 +5,12 @@
 // about 0.4 ms.
 #pragma once
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/polygon.h"
 #include "spu/volume/observation/run.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// Compatibility contexts only; the volume must be on texture unit 0, the only one that feedback tells about.
 /// The third coordinate of a stack's slices is their number. Empty polygons when nothing is visible or the

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "spu/track/share_group.h"
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/geometry/slice_segment.h"
 #include "spu/volume/geometry/slices.h"

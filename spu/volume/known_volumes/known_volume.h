@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "spu/report/counters.h"
 #include "spu/volume/budget/budget.h"
 #include "spu/volume/classification/known_colours.h"
 #include "spu/volume/proxy/known_march.h"
@@ -15,6 +14,8 @@
 #include "spu/volume/verification/verified_volume.h"
 
 namespace understudy::spu {
+
+struct VolumeCounters;
 
 struct KnownVolume {
   SentVolume sent;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compositor/logging/log.h"
+#include "spu/track/share_group.h"
 
 namespace understudy::spu {
 namespace {

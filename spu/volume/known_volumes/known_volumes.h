@@ -6,13 +6,16 @@
 #include <memory>
 #include <optional>
 
-#include "spu/track/share_group.h"
 #include "spu/volume/known_volumes/known_volume.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/verifier.h"
 
 namespace understudy::spu {
+
+class FrameAccount;
+
+class RenderSession;
+
+class ShareGroup;
 
 class KnownVolumes {
  public:

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "spu/volume/context/context.h"
 #include "volume/texel_box.h"
 #include "volume/texel_type.h"
 

@@ -4,8 +4,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compositor/service.h"
+#include "spu/report/optimization.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/merging/merged_texels.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {

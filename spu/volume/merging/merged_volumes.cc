@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "spu/track/share_group.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {

@@ -8,12 +8,13 @@
 #include <memory>
 #include <vector>
 
-#include "spu/track/share_group.h"
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/known_volumes/known_volumes.h"
 #include "spu/volume/merging/merged_volume.h"
 
 namespace understudy::spu {
+
+class ShareGroup;
 
 class MergedVolumes {
  public:

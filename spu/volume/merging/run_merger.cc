@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compositor/logging/log.h"
+#include "compositor/service.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/depth/depth.h"
 #include "spu/volume/merging/merged_geometry.h"

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "spu/stream/plain_calls.h"
+#include "spu/volume/context/context.h"
 
 namespace understudy::spu {
 namespace {

@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "dispatch/table.h"
 #include "spu/stream/record.h"
-#include "spu/volume/context/context.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// One enabled vertex array of the application.
 struct ClientArray {

@@ -12,6 +12,7 @@
 #include "dispatch/pass_through.h"
 #include "spu/stream/plain_calls.h"
 #include "spu/track/calls.h"
+#include "spu/track/share_group.h"
 #include "spu/volume/observation/array_calls.h"
 #include "spu/volume/observation/client_arrays.h"
 #include "spu/volume/observation/conditional_render.h"

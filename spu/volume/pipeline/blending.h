@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 #include "spu/volume/pipeline/target.h"
 #include "volume/blending_operator.h"
 #include "volume/classification.h"

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 
+#include "spu/track/program_sources.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

@@ -8,14 +8,16 @@
 #include <string>
 #include <variant>
 
-#include "spu/track/share_group.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/blending.h"
 #include "spu/volume/pipeline/program_samplers.h"
 #include "spu/volume/pipeline/target.h"
 #include "spu/volume/refusal/refusal.h"
 
 namespace understudy::spu {
+
+class ShareGroup;
+
+struct GlContext;
 
 /// A texture unit that the pipeline samples.
 struct SampledTexture {

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "spu/track/program_sources.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/program/analysis.h"
 
 namespace understudy::spu {

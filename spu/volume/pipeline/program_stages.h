@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "spu/track/share_group.h"
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 
 namespace understudy::spu {
+
+struct GlContext;
+struct ProgramRecord;
 
 /// A varying that the fragment stage reads.
 struct StageInput {

@@ -2,7 +2,7 @@
 // The framebuffer that slices are drawn into, as far as it changes what blending leaves there.
 #pragma once
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 
 namespace understudy::spu {
 

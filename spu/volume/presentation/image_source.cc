@@ -3,6 +3,11 @@
 
 #include <chrono>
 
+#include "compositor/rendered.h"
+#include "compositor/service.h"
+#include "spu/report/counters.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::spu {

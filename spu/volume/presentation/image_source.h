@@ -3,14 +3,22 @@
 // error or the time that was asked for.
 #pragma once
 
-#include "compositor/service.h"
 #include "spu/volume/known_volumes/known_volume.h"
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/proxy/ray_caster_stage.h"
 #include "spu/volume/request/image_request.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
+#include "volume/frame_counts.h"
 #include "volume/image.h"
+
+namespace understudy::spu {
+
+class FrameAccount;
+class RenderSession;
+}  // namespace understudy::spu
+
+namespace understudy::compositor {
+class RenderService;
+}
 
 namespace understudy::spu {
 

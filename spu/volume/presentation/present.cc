@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
 #include "volume/blending_operator.h"
 

@@ -5,11 +5,12 @@
 
 #include <array>
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/blending.h"
 #include "volume/image.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// Draws images under the blending of the slices they stand for, with the application's scissor and colour
 /// mask. Holds one texture, one program and one vertex array of the context it was made in.

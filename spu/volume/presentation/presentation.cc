@@ -7,7 +7,12 @@
 #include <string>
 
 #include "compositor/logging/log.h"
+#include "compositor/rendered.h"
+#include "compositor/service.h"
+#include "spu/report/optimization.h"
 #include "spu/volume/presentation/save_frames.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::spu {

@@ -6,8 +6,11 @@
 #include <functional>
 #include <optional>
 
+#include "spu/report/optimization.h"
 #include "spu/volume/presentation/image_source.h"
 #include "spu/volume/presentation/present.h"
+#include "spu/volume/session/render_session.h"
+#include "volume/frame_counts.h"
 
 namespace understudy::spu {
 

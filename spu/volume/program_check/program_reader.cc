@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/program_check/program_reader.h"
 
+#include "spu/track/program_sources.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 
 const ProgramStages& ProgramReader::stages(GLuint program, const ProgramRecord& record) {

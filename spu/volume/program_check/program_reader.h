@@ -7,12 +7,15 @@
 #include <span>
 #include <utility>
 
-#include "spu/track/share_group.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/pipeline/program_stages.h"
 #include "spu/volume/program_check/program_check.h"
 
 namespace understudy::spu {
+
+class ShareGroup;
+
+struct GlContext;
+struct ProgramRecord;
 
 /// Holds programs of the context it was made in, which go with that.
 class ProgramReader {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "spu/volume/context/context.h"
 #include "spu/volume/proxy/cut_box.h"
 #include "volume/matrix.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "spu/volume/context/context.h"
 #include "volume/matrix.h"
 
 namespace understudy::spu {

@@ -11,10 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 #include "volume/texture_space.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// In texture space.
 struct Cuts {

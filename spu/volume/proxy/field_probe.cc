@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

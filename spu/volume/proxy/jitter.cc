@@ -7,6 +7,8 @@
 #include <random>
 #include <utility>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

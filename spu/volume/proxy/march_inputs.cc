@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/proxy/cuts.h"
 
 namespace understudy::spu {

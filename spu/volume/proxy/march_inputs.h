@@ -5,11 +5,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "spu/track/share_group.h"
 #include "spu/volume/program_check/program_check.h"
 #include "spu/volume/proxy/coordinate_space.h"
 
 namespace understudy::spu {
+
+class ShareGroup;
 
 /// What a march was measured under. While `fixed` stays, and a look at a few rays says so, it holds: the camera
 /// is among the inputs that vary.

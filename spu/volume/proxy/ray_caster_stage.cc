@@ -7,8 +7,13 @@
 #include <cmath>
 
 #include "compositor/blend.h"
+#include "compositor/rendered.h"
+#include "compositor/service.h"
 #include "compositor/service/limits.h"
+#include "spu/report/optimization.h"
 #include "spu/volume/proxy/ray_ends.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/footprint.h"
 #include "volume/raycast/ray_caster.h"

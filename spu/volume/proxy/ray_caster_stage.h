@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "compositor/service.h"
 #include "spu/volume/classification/classifier.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/known_march.h"
@@ -16,6 +15,11 @@
 #include "spu/volume/upload/uploader.h"
 #include "spu/volume/verification/native_image.h"
 #include "spu/volume/verification/verified_volume.h"
+#include "volume/frame_counts.h"
+
+namespace understudy::compositor {
+class RenderService;
+}
 
 namespace understudy::spu {
 

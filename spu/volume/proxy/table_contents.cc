@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
 
 namespace understudy::spu {

@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/observation/run.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// The texels of one table.
 struct TableContents {

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spu/track/program_sources.h"
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/feedback.h"
 #include "spu/volume/proxy/coordinate_space.h"
 #include "volume/matrix.h"

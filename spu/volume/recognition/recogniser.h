@@ -6,13 +6,15 @@
 
 #include <string>
 
-#include "spu/track/share_group.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/program_check/program_reader.h"
 
 namespace understudy::spu {
+
+class ShareGroup;
+
+struct GlContext;
 
 class Recogniser {
  public:

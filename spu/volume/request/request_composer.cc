@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/request/request_composer.h"
 
+#include "spu/report/optimization.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/depth/depth.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "volume/footprint.h"
 
 namespace understudy::spu {

@@ -2,14 +2,17 @@
 // The stage that puts a request together: camera, samples, colours, window, and what hides the volume.
 #pragma once
 
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/fit.h"
 #include "spu/volume/pipeline/pipeline.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
+
+class FrameAccount;
+
+class RenderSession;
+
+struct GlContext;
 
 class RequestComposer {
  public:

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compositor/rendered.h"
+
 namespace understudy::spu {
 namespace {
 

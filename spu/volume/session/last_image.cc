@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/rendered.h"
 #include "volume/image.h"
 #include "volume/request.h"
 

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "compositor/logging/log.h"
+#include "compositor/service.h"
 #include "spu/report/counters.h"
+#include "spu/volume/session/frame_latency.h"
 #include "spu/volume/session/last_image.h"
 #include "spu/volume/session/own_nodes.h"
 
@@ -24,6 +26,10 @@ constexpr int later_patience_ms = 20;
 constexpr auto retry_after = 200ms;
 
 }  // namespace
+
+RenderSession::RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
+
+RenderSession::~RenderSession() = default;
 
 compositor::RenderService& RenderSession::service() {
   if (ended_) throw std::runtime_error("the program is ending");

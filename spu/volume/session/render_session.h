@@ -11,17 +11,23 @@
 #include <string>
 #include <string_view>
 
-#include "compositor/service.h"
 #include "spu/options.h"
-#include "spu/volume/session/frame_latency.h"
 #include "spu/volume/timing/frame_ledger.h"
-#include "volume/description.h"
+#include "volume/volume_id.h"
+
+namespace understudy::compositor {
+class RenderService;
+class ServiceLost;
+}  // namespace understudy::compositor
 
 namespace understudy::spu {
 
+class FrameLatency;
+
 class RenderSession {
  public:
-  explicit RenderSession(Options options) : options_(std::move(options)), address_(options_.connect) {}
+  explicit RenderSession(Options options);
+  ~RenderSession();
 
   const Options& options() const { return options_; }
 

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "compositor/service.h"
+
 namespace understudy::spu {
 
 ImageRequest SliceStage::compose(const Pipeline& pipeline, const RecognisedRun& seen, KnownSlices known) {

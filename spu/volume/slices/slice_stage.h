@@ -2,11 +2,14 @@
 // The stage for slices: from a recognised run to a request, by way of upload, classification and composition.
 #pragma once
 
-#include "compositor/service.h"
 #include "spu/volume/classification/classifier.h"
 #include "spu/volume/request/image_request.h"
 #include "spu/volume/request/request_composer.h"
 #include "spu/volume/upload/uploader.h"
+
+namespace understudy::compositor {
+class RenderService;
+}
 
 namespace understudy::spu {
 

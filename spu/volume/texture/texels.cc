@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "spu/volume/context/context.h"
+
 namespace understudy::spu {
 namespace {
 

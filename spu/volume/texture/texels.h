@@ -11,13 +11,15 @@
 #include <span>
 #include <string>
 
-#include "spu/volume/context/context.h"
+#include "dispatch/table.h"
 #include "volume/rgba.h"
 #include "volume/texel_box.h"
 #include "volume/texel_type.h"
 #include "volume/texture_filter.h"
 
 namespace understudy::spu {
+
+struct GlContext;
 
 /// What the pipeline sees when it samples the texture.
 enum class BaseFormat { red, luminance, intensity, alpha, rgba };

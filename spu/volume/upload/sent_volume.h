@@ -7,7 +7,7 @@
 
 #include "spu/volume/texture/texels.h"
 #include "spu/volume/upload/block_hashes.h"
-#include "volume/request.h"
+#include "volume/description.h"
 
 namespace understudy::spu {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compositor/service.h"
 #include "volume/cell_lattice.h"
 
 namespace understudy::spu {

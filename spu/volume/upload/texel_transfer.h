@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <span>
 
-#include "compositor/service.h"
 #include "spu/volume/texture/texels.h"
 #include "spu/volume/upload/block_hashes.h"
 #include "volume/description.h"
+
+namespace understudy::compositor {
+class RenderService;
+}
 
 namespace understudy::spu {
 

@@ -4,9 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compositor/service.h"
+#include "spu/report/counters.h"
+#include "spu/report/optimization.h"
+#include "spu/track/share_group.h"
 #include "spu/volume/budget/budget.h"
+#include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/refusal/refusal.h"
+#include "spu/volume/session/render_session.h"
+#include "spu/volume/timing/frame_account.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {

@@ -6,18 +6,28 @@
 #include <string_view>
 #include <vector>
 
-#include "compositor/service.h"
-#include "spu/report/counters.h"
-#include "spu/track/share_group.h"
-#include "spu/volume/context/context.h"
 #include "spu/volume/geometry/slice_segment.h"
 #include "spu/volume/pipeline/pipeline.h"
-#include "spu/volume/session/render_session.h"
-#include "spu/volume/timing/frame_account.h"
 #include "spu/volume/upload/sent_volume.h"
 #include "spu/volume/upload/texel_transfer.h"
 
 namespace understudy::spu {
+
+class FrameAccount;
+
+class RenderSession;
+struct VolumeCounters;
+}  // namespace understudy::spu
+
+namespace understudy::compositor {
+class RenderService;
+}
+
+namespace understudy::spu {
+
+class ShareGroup;
+
+struct GlContext;
 
 /// What is to be drawn of a texture.
 struct TexelsWanted {

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "volume/request.h"
+
 namespace understudy::spu {
 namespace {
 

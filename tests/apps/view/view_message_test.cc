@@ -10,6 +10,7 @@
 #include <string>
 
 #include "apps/understudy/view/view_state.h"
+#include "compositor/rendered.h"
 #include "volume/request.h"
 
 namespace understudy::launcher {

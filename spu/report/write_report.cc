@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reports on their way into files.
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "compositor/logging/log.h"
+#include "spu/report/report.h"
+
+namespace understudy::spu {
+
+void replace_file(const std::filesystem::path& path, const std::string& text) {
+  const auto fail = [&](const char* what) {
+    throw std::runtime_error(
+        fmt::format("cannot {} the report {}: {}", what, path.string(), std::strerror(errno)));
+  };
+  // A report may be wanted where others can write: a name that they cannot guess, and no connection of theirs.
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != ssize_t(sizeof random)) fail("name");
+  const std::string beside = fmt::format("{}.{:016x}.part", path.string(), random);
+  std::FILE* file = std::fopen(beside.c_str(), "wxe");
+  if (file == nullptr) fail("write");
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const bool closed = std::fclose(file) == 0;
+  if (!written || !closed || std::rename(beside.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    std::remove(beside.c_str());
+    errno = reason;
+    fail("finish");
+  }
+}
+
+bool write_report_now(const std::string& path) noexcept {
+  static std::atomic<bool> complained = false;
+  try {
+    const ProcessCounters* const self = &process_counters();
+    replace_file(path, report_json(Processes(&self, 1)));
+    return true;
+  } catch (const std::exception& error) {
+    if (!complained.exchange(true)) logging::write(logging::Level::error, error.what());
+    return false;
+  }
+}
+
+void write_report_when_due(const std::string& path) noexcept {
+  using Clock = std::chrono::steady_clock;
+  constexpr int share = 50;  // one part writing in 50 parts of run time
+  constexpr std::chrono::milliseconds soonest(500);
+  static std::atomic<Clock::rep> due = 0;
+  const Clock::time_point start = Clock::now();
+  Clock::rep expected = due.load();
+  if (start.time_since_epoch().count() < expected) return;
+  // One thread writes; the others pass.
+  if (!due.compare_exchange_strong(expected, (start + std::chrono::hours(1)).time_since_epoch().count()))
+    return;
+  write_report_now(path);
+  const Clock::duration cost = Clock::now() - start;
+  due = (Clock::now() + std::max<Clock::duration>(soonest, share * cost)).time_since_epoch().count();
+}
+
+}  // namespace understudy::spu

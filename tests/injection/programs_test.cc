@@ -5,6 +5,8 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 
 #include "tests/injection/under_injection.h"
 
@@ -98,16 +100,24 @@ TEST_P(Programs, OpenGlBeforeAndAfterMain) {
   }
 }
 
+std::string without_our_lines(const std::string& text) {
+  std::istringstream lines(text);
+  std::string rest;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("understudy:")) rest += line + "\n";
+  }
+  return rest;
+}
+
 // What the ray caster needs is gone by then.
 TEST_P(Programs, AVolumeAfterMainIsLeftToTheProgram) {
-  const CountedRun bare =
-      run_behind(InjectionMethod::none, {client("around_main"), "current", file("bare")}, softpipe);
-  const CountedRun behind =
-      run_behind(GetParam(), {client("around_main"), "current", file("behind")}, softpipe);
+  const Words command{client("around_main"), "current", "volume"};
+  const CountedRun bare = run_behind(InjectionMethod::none, command, softpipe);
+  const CountedRun behind = run_behind(GetParam(), command, softpipe);
   EXPECT_EQ(behind.outcome.status, 0) << behind.outcome.text;
   EXPECT_TRUE(behind.outcome.says("not substituted: the program is ending")) << behind.outcome.text;
   EXPECT_EQ(behind.total().substituted, 2U) << "those of main";
-  EXPECT_EQ(psnr_of_files(file("bare"), file("behind")), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(without_our_lines(behind.outcome.text), without_our_lines(bare.outcome.text));
 }
 
 TEST_P(Programs, CallsWithoutAContext) {

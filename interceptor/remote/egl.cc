@@ -8,6 +8,7 @@
 
 #include "interceptor/remote/configs.h"
 #include "interceptor/remote/context.h"
+#include "interceptor/remote/egl_config.h"
 #include "interceptor/remote/named_function.h"
 #include "interceptor/remote/x_server.h"
 
@@ -145,114 +146,6 @@ const char* QueryString(EGLDisplay display, EGLint name) {
   }
 }
 
-bool attribute_of(const RemoteConfig& config, EGLint attribute, EGLint* value) {
-  switch (attribute) {
-    case EGL_BUFFER_SIZE:
-      *value = 24 + config.alpha;
-      return true;
-    case EGL_RED_SIZE:
-    case EGL_GREEN_SIZE:
-    case EGL_BLUE_SIZE:
-      *value = 8;
-      return true;
-    case EGL_ALPHA_SIZE:
-      *value = config.alpha;
-      return true;
-    case EGL_DEPTH_SIZE:
-      *value = config.depth;
-      return true;
-    case EGL_STENCIL_SIZE:
-      *value = config.stencil;
-      return true;
-    case EGL_SAMPLES:
-      *value = config.samples;
-      return true;
-    case EGL_SAMPLE_BUFFERS:
-      *value = config.samples > 0 ? 1 : 0;
-      return true;
-    case EGL_CONFIG_ID:
-      *value = config.id;
-      return true;
-    case EGL_SURFACE_TYPE:
-      *value = config.visual != 0 ? EGL_WINDOW_BIT | EGL_PBUFFER_BIT : EGL_PBUFFER_BIT;
-      return true;
-    case EGL_RENDERABLE_TYPE:
-    case EGL_CONFORMANT:
-      *value = EGL_OPENGL_BIT;
-      return true;
-    case EGL_NATIVE_VISUAL_ID:
-      *value = static_cast<EGLint>(config.visual);
-      return true;
-    case EGL_NATIVE_VISUAL_TYPE:
-      *value = config.visual != 0 ? TrueColor : EGL_NONE;
-      return true;
-    case EGL_COLOR_BUFFER_TYPE:
-      *value = EGL_RGB_BUFFER;
-      return true;
-    case EGL_CONFIG_CAVEAT:
-    case EGL_TRANSPARENT_TYPE:
-      *value = EGL_NONE;
-      return true;
-    case EGL_MAX_PBUFFER_WIDTH:
-    case EGL_MAX_PBUFFER_HEIGHT:
-      *value = largest_remote_side;
-      return true;
-    case EGL_MAX_PBUFFER_PIXELS:
-      *value = largest_remote_side * largest_remote_side;
-      return true;
-    case EGL_MAX_SWAP_INTERVAL:
-      *value = 1;
-      return true;
-    case EGL_MIN_SWAP_INTERVAL:
-    case EGL_LEVEL:
-    case EGL_LUMINANCE_SIZE:
-    case EGL_ALPHA_MASK_SIZE:
-    case EGL_BIND_TO_TEXTURE_RGB:
-    case EGL_BIND_TO_TEXTURE_RGBA:
-    case EGL_NATIVE_RENDERABLE:
-    case EGL_TRANSPARENT_RED_VALUE:
-    case EGL_TRANSPARENT_GREEN_VALUE:
-    case EGL_TRANSPARENT_BLUE_VALUE:
-      *value = 0;
-      return true;
-    default:
-      return false;
-  }
-}
-
-/// EGL 1.5, table 3.4.
-bool meets_all(const RemoteConfig& config, const EGLint* attributes) {
-  for (; attributes != nullptr && attributes[0] != EGL_NONE; attributes += 2) {
-    EGLint has = 0;
-    const EGLint wanted = attributes[1];
-    if (wanted == EGL_DONT_CARE || !attribute_of(config, attributes[0], &has)) continue;
-    switch (attributes[0]) {
-      case EGL_SURFACE_TYPE:
-      case EGL_RENDERABLE_TYPE:
-      case EGL_CONFORMANT:
-        if ((has & wanted) != wanted) return false;
-        break;
-      case EGL_CONFIG_ID:
-      case EGL_LEVEL:
-      case EGL_COLOR_BUFFER_TYPE:
-      case EGL_CONFIG_CAVEAT:
-      case EGL_NATIVE_VISUAL_TYPE:
-      case EGL_TRANSPARENT_TYPE:
-        if (has != wanted) return false;
-        break;
-      case EGL_MAX_PBUFFER_WIDTH:
-      case EGL_MAX_PBUFFER_HEIGHT:
-      case EGL_MAX_PBUFFER_PIXELS:
-      case EGL_NATIVE_VISUAL_ID:
-      case EGL_NATIVE_RENDERABLE:
-        break;
-      default:
-        if (has < wanted) return false;
-    }
-  }
-  return true;
-}
-
 EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig* configs, EGLint room,
                         EGLint* count) {
   if (display == EGL_NO_DISPLAY) return failed(EGL_BAD_DISPLAY, EGL_FALSE);
@@ -262,7 +155,7 @@ EGLBoolean ChooseConfig(EGLDisplay display, const EGLint* attributes, EGLConfig*
   *count = 0;
   for (int i = 0; i < offered && (configs == nullptr || *count < room); ++i) {
     // With one buffer only pbuffers could be drawn.
-    if (all[i].double_buffered == 0 || !meets_all(all[i], attributes)) continue;
+    if (all[i].double_buffered == 0 || !meets_egl(all[i], attributes)) continue;
     if (configs != nullptr) configs[*count] = const_cast<RemoteConfig*>(&all[i]);
     ++*count;
   }
@@ -275,7 +168,7 @@ EGLBoolean GetConfigs(EGLDisplay display, EGLConfig* configs, EGLint room, EGLin
 
 EGLBoolean GetConfigAttrib(EGLDisplay, EGLConfig config, EGLint attribute, EGLint* value) {
   if (config == nullptr) return failed(EGL_BAD_CONFIG, EGL_FALSE);
-  return attribute_of(*config_of(config), attribute, value) ? done() : failed(EGL_BAD_ATTRIBUTE, EGL_FALSE);
+  return egl_attribute_of(*config_of(config), attribute, value) ? done() : failed(EGL_BAD_ATTRIBUTE, EGL_FALSE);
 }
 
 EGLBoolean BindAPI(EGLenum api) {

@@ -15,6 +15,7 @@
 #include "interceptor/log_line.h"
 #include "interceptor/remote/configs.h"
 #include "interceptor/remote/context.h"
+#include "interceptor/remote/glx_config.h"
 #include "interceptor/remote/named_function.h"
 #include "interceptor/remote/x_server.h"
 
@@ -60,123 +61,6 @@ const RemoteConfig* config_of_visual(Display* display, const XVisualInfo* visual
   return nullptr;
 }
 
-int attribute_of(const RemoteConfig& config, int attribute, int* value) {
-  switch (attribute) {
-    case GLX_USE_GL:
-    case GLX_RGBA:
-    case GLX_X_RENDERABLE:
-      *value = True;
-      return Success;
-    case GLX_FBCONFIG_ID:
-      *value = config.id;
-      return Success;
-    case GLX_BUFFER_SIZE:
-      *value = 24 + config.alpha;
-      return Success;
-    case GLX_RED_SIZE:
-    case GLX_GREEN_SIZE:
-    case GLX_BLUE_SIZE:
-      *value = 8;
-      return Success;
-    case GLX_ALPHA_SIZE:
-      *value = config.alpha;
-      return Success;
-    case GLX_DOUBLEBUFFER:
-      *value = config.double_buffered;
-      return Success;
-    case GLX_DEPTH_SIZE:
-      *value = config.depth;
-      return Success;
-    case GLX_STENCIL_SIZE:
-      *value = config.stencil;
-      return Success;
-    case GLX_SAMPLES:
-      *value = config.samples;
-      return Success;
-    case GLX_SAMPLE_BUFFERS:
-      *value = config.samples > 0 ? 1 : 0;
-      return Success;
-    case GLX_DRAWABLE_TYPE:
-      *value = GLX_WINDOW_BIT | GLX_PBUFFER_BIT | GLX_PIXMAP_BIT;
-      return Success;
-    case GLX_RENDER_TYPE:
-      *value = GLX_RGBA_BIT;
-      return Success;
-    case GLX_X_VISUAL_TYPE:
-      *value = GLX_TRUE_COLOR;
-      return Success;
-    case GLX_CONFIG_CAVEAT:
-    case GLX_TRANSPARENT_TYPE:
-      *value = GLX_NONE;
-      return Success;
-    case GLX_VISUAL_ID:
-      *value = static_cast<int>(config.visual);
-      return Success;
-    case GLX_SCREEN:
-      *value = config.screen;
-      return Success;
-    case GLX_MAX_PBUFFER_WIDTH:
-    case GLX_MAX_PBUFFER_HEIGHT:
-      *value = largest_remote_side;
-      return Success;
-    case GLX_MAX_PBUFFER_PIXELS:
-      *value = largest_remote_side * largest_remote_side;
-      return Success;
-    case GLX_LEVEL:
-    case GLX_STEREO:
-    case GLX_AUX_BUFFERS:
-    case GLX_ACCUM_RED_SIZE:
-    case GLX_ACCUM_GREEN_SIZE:
-    case GLX_ACCUM_BLUE_SIZE:
-    case GLX_ACCUM_ALPHA_SIZE:
-    case GLX_TRANSPARENT_INDEX_VALUE:
-    case GLX_TRANSPARENT_RED_VALUE:
-    case GLX_TRANSPARENT_GREEN_VALUE:
-    case GLX_TRANSPARENT_BLUE_VALUE:
-    case GLX_TRANSPARENT_ALPHA_VALUE:
-      *value = 0;
-      return Success;
-    default:
-      return GLX_BAD_ATTRIBUTE;
-  }
-}
-
-/// GLX 1.4, table 3.4: sizes are minima, flags are exact, what says nothing of a configuration is passed over.
-bool meets(const RemoteConfig& config, int attribute, int wanted) {
-  int has = 0;
-  if (wanted == static_cast<int>(GLX_DONT_CARE) || attribute_of(config, attribute, &has) != Success)
-    return true;
-  switch (attribute) {
-    case GLX_DRAWABLE_TYPE:
-    case GLX_RENDER_TYPE:
-      return (has & wanted) == wanted;
-    case GLX_DOUBLEBUFFER:
-    case GLX_STEREO:
-    case GLX_LEVEL:
-    case GLX_FBCONFIG_ID:
-    case GLX_X_VISUAL_TYPE:
-    case GLX_CONFIG_CAVEAT:
-      return has == wanted;
-    case GLX_X_RENDERABLE:
-    case GLX_TRANSPARENT_TYPE:
-    case GLX_MAX_PBUFFER_WIDTH:
-    case GLX_MAX_PBUFFER_HEIGHT:
-    case GLX_MAX_PBUFFER_PIXELS:
-    case GLX_VISUAL_ID:
-    case GLX_SCREEN:
-      return true;
-    default:
-      return has >= wanted;
-  }
-}
-
-bool meets_all(const RemoteConfig& config, const int* attributes) {
-  for (; attributes != nullptr && attributes[0] != None; attributes += 2) {
-    if (!meets(config, attributes[0], attributes[1])) return false;
-  }
-  return true;
-}
-
 GLXFBConfig* ChooseFBConfig(Display* display, int screen, const int* attributes, int* count) {
   int offered = 0;
   const RemoteConfig* configs = remote_configs(display, screen, &offered);
@@ -185,7 +69,7 @@ GLXFBConfig* ChooseFBConfig(Display* display, int screen, const int* attributes,
   auto* chosen = static_cast<GLXFBConfig*>(malloc(sizeof(GLXFBConfig) * static_cast<size_t>(offered + 1)));
   if (chosen == nullptr) return nullptr;
   for (int i = 0; i < offered; ++i) {
-    if (meets_all(configs[i], attributes)) chosen[(*count)++] = handle_of(configs[i]);
+    if (meets_glx(configs[i], attributes)) chosen[(*count)++] = handle_of(configs[i]);
   }
   if (*count > 0) return chosen;
   free(chosen);
@@ -197,7 +81,7 @@ GLXFBConfig* GetFBConfigs(Display* display, int screen, int* count) {
 }
 
 int GetFBConfigAttrib(Display*, GLXFBConfig config, int attribute, int* value) {
-  return config != nullptr ? attribute_of(*config_of(config), attribute, value) : GLX_BAD_VISUAL;
+  return config != nullptr ? glx_attribute_of(*config_of(config), attribute, value) : GLX_BAD_VISUAL;
 }
 
 XVisualInfo* GetVisualFromFBConfig(Display* display, GLXFBConfig config) {
@@ -230,7 +114,7 @@ XVisualInfo* ChooseVisual(Display* display, int screen, int* attributes) {
   int offered = 0;
   const RemoteConfig* configs = remote_configs(display, screen, &offered);
   for (int i = 0; i < offered; ++i) {
-    if (!meets_all(configs[i], wanted)) continue;
+    if (!meets_glx(configs[i], wanted)) continue;
     note_choice(configs[i]);
     return visual_of(display, configs[i]);
   }
@@ -239,7 +123,7 @@ XVisualInfo* ChooseVisual(Display* display, int screen, int* attributes) {
 
 int GetConfig(Display* display, XVisualInfo* visual, int attribute, int* value) {
   const RemoteConfig* config = visual != nullptr ? config_of_visual(display, visual) : nullptr;
-  if (config != nullptr) return attribute_of(*config, attribute, value);
+  if (config != nullptr) return glx_attribute_of(*config, attribute, value);
   *value = 0;
   return attribute == GLX_USE_GL ? Success : GLX_BAD_VISUAL;
 }
@@ -392,8 +276,9 @@ int QueryContext(Display*, GLXContext context, int attribute, int* value) {
     *value = GLX_RGBA_TYPE;
     return Success;
   }
-  return attribute == GLX_FBCONFIG_ID || attribute == GLX_SCREEN ? attribute_of(asked.config, attribute, value)
-                                                                 : GLX_BAD_ATTRIBUTE;
+  return attribute == GLX_FBCONFIG_ID || attribute == GLX_SCREEN
+             ? glx_attribute_of(asked.config, attribute, value)
+             : GLX_BAD_ATTRIBUTE;
 }
 
 GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig config, const int* attributes) {

@@ -251,7 +251,7 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   // One number a pixel travels to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
   if (!image.ray_ends.empty() && pixels > std::size_t(compositor::limits::max_ray_offsets))
-    throw Refusal{"planes cut a ray caster's box in more pixels than the nodes take beginnings of rays for",
+    throw Refusal{"planes cut a ray caster's box in more pixels than rays may start in separately",
                   fmt::format("{} pixels, {} are taken", pixels, compositor::limits::max_ray_offsets),
                   "make the window smaller"};
   end_rays_at(image.ray_ends, march.past_planes, image.request);

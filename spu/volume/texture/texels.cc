@@ -113,7 +113,7 @@ std::optional<std::string> describe_components(const GlContext& context, GLenum 
     } else if (type == GL_FLOAT) {
       description.type = volume::TexelType::f32;
     } else {
-      return "the texture's texels are neither normalised nor float";
+      return "the texture's texels are signed or integers";
     }
     return std::nullopt;
   }

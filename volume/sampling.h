@@ -56,6 +56,10 @@ struct RaySteps {
   /// Samples up to so many steps behind the opaque geometry still count.
   double past_depth = 0;
   std::optional<RayOffsets> offsets;  ///< added to `first`, by pixel of the window
+  /// There are as many samples as without offsets: the last one may lie beyond the region, where the field is
+  /// what the texture's wrapping (repetition aside) makes of it. The region is then the whole texture, and
+  /// there are no clip planes.
+  bool counted_without_offsets = false;
   bool operator==(const RaySteps&) const = default;
 };
 

@@ -110,6 +110,7 @@ void write(Writer& out, const std::optional<RaySteps>& steps) {
   out.integer(steps->divided);
   out.real(steps->rounding);
   out.real(steps->past_depth);
+  out.integer(steps->counted_without_offsets);
   out.integer(steps->offsets.has_value());
   if (!steps->offsets) return;
   out.integer(steps->offsets->width);
@@ -125,6 +126,7 @@ std::optional<RaySteps> read_steps(Reader& in) {
   steps.divided = in.flag("steps.divided");
   steps.rounding = in.real("steps.rounding");
   steps.past_depth = in.real("steps.past_depth");
+  steps.counted_without_offsets = in.flag("steps.counted_without_offsets");
   if (!in.flag("steps.offsets")) return steps;
   RayOffsets& offsets = steps.offsets.emplace();
   constexpr int most = limits::max_ray_offsets;

@@ -10,7 +10,7 @@ import socket
 import struct
 
 HELLO = b"UNDERLNK"
-LINK_VERSION = 3
+LINK_VERSION = 4
 ONLY_ASKS, PLAIN = 1, 2
 MESSAGE_MAGIC = 0x59445355
 MESSAGE_HEAD = struct.Struct("<IBBHQQ")

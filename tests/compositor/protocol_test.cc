@@ -47,6 +47,7 @@ RenderRequest some_request(bool colours, bool depth) {
   r.depth_range = {0.25, 0.75};
   r.planes = {{0.1, -0.2, 0.3}, -1.5, 1.0 / 512, 999};
   r.steps = RaySteps{{1, 2, 3, 4, 5, 6, 7, 8, 10}, 0.5, true, 0.25, 2};
+  r.steps->counted_without_offsets = depth;
   if (depth) r.steps->offsets = RayOffsets{3, 2, {0, 0.5F, 0.25F, 0.125F, 1, 2}};
   r.op = Operator::min;
   r.filter = Filter::nearest;
@@ -183,6 +184,7 @@ TEST(Protocol, EveryFieldOfARequestArrives) {
   EXPECT_EQ(got.steps->divided, sent.steps->divided);
   EXPECT_EQ(got.steps->rounding, sent.steps->rounding);
   EXPECT_EQ(got.steps->past_depth, sent.steps->past_depth);
+  EXPECT_EQ(got.steps->counted_without_offsets, sent.steps->counted_without_offsets);
   ASSERT_TRUE(got.steps->offsets.has_value());
   EXPECT_EQ(got.steps->offsets->width, sent.steps->offsets->width);
   EXPECT_EQ(got.steps->offsets->height, sent.steps->offsets->height);

@@ -34,7 +34,8 @@ struct Case {
   double first;
   bool divided;
   Operator op;
-  bool offset = false;  ///< every ray begins at a place of its own
+  bool offset = false;   ///< every ray begins at a place of its own
+  bool counted = false;  ///< and has as many samples as without
 };
 
 std::vector<Case> cases() {
@@ -46,7 +47,10 @@ std::vector<Case> cases() {
           {"parallel, half a step in", parallel_camera(), 0.5, false, Operator::over},
           {"parallel, divided, maximum", parallel_camera(), 0, true, Operator::max},
           {"perspective, noise at the entry", usual, 0, false, Operator::over, true},
-          {"parallel, noise half a step in", parallel_camera(), 0.5, false, Operator::add, true}};
+          {"parallel, noise half a step in", parallel_camera(), 0.5, false, Operator::add, true},
+          {"perspective, samples moved by noise", usual, 0, false, Operator::over, true, true},
+          {"parallel, samples moved by noise, maximum", parallel_camera(), 0, false, Operator::max, true, true},
+          {"perspective, parts moved by noise", usual, 0, true, Operator::add, true, true}};
 }
 
 RenderRequest request_of(const Texture& texture, const Case& c) {
@@ -56,7 +60,8 @@ RenderRequest request_of(const Texture& texture, const Case& c) {
   request.steps->divided = c.divided;
   if (c.offset) request.steps->offsets = RayOffsets{3, 2, {0.1F, 0.9F, 0.4F, 0.7F, 0, 0.3F}};
   request.op = c.op;
-  request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
+  request.steps->counted_without_offsets = c.counted;
+  if (!c.counted) request.region = {{0.03, 0, 0.05}, {0.97, 0.9, 1}};
   return request;
 }
 
@@ -101,6 +106,7 @@ TEST(RaySteps, EndAtOpaqueGeometryAndClipPlanes) {
   const BrickStore store = filled(texture);
   for (const double past : {0.0, 1.0})
     for (const Case& c : cases()) {
+      if (c.counted) continue;  // know no clip planes
       RenderRequest request = request_of(texture, c);
       request.steps->past_depth = past;
       request.clip_planes = {{{1, 0.3, -0.2}, -0.2}};
@@ -197,6 +203,13 @@ TEST(RaySteps, WithoutSenseAreRefused) {
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "no rectangle";
   bad.steps->offsets = RayOffsets{1, 1, {-1.5F}};
   EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "before the entry";
+  bad = good;
+  bad.steps->counted_without_offsets = true;
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "not the whole texture";
+  bad.region = {{0, 0, 0}, {1, 1, 1}};
+  EXPECT_NO_THROW(validate(texture.description, bad));
+  bad.clip_planes = {{{1, 0, 0}, -0.5}};
+  EXPECT_THROW(validate(texture.description, bad), std::invalid_argument) << "a clip plane";
 }
 
 }  // namespace

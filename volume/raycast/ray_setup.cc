@@ -101,7 +101,9 @@ void set_up_row(const RaySetup& setup, const double* depth, const double* begins
       }
       const auto steps_to = [&](V end) HWY_ATTR { return hn::Sub(hn::Div(hn::Sub(end, entry), part), offset); };
       first = hn::Max(hn::Ceil(steps_to(low)), zero);
-      last = hn::Floor(hn::Min(steps_to(high), hn::Sub(parts, one)));
+      const V counted_from = setup.steps->counted_without_offsets ? hn::Set(d, setup.steps->first) : offset;
+      const V to_end = hn::Sub(hn::Div(hn::Sub(high, entry), part), counted_from);
+      last = hn::Floor(hn::Min(to_end, hn::Sub(parts, one)));
       begin = setup.segments ? hn::Max(steps_to(low), hn::Neg(one)) : first;
       end = setup.segments ? steps_to(high) : last;
       if (depth) {

@@ -102,6 +102,19 @@ void validate_steps(const RaySteps& steps, const Box& region) {
   if (!(most <= max_planes)) refuse("rays of {} steps (at most {} are possible)", most, max_planes);
 }
 
+/// Samples beyond the region must not lie in texels that only others hold, and not in segments.
+void validate_count(const VolumeDescription& volume, const RenderRequest& request) {
+  if (!request.steps || !request.steps->counted_without_offsets) return;
+  constexpr double rounding = 1e-6;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double half_texel = 0.5 / volume.size[axis] + rounding;
+    if (request.region.low[axis] > half_texel || request.region.high[axis] < 1 - half_texel)
+      refuse("samples counted without offsets, in a region that is not the whole texture along axis {}", axis);
+  }
+  if (!request.clip_planes.empty() || walks_segments(request))
+    refuse("samples counted without offsets know neither clip planes nor segments");
+}
+
 void validate_slice_segment(const VolumeDescription& volume, const RenderRequest& request) {
   const bool pairs = std::holds_alternative<PreIntegrationTable>(request.classification);
   if (pairs && !request.slice_segment) refuse("a pre-integration table needs segments");
@@ -216,6 +229,7 @@ void validate(const VolumeDescription& volume, const RenderRequest& request) {
   validate_camera(request);
   validate_places(request);
   validate_region(volume, request);
+  validate_count(volume, request);
   validate_cut(volume, request.cut_at_bricks);
   validate_ends(request);
   validate_classification(volume, request.classification);

@@ -288,8 +288,10 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
     return length(m);
   };
   double steps = steps_between(enter, leave), part = (leave - enter) / steps;
-  const double first = rule.first + (rule.offsets ? rule.offsets->at(x, y) : 0);
-  int count = int(std::floor(steps - first)) + 1;
+  const double offset = rule.offsets ? rule.offsets->at(x, y) : 0;
+  const double uncounted = rule.counted_without_offsets ? offset : 0;
+  const double first = rule.first + offset;
+  int count = int(std::floor(steps - (first - uncounted))) + 1;
   if (rule.divided) {
     count = int(std::floor(steps + rule.rounding));
     if (count < 1) return;
@@ -305,7 +307,8 @@ void take_steps(const RenderRequest& request, const Vec4& near, const Vec4& far,
                     request.depth_range[0] + n * (request.depth_range[1] - request.depth_range[0]));
     };
     const double depth_s = s - rule.past_depth * part;
-    if (s < 0 || s > 1 || s > leave || cut_away(request, point(s))) continue;
+    const double counted_s = s - uncounted * part;
+    if (s < 0 || counted_s > 1 || counted_s > leave || cut_away(request, point(s))) continue;
     if (visible(depth_s) && visible(enter)) sample_at(point(s), point(s));
   }
 }

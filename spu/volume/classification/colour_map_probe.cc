@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
 
+#include "spu/volume/classification/fog.h"
 #include "spu/volume/context/context.h"
 
 namespace understudy::spu {
@@ -60,31 +63,142 @@ std::array<float, 16> matrix_of(const ProbedImage& mapped, bool opaque) {
   return matrix;
 }
 
-bool is_map_of(const std::array<float, 16>& matrix, const std::vector<float>& texels,
-               const ProbedImage& mapped) {
+volume::Rgba mapped_by(const std::array<float, 16>& matrix, const float* texel) {
+  volume::Rgba mapped{};
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) mapped[row] += matrix[4 * row + column] * texel[column];
+  }
+  return mapped;
+}
+
+/// Shows the probe program colours.
+class MapProbe {
+ public:
+  MapProbe(ProbeBench& bench, const GlContext& context, const TextureDescription& texture,
+           const FragmentInputs& fragment)
+      : bench_(bench),
+        context_(context),
+        texture_(texture),
+        fragment_(fragment),
+        texels_(some_colours(texture.opaque)) {}
+
+  const float* texel(std::size_t index) const { return &texels_[4 * index]; }
+
+  /// What all texels become, with the inputs given.
+  ProbedImage mapped(const InputValues& inputs) {
+    show(probe_edge, texels_);
+    return bench_.draw(without_coordinate(fragment_, inputs), false);
+  }
+  /// What one becomes, while one number runs from `low` in the first pixel to `high` in the last.
+  ProbedImage along(std::size_t index, const InputNumber& number, float low, float high) {
+    show(1, {texel(index), texel(index) + 4});
+    return bench_.draw_along(fragment_, number, low, high, false);
+  }
+  /// What a colour becomes at coordinates all over the volume.
+  ProbedImage everywhere(const std::array<float, 4>& colour, const InputValues& inputs) {
+    show(1, {colour.begin(), colour.end()});
+    return bench_.draw(without_coordinate(fragment_, inputs), false);
+  }
+
+ private:
+  void show(int extent, const std::vector<float>& texels) {
+    bench_.show(texture_.opaque ? GL_RGB32F : GL_RGBA32F, GL_RGBA, extent, extent, texels, texture_.swizzle,
+                context_.version >= 330);
+  }
+
+  ProbeBench& bench_;
+  const GlContext& context_;
+  const TextureDescription& texture_;
+  const FragmentInputs& fragment_;
+  std::vector<float> texels_;
+};
+
+/// The map where fog is thinnest, and the fog over it.
+struct FoggedMap {
+  std::array<float, 16> matrix{};
+  std::optional<MeasuredFog> fog;
+  volume::Rgba added{};  ///< by the fog where it is thinnest
+  InputRange range;
+};
+
+bool is_map_of(const FoggedMap& map, const MapProbe& probe, const ProbedImage& mapped) {
   for (std::size_t i = 0; i < probe_pixels; ++i) {
-    volume::Rgba expected{};
-    for (std::size_t row = 0; row < 4; ++row) {
-      for (std::size_t column = 0; column < 4; ++column) {
-        expected[row] += matrix[4 * row + column] * texels[4 * i + column];
-      }
-    }
+    volume::Rgba expected = mapped_by(map.matrix, probe.texel(i));
+    for (std::size_t c = 0; c < 3; ++c) expected[c] += map.added[c];
     if (!(largest_difference(mapped[i], expected) <= same_colour)) return false;
   }
   return true;
 }
 
-/// Whether all of `image`, drawn of one texel, has that texel's colour.
-bool is_constant(const std::array<float, 16>& matrix, const std::array<float, 4>& texel,
-                 const ProbedImage& image) {
-  for (std::size_t row = 0; row < 4; ++row) {
-    const float* m = &matrix[4 * row];
-    const float expected = texel[0] * m[0] + texel[1] * m[1] + texel[2] * m[2] + texel[3] * m[3];
-    for (const volume::Rgba& colour : image) {
-      if (!(std::abs(colour[row] - expected) <= same_colour)) return false;
+/// On which of the varying numbers colours depend.
+std::vector<InputNumber> telling_numbers(MapProbe& probe, const ProbedImage& mapped,
+                                         const FragmentInputs& fragment) {
+  std::vector<InputNumber> telling;
+  for (const InputNumber& number : varying_numbers(fragment)) {
+    for (const InputValues* end : {&fragment.range.low, &fragment.range.high}) {
+      const float value = (*end)[number.input][number.component];
+      if (largest_difference(probe.mapped(with_number(fragment.first, number, value)), mapped) <= same_colour)
+        continue;
+      telling.push_back(number);
+      break;
+    }
+  }
+  return telling;
+}
+
+/// Whether the fog, which was found with a few colours, holds for all of them.
+bool holds_for_all(MapProbe& probe, const FoggedMap& map, const FragmentInputs& fragment, bool premultiplied) {
+  const MeasuredFog& fog = *map.fog;
+  const std::size_t last = fog.entries.size() - 1;
+  for (const std::size_t k : {std::size_t(0), last / 2, last}) {
+    const float value = fog.low + (fog.high - fog.low) * float(k) / float(last);
+    const ProbedImage seen = probe.mapped(with_number(fragment.first, {fog.input, fog.component}, value));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      volume::Rgba expected = mapped_by(map.matrix, probe.texel(i));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float added = fog.entries[k][c] * (premultiplied ? expected[3] : 1.0F);
+        expected[c] = fog.entries[k][3] * expected[c] + added;
+      }
+      if (!(largest_difference(seen[i], expected) <= same_fogged_colour)) return false;
     }
   }
   return true;
+}
+
+/// The fog in the one number that colours depend on, and the map below it; null when there is no such thing.
+std::optional<FoggedMap> map_in_fog(MapProbe& probe, const FragmentInputs& fragment, const InputNumber& number,
+                                    const ProbedImage& mapped, bool premultiplied, bool opaque) {
+  for (const InputRange& tried : {widened(fragment.range, {number}), fragment.range}) {
+    const float low = tried.low[number.input][number.component];
+    const float high = tried.high[number.input][number.component];
+    const std::array<float, 2> needed{fragment.range.low[number.input][number.component],
+                                      fragment.range.high[number.input][number.component]};
+    std::vector<float> values(probe_pixels);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = low + (high - low) * float(i) / float(probe_pixels - 1);
+    auto fog = measure_fog(mapped, premultiplied, values, needed,
+                           [&](std::size_t entry) { return probe.along(entry, number, low, high); });
+    if (!fog) continue;
+    fog->input = number.input;
+    fog->component = number.component;
+    ProbedImage clearest = probe.mapped(with_number(fragment.first, number, fog->reference));
+    FoggedMap map{.range = tried};
+    // What black becomes is the fog's; under one opacity everywhere it is part of the map.
+    for (std::size_t c = 0; c < 3 && !opaque; ++c) map.added[c] = clearest.front()[c];
+    const ProbedImage seen = clearest;
+    for (volume::Rgba& colour : clearest) {
+      for (std::size_t c = 0; c < 3; ++c) colour[c] -= map.added[c];
+    }
+    map.matrix = matrix_of(clearest, opaque);
+    for (volume::Rgba& entry : fog->entries) {
+      for (std::size_t c = 0; c < 3; ++c) entry[c] += entry[3] * map.added[c];
+    }
+    map.range.low[number.input][number.component] = fog->low;
+    map.range.high[number.input][number.component] = fog->high;
+    map.fog = std::move(fog);
+    if (is_map_of(map, probe, seen) && holds_for_all(probe, map, fragment, premultiplied)) return map;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -98,21 +212,30 @@ ProbeFinding probe_map(ProbeBench& bench, const GlContext& context, const Pipeli
     if (!least) return "the alpha test on a colour volume is not GREATER";
     map.alpha_above = *least;
   }
-  const bool with_swizzle = context.version >= 330;
-  const GLenum format = texture.opaque ? GL_RGB32F : GL_RGBA32F;
-  const std::vector<float> texels = some_colours(texture.opaque);
-  bench.show(format, GL_RGBA, probe_edge, probe_edge, texels, texture.swizzle, with_swizzle);
-  const ProbedImage mapped = bench.draw(without_coordinate(fragment, fragment.first), false);
-  map.matrix = matrix_of(mapped, texture.opaque);
-  if (!is_map_of(map.matrix, texels, mapped)) return "the map of a colour volume is not linear";
+  MapProbe probe(bench, context, texture, fragment);
+  const ProbedImage mapped = probe.mapped(fragment.first);
+  FoggedMap found{.matrix = matrix_of(mapped, texture.opaque), .range = fragment.range};
+  InputValues last = fragment.last;
+  const std::vector<InputNumber> telling = telling_numbers(probe, mapped, fragment);
+  if (telling.size() == 1 && !fragment.inputs[telling.front().input].integer) {
+    auto fogged =
+        map_in_fog(probe, fragment, telling.front(), mapped, pipeline.blending.premultiplied, texture.opaque);
+    if (!fogged) return more_than_the_sample;
+    found = *std::move(fogged);
+    last = with_number(last, telling.front(), found.fog->reference);
+  } else if (!is_map_of(found, probe, mapped)) {
+    return "the map of a colour volume is not linear";
+  }
+  map.matrix = found.matrix;
   if (pipeline.target.floating && leaves_unit_interval(map.matrix))
     return "the colours leave [0,1] in a float framebuffer";
   const std::array<float, 4> texel{0.25F, 0.5F, 0.75F, texture.opaque ? 1.0F : 0.5F};
-  bench.show(format, GL_RGBA, 1, 1, {texel.begin(), texel.end()}, texture.swizzle, with_swizzle);
-  const ProbedImage constant = bench.draw(without_coordinate(fragment, fragment.last), false);
-  if (!is_constant(map.matrix, texel, constant))
-    return "the colour depends on more than the sample (position, lighting)";
-  return Probed{map, std::nullopt, fragment.range};
+  volume::Rgba expected = mapped_by(map.matrix, texel.data());
+  for (std::size_t c = 0; c < 3; ++c) expected[c] += found.added[c];
+  for (const volume::Rgba& colour : probe.everywhere(texel, last)) {
+    if (!(largest_difference(colour, expected) <= same_colour)) return more_than_the_sample;
+  }
+  return Probed{map, found.fog, found.range};
 }
 
 }  // namespace understudy::spu

@@ -84,6 +84,22 @@ InputValues without_coordinate(const FragmentInputs& fragment, const InputValues
   return others;
 }
 
+ProbedImage ProbeBench::draw_along(const FragmentInputs& fragment, const InputNumber& number, float low,
+                                   float high, bool with_alpha_test) {
+  const float step = (high - low) / float(probe_pixels - 1);
+  const InputValues values = with_number(fragment.first, number, low - step * 0.5F * float(probe_edge + 1));
+  const InputValues none(values.size());
+  const InputValues across = with_number(none, number, step * float(probe_edge));
+  const InputValues up = with_number(none, number, step * float(probe_edge * probe_edge));
+  return draw(without_coordinate(fragment, values), with_alpha_test, {}, without_coordinate(fragment, across),
+              without_coordinate(fragment, up));
+}
+
+InputValues with_number(InputValues inputs, const InputNumber& number, float value) {
+  inputs[number.input][number.component] = value;
+  return inputs;
+}
+
 std::vector<InputNumber> varying_numbers(const FragmentInputs& fragment) {
   std::vector<InputNumber> numbers;
   for (std::size_t i = 0; i < fragment.inputs.size(); ++i) {

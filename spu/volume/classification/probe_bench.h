@@ -22,8 +22,16 @@ constexpr float same_colour = 2e-4F;
 /// Fog is interpolated between values of its number.
 constexpr float same_fogged_colour = 4e-3F;
 
+constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
+
 /// Row by row, one fragment a pixel.
 using ProbedImage = std::vector<volume::Rgba>;
+
+/// One component of one input.
+struct InputNumber {
+  std::size_t input = 0;  ///< in the order of FragmentInputs::inputs
+  std::size_t component = 0;
+};
 
 /// The framebuffer, textures and vertex array of one probing; all gone afterwards.
 class ProbeBench {
@@ -51,6 +59,11 @@ class ProbeBench {
   ProbedImage draw(const InputValues& values, bool with_alpha_test, const volume::Rgba& background = {},
                    const InputValues& across = {}, const InputValues& up = {});
 
+  /// The same with the inputs of `fragment`, while one number runs from `low` in the first pixel to `high` in
+  /// the last.
+  ProbedImage draw_along(const FragmentInputs& fragment, const InputNumber& number, float low, float high,
+                         bool with_alpha_test);
+
   bool alpha_test_enabled() const { return alpha_test_; }
 
  private:
@@ -70,14 +83,11 @@ class ProbeBench {
 /// The values of all inputs but the coordinate, in the order in which the probe program numbers them.
 InputValues without_coordinate(const FragmentInputs& fragment, const InputValues& values);
 
-/// One component of one input.
-struct InputNumber {
-  std::size_t input = 0;  ///< in the order of FragmentInputs::inputs
-  std::size_t component = 0;
-};
-
 /// The numbers that vary over the run, the coordinate left out.
 std::vector<InputNumber> varying_numbers(const FragmentInputs& fragment);
+
+/// `inputs`, one number of which has another value.
+InputValues with_number(InputValues inputs, const InputNumber& number, float value);
 
 /// The range, and as much again on both sides where it is one: a view that turns does not ask for another
 /// probe.

@@ -11,8 +11,6 @@
 namespace understudy::spu {
 namespace {
 
-constexpr const char* more_than_the_sample = "the colour depends on more than the sample (position, lighting)";
-
 /// Whether the table has `value` in channel `c` of `entries` or between them. Between two it may have a peak or
 /// a step, which is taken to reach as far beyond them as they are apart.
 bool is_among(float value, std::span<const volume::Rgba> entries, std::size_t c) {
@@ -98,20 +96,10 @@ class TableProbe {
   /// One entry, while one number runs from `low` in the first pixel to `high` in the last.
   ProbedImage along(std::size_t entry, const InputNumber& number, float low, float high) {
     show(1, {ramp_[entry]});
-    const float step = (high - low) / float(probe_pixels - 1);
-    InputValues values = fragment_.first;
-    InputValues across(values.size());
-    InputValues up(values.size());
-    values[number.input][number.component] = low - step * 0.5F * float(probe_edge + 1);
-    across[number.input][number.component] = step * float(probe_edge);
-    up[number.input][number.component] = step * float(probe_edge * probe_edge);
-    return bench_.draw(without_coordinate(fragment_, values), true, {}, without_coordinate(fragment_, across),
-                       without_coordinate(fragment_, up));
+    return bench_.draw_along(fragment_, number, low, high, true);
   }
   InputValues first_but(const InputNumber& number, float value) const {
-    InputValues values = fragment_.first;
-    values[number.input][number.component] = value;
-    return values;
+    return with_number(fragment_.first, number, value);
   }
 
  private:

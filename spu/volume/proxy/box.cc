@@ -121,6 +121,12 @@ RaysThroughBox::RaysThroughBox(const volume::Matrix4& texture_to_clip, const vol
 }
 
 std::optional<Vec3> RaysThroughBox::way(double x, double y) const {
+  const auto stretch = through(x, y);
+  if (!stretch) return std::nullopt;
+  return stretch->way;
+}
+
+std::optional<WayThroughBox> RaysThroughBox::through(double x, double y) const {
   std::array<Vec3, 2> ends;
   for (const bool far : {false, true}) {
     const Vec4 p = volume::transform(clip_to_texture_, {x, y, far ? 1.0 : -1.0, 1});
@@ -147,7 +153,7 @@ std::optional<Vec3> RaysThroughBox::way(double x, double y) const {
     if (slope == 0 && value < 0) return std::nullopt;
   }
   if (!(enter < leave)) return std::nullopt;
-  return scale(along, leave - enter);
+  return WayThroughBox{add(ends[0], scale(along, enter)), scale(along, leave - enter)};
 }
 
 }  // namespace understudy::spu

@@ -20,6 +20,12 @@ bool wholly_in_view(const volume::Matrix4& texture_to_clip, const volume::Box& b
 /// The same of the vertices that were drawn.
 bool wholly_in_view(const ObservedPolygons& polygons);
 
+/// A ray's stretch in a box, in texture space.
+struct WayThroughBox {
+  volume::Vec3 entry{};
+  volume::Vec3 way{};  ///< from entry to exit
+};
+
 /// The rays of a camera through a box, which cuts may have made smaller.
 class RaysThroughBox {
  public:
@@ -27,8 +33,9 @@ class RaysThroughBox {
   RaysThroughBox(const volume::Matrix4& texture_to_clip, const volume::Box& box,
                  const std::vector<volume::HalfSpace>& cuts = {});
 
-  /// From entry to exit, in texture space, on the ray at normalised device coordinates (x, y); null where it
-  /// misses the box.
+  /// Of the ray at normalised device coordinates (x, y); null where it misses the box.
+  std::optional<WayThroughBox> through(double x, double y) const;
+  /// From entry to exit.
   std::optional<volume::Vec3> way(double x, double y) const;
 
   /// Where the middle of the box is seen; of a box with cuts, where most of it lies behind another.

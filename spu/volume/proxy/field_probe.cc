@@ -10,6 +10,7 @@ namespace understudy::spu {
 namespace {
 
 constexpr int finest_viewport = 4096;
+constexpr int most_ramp_texels = 2048;
 
 std::array<GLint, 4> rectangle(const DispatchTable& gl, GLenum name) {
   std::array<GLint, 4> value{};
@@ -47,6 +48,9 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
       lifted_(context, run.pipeline().program) {
   std::array<GLint, 2> largest{};
   gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data());
+  GLint longest = 0;
+  gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &longest);
+  ramp_texels_ = std::clamp(longest, field_texels, most_ramp_texels);
   fine_ = std::min({finest_viewport, int(largest[0]), int(largest[1])});
   const int width = std::max(1, viewport_[0] + viewport_[2]);
   const int height = std::max(1, viewport_[1] + viewport_[3]);
@@ -78,29 +82,33 @@ FieldProbe::~FieldProbe() {
 
 /// Whether the volume's own texels can hold all of it. What a driver makes of bytes may differ from multiples
 /// of 1/255 in the last bit, and a program that compares a sample with such a number sees that.
-bool FieldProbe::of_bytes(const std::array<float, 8>& corners) const {
+bool FieldProbe::of_bytes(std::span<const float> texels) const {
   constexpr float bytes = 255;
-  return texture_.type == volume::TexelType::u8 && std::ranges::all_of(corners, [](float value) {
+  return texture_.type == volume::TexelType::u8 && std::ranges::all_of(texels, [](float value) {
            return std::abs(value - std::round(value * bytes) / bytes) < 1e-6F && value >= 0 && value <= 1;
          });
 }
 
 void FieldProbe::show(const std::array<float, 8>& corners) {
+  show(corners, {2, 2, 2}, GL_LINEAR);
+}
+
+void FieldProbe::show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter) {
   // A texture for every field: changing one that is in use would wait for the draw.
   GLuint name = 0;
   gl_.ActiveTexture(GLenum(GL_TEXTURE0 + run_.pipeline().volume.unit));
   gl_.GenTextures(1, &name);
   textures_.push_back(name);
   gl_.BindTexture(GL_TEXTURE_3D, name);
-  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
+  gl_.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
     gl_.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
   }
   if (with_swizzle_) gl_.TexParameteriv(GL_TEXTURE_3D, GL_TEXTURE_SWIZZLE_RGBA, texture_.swizzle.data());
-  const GLenum format = of_bytes(corners) ? byte_probe_format(texture_.base) : probe_format(texture_.base);
-  gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(format), 2, 2, 2, 0, upload_format(texture_.base), GL_FLOAT,
-                 corners.data());
+  const GLenum format = of_bytes(texels) ? byte_probe_format(texture_.base) : probe_format(texture_.base);
+  gl_.TexImage3D(GL_TEXTURE_3D, 0, GLint(format), size[0], size[1], size[2], 0, upload_format(texture_.base),
+                 GL_FLOAT, texels.data());
 }
 
 std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const float> values) {
@@ -177,17 +185,36 @@ void FieldProbe::clear() {
 }
 
 std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {
-  return in_place(0, first_row, viewport_[2], rows, value);
+  show({value, value, value, value, value, value, value, value});
+  return in_place(0, first_row, viewport_[2], rows);
+}
+
+std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const SplitField& field) {
+  std::array<int, 3> size{1, 1, 1};
+  size[field.axis] = field_texels;
+  std::vector<float> texels(field_texels, field.behind);
+  std::fill_n(texels.begin(), std::lround(field.plane / split_unit), field.before);
+  show(texels, size, GL_NEAREST);
+  return in_place(0, first_row, viewport_[2], rows);
+}
+
+std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const RampField& field) {
+  std::array<int, 3> size{1, 1, 1};
+  size[field.axis] = ramp_texels_;
+  std::vector<float> texels;
+  texels.reserve(std::size_t(ramp_texels_));
+  for (int i = 0; i < ramp_texels_; ++i)
+    texels.push_back(field.from + (field.to - field.from) * (float(i) + 0.5F) / float(ramp_texels_));
+  show(texels, size, GL_LINEAR);
+  return in_place(0, first_row, viewport_[2], rows);
 }
 
 volume::Rgba FieldProbe::pixel(int column, int row, float value) {
-  return in_place(column, row, 1, 1, value).front();
+  show({value, value, value, value, value, value, value, value});
+  return in_place(column, row, 1, 1).front();
 }
 
-std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height, float value) {
-  std::array<float, 8> corners;
-  corners.fill(value);
-  show(corners);
+std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height) {
   // At its own place, so that whatever depends on the place of a fragment is as it will be.
   const int x = viewport_[0] + column;
   const int y = viewport_[1] + row;

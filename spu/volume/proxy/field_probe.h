@@ -39,6 +39,27 @@ class FieldProbe {
   /// The fragments of `rows` rows of the application's viewport from `first_row` on, over the field of `value`.
   std::vector<volume::Rgba> rows(int first_row, int rows, float value);
 
+  /// The same over a field that is `before` where the texture coordinate `axis` is less than `plane`, and
+  /// `behind` beyond.
+  struct SplitField {
+    std::size_t axis = 0;
+    double plane = 0.5;  ///< a multiple of split_unit
+    float before = 0;
+    float behind = 0;
+  };
+  static constexpr int field_texels = 256;  ///< along the axis; OpenGL promises as many
+  static constexpr double split_unit = 1.0 / field_texels;
+  std::vector<volume::Rgba> rows(int first_row, int rows, const SplitField& field);
+
+  /// The same over a field that goes from one value to another where the texture coordinate `axis` does so from
+  /// 0 to 1.
+  struct RampField {
+    std::size_t axis = 0;
+    float from = 0;
+    float to = 1;
+  };
+  std::vector<volume::Rgba> rows(int first_row, int rows, const RampField& field);
+
   /// The fragment of one pixel of the application's viewport, over the field of `value`.
   volume::Rgba pixel(int column, int row, float value);
 
@@ -54,15 +75,17 @@ class FieldProbe {
   int height() const { return viewport_[3]; }
 
  private:
-  bool of_bytes(const std::array<float, 8>& corners) const;
+  bool of_bytes(std::span<const float> texels) const;
+  void show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter);
   void show(const std::array<float, 8>& corners);
   void clear();
-  std::vector<volume::Rgba> in_place(int column, int row, int width, int height, float value);
+  std::vector<volume::Rgba> in_place(int column, int row, int width, int height);
 
   const DispatchTable& gl_;
   const Run& run_;
   const TextureDescription& texture_;
   bool with_swizzle_;
+  int ramp_texels_ = field_texels;   ///< the more, the nearer to the box's faces does a ramp go on
   std::array<GLint, 4> viewport_{};  ///< the application's
   std::array<GLint, 4> scissor_{};
   int fine_ = 0;  ///< edge of the viewport that rays are picked from

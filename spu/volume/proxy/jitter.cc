@@ -55,6 +55,11 @@ std::optional<volume::RayOffsets> numbers_of(const GlContext& context, const Sam
   return numbers;
 }
 
+volume::RayOffsets scaled(volume::RayOffsets numbers, const Jitter& jitter) {
+  for (float& number : numbers.steps) number = float(number * jitter.steps_per_unit);
+  return numbers;
+}
+
 const SampledTexture* sampled_at(const Run& run, GLint sampler_location) {
   for (const SampledTexture& texture : run.pipeline().others) {
     if (texture.sampler_location == sampler_location) return &texture;
@@ -137,6 +142,71 @@ std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& pro
   return JitterFinding{{texture.sampler_location, steps}, fits};
 }
 
+/// By how much of a step more the samples of rays lie behind their beginning; how many less lie before a plane.
+double steps_between(const std::vector<SplitRays>& sooner, const std::vector<SplitRays>& later,
+                     const RaysThroughBox& rays) {
+  double lost = 0;
+  std::size_t told = 0;
+  for (std::size_t s = 0; s < sooner.size(); ++s) {
+    const std::size_t axis = sooner[s].field.axis;
+    for (std::size_t i = 0; i < sooner[s].rays.size(); ++i) {
+      const SplitRay& ray = sooner[s].rays[i];
+      const auto way = rays.way(ray.place[0], ray.place[1]);
+      // At either end of a ray there is nothing left to lose.
+      if (!way || ray.before < 2 || ray.samples - ray.before < 2) continue;
+      const double fewer = ray.before - later[s].rays[i].before;
+      lost += (*way)[axis] > 0 ? fewer : -fewer;
+      ++told;
+    }
+  }
+  return lost / double(std::max(told, std::size_t(1)));
+}
+
+bool same_rays(const std::vector<SplitRays>& a, const std::vector<SplitRays>& b) {
+  const auto same = [](const SplitRay& one, const SplitRay& other) {
+    return one.place == other.place && one.samples == other.samples;
+  };
+  return std::ranges::equal(a, b, [&](const SplitRays& one, const SplitRays& other) {
+    return std::ranges::equal(one.rays, other.rays, same);
+  });
+}
+
+std::optional<Jitter> moving_jitter_by(const GlContext& context, FieldProbe& probe,
+                                       const SampledTexture& texture, const RaySplitting& split,
+                                       const RaysThroughBox& rays, const std::vector<volume::RaySteps>& rules) {
+  const auto numbers = numbers_of(context, texture);
+  if (!numbers) return std::nullopt;
+  volume::RayOffsets shown = *numbers;
+  const auto split_under = [&](const auto& texel) {
+    std::ranges::generate(shown.steps, texel);
+    probe.show_instead(texture, shown.width, shown.height, shown.steps);
+    return split();
+  };
+  const auto zeros = split_under([] { return 0.0F; });
+  const auto rule = std::ranges::find_if(rules, [&](const volume::RaySteps& steps) {
+    return misplaced_part(zeros, rays, steps) <= most_misplaced;
+  });
+  if (zeros.empty() || rule == rules.end()) return std::nullopt;
+  const auto ones = split_under([] { return 1.0F; });
+  if (!same_rays(zeros, ones)) return std::nullopt;
+  Jitter jitter{texture.sampler_location, steps_between(zeros, ones, rays), true};
+  if (std::abs(jitter.steps_per_unit - std::round(jitter.steps_per_unit)) < 0.02)
+    jitter.steps_per_unit = std::round(jitter.steps_per_unit);
+  if (!(jitter.steps_per_unit > 0)) return std::nullopt;
+
+  std::mt19937 random(1);
+  const auto mixed = split_under([&] { return float(random() & 1U); });
+  const auto explained_by = [&](const std::vector<SplitRays>& seen, const volume::RayOffsets& texels) {
+    volume::RaySteps moved = *rule;
+    moved.offsets = scaled(texels, jitter);
+    return same_rays(zeros, seen) && misplaced_part(seen, rays, moved) <= most_misplaced;
+  };
+  if (!explained_by(mixed, shown)) return std::nullopt;
+  probe.show_own(texture);
+  if (!explained_by(split(), *numbers)) return std::nullopt;
+  return jitter;
+}
+
 }  // namespace
 
 std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
@@ -150,6 +220,17 @@ std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& ru
   return std::nullopt;
 }
 
+std::optional<Jitter> find_moving_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
+                                         const RaySplitting& split, const RaysThroughBox& rays,
+                                         const std::vector<volume::RaySteps>& rules) {
+  for (const SampledTexture& texture : run.pipeline().others) {
+    const auto jitter = moving_jitter_by(context, probe, texture, split, rays, rules);
+    probe.show_own(texture);
+    if (jitter) return jitter;
+  }
+  return std::nullopt;
+}
+
 bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter) {
   const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
   if (texture == nullptr || texture->target != GL_TEXTURE_2D) return false;
@@ -158,12 +239,18 @@ bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter) {
   return true;
 }
 
+bool show_own_noise(const Run& run, FieldProbe& probe, const Jitter& jitter) {
+  const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
+  if (texture == nullptr) return false;
+  probe.show_own(*texture);
+  return true;
+}
+
 std::optional<volume::RayOffsets> ray_offsets(const GlContext& context, const Run& run, const Jitter& jitter) {
   const SampledTexture* const texture = sampled_at(run, jitter.sampler_location);
-  auto offsets = texture != nullptr ? numbers_of(context, *texture) : std::nullopt;
-  if (!offsets) return std::nullopt;
-  for (float& offset : offsets->steps) offset = float(offset * jitter.steps_per_unit);
-  return offsets;
+  auto numbers = texture != nullptr ? numbers_of(context, *texture) : std::nullopt;
+  if (!numbers) return std::nullopt;
+  return scaled(*std::move(numbers), jitter);
 }
 
 }  // namespace understudy::spu

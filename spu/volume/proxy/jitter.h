@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/sampling.h"
 
@@ -22,6 +23,7 @@ namespace understudy::spu {
 struct Jitter {
   GLint sampler_location = -1;
   double steps_per_unit = 1;
+  bool moves_only = false;  ///< there are as many samples as without
 };
 
 /// Counted rays, in the same order every time, or why they cannot be counted.
@@ -38,8 +40,20 @@ std::optional<JitterFinding> find_jitter(const GlContext& context, const Run& ru
                                          const RayCounting& count, const std::vector<CountedRay>& own,
                                          const std::array<int, 3>& size);
 
+/// Rays through split fields, or none.
+using RaySplitting = std::function<std::vector<SplitRays>()>;
+
+/// The same of a texture that moves samples and does not change how many there are, which only split fields
+/// tell: rays that begin at its zero march by one of `rules`. Afterwards `probe` shows the texture itself.
+std::optional<Jitter> find_moving_jitter(const GlContext& context, const Run& run, FieldProbe& probe,
+                                         const RaySplitting& split, const RaysThroughBox& rays,
+                                         const std::vector<volume::RaySteps>& rules);
+
 /// Makes all rays of `probe` begin alike, at the jitter's zero. False when the program has no such texture.
 bool hold_still(const Run& run, FieldProbe& probe, const Jitter& jitter);
+
+/// They begin by the program's own numbers again. False when it has no such texture.
+bool show_own_noise(const Run& run, FieldProbe& probe, const Jitter& jitter);
 
 /// What the program's own texture says of every pixel.
 std::optional<volume::RayOffsets> ray_offsets(const GlContext& context, const Run& run, const Jitter& jitter);

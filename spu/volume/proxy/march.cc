@@ -10,6 +10,7 @@
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
+#include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/request.h"
 
@@ -36,6 +37,9 @@ std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size,
   return rules;
 }
 
+const Refusal samples_lie_elsewhere{
+    "samples do not lie on constant steps from the box's faces (jitter, cropping)"};
+
 /// One measurement, from the composition of samples to their places and colours. Each step fills in its part of
 /// the march, or says why there is none.
 class MarchMeasurement {
@@ -51,8 +55,9 @@ class MarchMeasurement {
   }
 
   std::optional<Refusal> measure();
-  /// Every way to read what was measured.
-  std::vector<March> marches(const std::vector<CoordinateSpace>& spaces) const;
+  /// Every way to read what was measured, in the spaces whose boxes are known.
+  MarchFinding marches(const std::vector<CoordinateSpace>& spaces,
+                       const std::vector<std::optional<ProxyBox>>& boxes) const;
 
  private:
   static constexpr int tried = 128;
@@ -64,6 +69,9 @@ class MarchMeasurement {
   std::optional<Refusal> find_steps();
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
+  std::optional<Refusal> find_places();
+  void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule,
+                   std::vector<March>& marches) const;
 
   const MarchContext& measured_;
   const ProxyBox& box_;
@@ -74,6 +82,7 @@ class MarchMeasurement {
   std::vector<Rgba> through_;  ///< their colours on a ray through the middle
   March march_;
   std::vector<volume::RaySteps> rules_;
+  std::vector<SplitRays> split_;
 };
 
 std::optional<Refusal> MarchMeasurement::find_composition() {
@@ -141,7 +150,7 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   if (fits.empty()) return "too few rays of several samples are in view to tell the step";
   if (fits.front().unexplained > most_unexplained) {
     auto finding = find_jitter(measured_.context, measured_.run, probe_, count, all, size);
-    if (!finding) return "samples do not lie on constant steps from the box's faces (jitter, cropping)";
+    if (!finding) return samples_lie_elsewhere;
     march_.jitter = finding->jitter;
     fits = std::move(finding->fits);
   }
@@ -162,7 +171,10 @@ std::optional<Refusal> MarchMeasurement::take_offsets() {
   if (!march_.jitter) return std::nullopt;
   const auto offsets = ray_offsets(measured_.context, measured_.run, *march_.jitter);
   if (!offsets) return "the texture of noise at the rays' beginnings cannot be read back";
-  for (volume::RaySteps& rule : rules_) rule.offsets = offsets;
+  for (volume::RaySteps& rule : rules_) {
+    rule.offsets = offsets;
+    rule.counted_without_offsets = march_.jitter->moves_only;
+  }
   return std::nullopt;
 }
 
@@ -175,31 +187,55 @@ std::optional<Refusal> MarchMeasurement::measure() {
   march_.table.low = measured_.range[0];
   march_.table.high = measured_.range[1];
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
+  if (auto refusal = take_offsets()) return refusal;
+  return find_places();
+}
+
+std::optional<Refusal> MarchMeasurement::find_places() {
+  // Where the eye is inside, rays of all directions begin at one place.
+  if (march_.extreme || !box_.cuts.empty()) return std::nullopt;
+  if (march_.jitter && !show_own_noise(measured_.run, probe_, *march_.jitter)) return std::nullopt;
+  const std::vector<SeenValue> seen = seen_values(values_, through_);
+  const auto split = [&] { return split_rays(measured_, probe_, march_, box_, seen); };
+  split_ = split();
+  const bool explained = std::ranges::any_of(rules_, [&](const volume::RaySteps& rule) {
+    return misplaced_part(split_, rays_, rule) <= most_misplaced;
+  });
+  if (explained || march_.jitter) return std::nullopt;
+  march_.jitter = find_moving_jitter(measured_.context, measured_.run, probe_, split, rays_, rules_);
   return take_offsets();
 }
 
-std::vector<March> MarchMeasurement::marches(const std::vector<CoordinateSpace>& spaces) const {
-  std::vector<March> marches;
+void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::RaySteps& rule,
+                                   std::vector<March>& marches) const {
   March march = march_;
-  const bool ends_at_depth = samples_depth(measured_.context, measured_.run.pipeline());
-  for (const CoordinateSpace& space : spaces) {
+  march.space = space;
+  march.steps = rule;
+  // The step that reaches the opaque geometry is usually taken before it is noticed.
+  march.steps.past_depth = samples_depth(measured_.context, measured_.run.pipeline()) ? 1 : 0;
+  // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
+  for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
+    if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
+    march.past_planes = past_planes;
+    marches.push_back(march);
+    // Fields of one value do not tell which extreme it is.
+    if (!march.extreme) continue;
+    marches.push_back(march);
+    marches.back().extreme = volume::Operator::min;
+  }
+}
+
+MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& spaces,
+                                       const std::vector<std::optional<ProxyBox>>& boxes) const {
+  std::vector<March> marches;
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    if (!boxes[i]) continue;
+    const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (const volume::RaySteps& rule : rules_) {
-      march.space = space;
-      march.steps = rule;
-      // The step that reaches the opaque geometry is usually taken before it is noticed.
-      march.steps.past_depth = ends_at_depth ? 1 : 0;
-      // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
-      for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
-        if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
-        march.past_planes = past_planes;
-        marches.push_back(march);
-        // Fields of one value do not tell which extreme it is.
-        if (!march.extreme) continue;
-        marches.push_back(march);
-        marches.back().extreme = volume::Operator::min;
-      }
+      if (misplaced_part(split_, rays, rule) <= most_misplaced) add_marches(spaces[i], rule, marches);
     }
   }
+  if (marches.empty()) return samples_lie_elsewhere;
   return marches;
 }
 
@@ -208,9 +244,11 @@ std::vector<March> MarchMeasurement::marches(const std::vector<CoordinateSpace>&
 MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
                            const ProxyBox& box) {
   if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
+  std::vector<std::optional<ProxyBox>> boxes;
+  for (const CoordinateSpace& space : spaces) boxes.push_back(proxy_box(measured, space));
   MarchMeasurement measurement(measured, box);
   if (auto refusal = measurement.measure()) return *std::move(refusal);
-  return measurement.marches(spaces);
+  return measurement.marches(spaces, boxes);
 }
 
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
@@ -323,6 +361,20 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   if (!way) return true;
   return expected(probe.pixel(column, row, march.translucent), march.translucent,
                   samples_of_length(march.steps, steps_of_way(march.steps, *way)));
+}
+
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  constexpr int tried = 32;
+  if (march.extreme || !box.cuts.empty()) return true;
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete()) return false;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  std::vector<float> values{march.translucent};
+  for (int i = 0; i < tried; ++i) values.push_back(value_at(measured.range, double(i) / (tried - 1)));
+  const auto middle = rays.middle();
+  const auto split =
+      split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));
+  return misplaced_part(split, rays, march.steps) <= most_misplaced;
 }
 
 }  // namespace understudy::spu

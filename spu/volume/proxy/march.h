@@ -76,6 +76,9 @@ struct RaysLookedAt {
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at);
 
+/// Whether samples still lie on rays where `march` says, as far as fields tell.
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box);
+
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);
 

@@ -97,6 +97,14 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   return inputs;
 }
 
+bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {
+  if (before.fixed.size() != now.fixed.size()) return false;
+  for (std::size_t i = 0; i < now.fixed.size(); ++i) {
+    if (before.fixed[i] != now.fixed[i] && std::ranges::find(now.tables, i) == now.tables.end()) return false;
+  }
+  return true;
+}
+
 std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now) {
   constexpr double largest = 64;
   if (before.fixed.size() != now.fixed.size()) return {};

@@ -166,6 +166,9 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   }
   known.tables = std::move(tables);
   if (march && !again) again = with_new_table(draw.measured(), *march, box);
+  // What counts samples does not see noise that was turned on.
+  if (again && !only_tables_differ(known.inputs, inputs) && !still_placed(draw.measured(), *again, box))
+    again.reset();
   march = again;
   if (!again) {
     const RefusalHistory& refusals = draw.known.refusals;
@@ -248,6 +251,9 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   image.request.clip_planes = image.parts.front();
   if (!image.ray_ends.empty() && march.steps.divided)
     throw Refusal{"planes cut a ray caster's box whose rays are divided evenly"};
+  const bool cut = !image.ray_ends.empty() || !image.parts.front().empty();
+  if (cut && march.steps.counted_without_offsets)
+    throw Refusal{"planes cut a ray caster's box whose samples are moved by noise"};
   // One number a pixel travels to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
   if (!image.ray_ends.empty() && pixels > std::size_t(compositor::limits::max_ray_offsets))

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/sample_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+namespace {
+
+constexpr int split_bands = 12;  ///< of two rows each
+
+/// What adds up sample by sample: optical depth, or one channel of a sum.
+struct Additive {
+  bool sum = false;
+  std::size_t channel = 3;
+
+  std::optional<double> of(const Rgba& ray) const {
+    constexpr float most_told = 0.99F;  // beyond, programs stop
+    if (!reached(ray) || !(ray[channel] >= 0 && ray[channel] <= most_told)) return std::nullopt;
+    return sum ? double(ray[channel]) : -std::log1p(-double(ray[channel]));
+  }
+};
+
+/// The value that adds least alike to the translucent one, and by which channel.
+struct Contrast {
+  float value = 0;
+  Additive amount;
+};
+
+std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
+                                    const std::vector<SeenValue>& values) {
+  constexpr double least_told = 0.25;  // of what the translucent one adds
+  std::optional<Contrast> best;
+  double most = 0;
+  for (std::size_t channel = march.sum ? 0 : 3; channel < (march.sum ? 3U : 4U); ++channel) {
+    const Additive amount{march.sum.has_value(), channel};
+    const auto own = amount.of(translucent);
+    if (!own) continue;
+    for (const SeenValue& seen : values) {
+      const auto other = amount.of(seen.ray);
+      if (!other || *other > 2 * *own) continue;
+      const double told = std::abs(*other - *own);
+      if (told < least_told * *own || told <= most) continue;
+      most = told;
+      best = Contrast{seen.value, amount};
+    }
+  }
+  return best;
+}
+
+/// Steps from the ray's beginning to the plane, less those to its first sample; none where it does not cross.
+std::optional<double> steps_to_plane(const FieldProbe::SplitField& field, const WayThroughBox& through,
+                                     const volume::RaySteps& steps, const SplitRay& ray) {
+  const double part = (field.plane - through.entry[field.axis]) / through.way[field.axis];
+  if (!(part > 0 && part < 1)) return std::nullopt;
+  const double first = steps.first + (steps.offsets ? steps.offsets->at(ray.x, ray.y) : 0);
+  return part * (steps.divided ? ray.samples : steps_of_way(steps, through.way)) - first;
+}
+
+bool lies_as_said(double front, double samples, double to_plane) {
+  constexpr double whole = 0.1;      // how far a count may be from a whole number
+  constexpr double rounding = 0.08;  // of a step
+  for (const double nudge : {0.0, -rounding, rounding}) {
+    const double expected = std::clamp(std::floor(to_plane + nudge) + 1, 0.0, samples);
+    if (std::abs(front - expected) <= whole) return true;
+  }
+  return false;
+}
+
+/// Fields whose planes most rays cross, in the box's inside.
+std::vector<SplitRays> fields_through(const ProxyBox& box, const volume::Vec3& way, float before,
+                                      float behind) {
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (std::abs(way[k]) > std::abs(way[axis])) axis = k;
+  }
+  std::vector<SplitRays> all;
+  for (const double part : {0.37, 0.61}) {
+    const double place = box.region.low[axis] + part * (box.region.high[axis] - box.region.low[axis]);
+    const double plane = std::round(place / FieldProbe::split_unit) * FieldProbe::split_unit;
+    all.push_back({{axis, plane, before, behind}, {}});
+  }
+  return all;
+}
+
+/// Counts samples before the planes of some fields.
+class SplitCounting {
+ public:
+  SplitCounting(FieldProbe& probe, const Additive& amount, bool premultiplied_already,
+                std::vector<SplitRays> fields)
+      : probe_(probe), amount_(amount), already_(premultiplied_already), all_(std::move(fields)) {}
+
+  /// The rays of two rows.
+  void add_rows(int first_row);
+  /// None where samples cannot be counted.
+  std::vector<SplitRays> counted();
+
+ private:
+  /// What is added up along a ray through each of the two values, and through each of the fields.
+  struct Amounts {
+    double before = 0;
+    double behind = 0;
+    std::vector<double> split;
+  };
+
+  std::optional<double> amount_of(const Rgba& fragment) const {
+    return reached(fragment) ? amount_.of(premultiplied(fragment, already_)) : std::nullopt;
+  }
+
+  FieldProbe& probe_;
+  Additive amount_;
+  bool already_;
+  std::vector<SplitRays> all_;
+  std::vector<Amounts> amounts_;  ///< ray by ray
+};
+
+void SplitCounting::add_rows(int first_row) {
+  const auto before = probe_.rows(first_row, 2, all_.front().field.before);
+  const auto behind = probe_.rows(first_row, 2, all_.front().field.behind);
+  std::vector<std::vector<Rgba>> split;
+  split.reserve(all_.size());
+  for (const SplitRays& rays : all_) split.push_back(probe_.rows(first_row, 2, rays.field));
+  for (std::size_t i = 0; i < behind.size(); ++i) {
+    const auto of_first = amount_of(before[i]), of_second = amount_of(behind[i]);
+    if (!of_first || !of_second) continue;
+    Amounts amounts{*of_first, *of_second, {}};
+    for (const auto& fragments : split) {
+      if (const auto told = amount_of(fragments[i])) amounts.split.push_back(*told);
+    }
+    if (amounts.split.size() < all_.size()) continue;
+    amounts_.push_back(std::move(amounts));
+    const int column = int(i) % probe_.width();
+    const int row = first_row + int(i) / probe_.width();
+    for (SplitRays& rays : all_)
+      rays.rays.push_back({{2 * (column + 0.5) / probe_.width() - 1, 2 * (row + 0.5) / probe_.height() - 1},
+                           probe_.left() + column,
+                           probe_.bottom() + row});
+  }
+}
+
+std::vector<SplitRays> SplitCounting::counted() {
+  std::vector<double> of_second;
+  of_second.reserve(amounts_.size());
+  for (const Amounts& amounts : amounts_) of_second.push_back(amounts.behind);
+  const std::vector<double> counts = counts_from_amounts(of_second);
+  if (counts.empty()) return {};
+  for (std::size_t f = 0; f < all_.size(); ++f) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const Amounts& amounts = amounts_[i];
+      SplitRay& ray = all_[f].rays[i];
+      ray.samples = counts[i];
+      ray.before = counts[i] * (amounts.split[f] - amounts.behind) / (amounts.before - amounts.behind);
+    }
+  }
+  return std::move(all_);
+}
+
+}  // namespace
+
+std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<Rgba>& rays) {
+  std::vector<SeenValue> seen;
+  for (std::size_t i = 0; i < values.size(); ++i) seen.push_back({values[i], rays[i]});
+  return seen;
+}
+
+std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
+                                  const ProxyBox& box, const std::vector<SeenValue>& values) {
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  const auto translucent = std::ranges::find(values, march.translucent, &SeenValue::value);
+  if (!way || translucent == values.end()) return {};
+  const auto contrast = contrast_to(translucent->ray, march, values);
+  if (!contrast) return {};
+  SplitCounting counting(probe, contrast->amount, measured.run.pipeline().blending.premultiplied,
+                         fields_through(box, *way, contrast->value, march.translucent));
+  for (int band = 0; band < split_bands; ++band)
+    counting.add_rows(
+        std::clamp((2 * band + 1) * probe.height() / (2 * split_bands), 0, std::max(0, probe.height() - 2)));
+  return counting.counted();
+}
+
+double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,
+                      const volume::RaySteps& steps) {
+  constexpr double fewest_samples = 4;
+  constexpr std::size_t fewest_rays = 64;
+  std::size_t told = 0, misplaced = 0;
+  for (const SplitRays& of_field : split) {
+    for (const SplitRay& ray : of_field.rays) {
+      const auto through = rays.through(ray.place[0], ray.place[1]);
+      if (!through || ray.samples < fewest_samples) continue;
+      const auto to_plane = steps_to_plane(of_field.field, *through, steps, ray);
+      if (!to_plane) continue;
+      const bool forwards = through->way[of_field.field.axis] > 0;
+      ++told;
+      misplaced +=
+          lies_as_said(forwards ? ray.before : ray.samples - ray.before, ray.samples, *to_plane) ? 0 : 1;
+    }
+  }
+  return told < fewest_rays ? 0 : double(misplaced) / double(told);
+}
+
+}  // namespace understudy::spu

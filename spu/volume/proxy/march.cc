@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "spu/volume/classification/table_lookup.h"
+#include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -192,8 +193,13 @@ std::optional<Refusal> MarchMeasurement::measure() {
 }
 
 std::optional<Refusal> MarchMeasurement::find_places() {
+  if (march_.extreme) {
+    const auto steps = extreme_steps(measured_, probe_, march_.table, box_);
+    if (steps) rules_.insert(rules_.begin(), *steps);
+    return std::nullopt;
+  }
   // Where the eye is inside, rays of all directions begin at one place.
-  if (march_.extreme || !box_.cuts.empty()) return std::nullopt;
+  if (!box_.cuts.empty()) return std::nullopt;
   if (march_.jitter && !show_own_noise(measured_.run, probe_, *march_.jitter)) return std::nullopt;
   const std::vector<SeenValue> seen = seen_values(values_, through_);
   const auto split = [&] { return split_rays(measured_, probe_, march_, box_, seen); };

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/extreme_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+namespace {
+
+constexpr int ramp_bands = 8;  ///< of two rows each
+constexpr std::size_t fewest_rays = 64;
+
+/// A stretch of the table in which one channel tells the value: from its first entry to its last it only rises,
+/// or only falls.
+class TellingStretch {
+ public:
+  /// The one over which a channel changes most; null where none changes by much.
+  static std::optional<TellingStretch> of(const volume::TransferFunction& table);
+
+  /// Fields go from one to the other: at the stretch's very ends a colour may stand for other values, too.
+  float low() const { return value_of(double(first_) + margin * double(last_ - first_)); }
+  float high() const { return value_of(double(last_) - margin * double(last_ - first_)); }
+
+  /// At which part of the way from low() to high() the value lies that has this colour, if there is one.
+  std::optional<double> place_of(const Rgba& colour) const {
+    constexpr float rounding = 1e-3F;
+    constexpr double widest = 0.02;  // of the stretch: there, one colour has many values
+    const auto begin = rising_.begin();
+    const float told = sign_ * colour[channel_];
+    const auto from = std::lower_bound(begin, rising_.end(), told - rounding);
+    const auto to = std::upper_bound(begin, rising_.end(), told + rounding);
+    const double extent = double(rising_.size()) - 1;
+    if (from == rising_.begin() || to == rising_.end() || double(to - from) > widest * extent)
+      return std::nullopt;
+    const double middle = (double(from - begin) + double(to - begin) - 1) / 2;
+    return (middle / extent - margin) / (1 - 2 * margin);
+  }
+
+ private:
+  TellingStretch(const volume::TransferFunction& table, std::size_t channel, float sign, std::size_t first,
+                 std::size_t last)
+      : low_(table.low),
+        high_(table.high),
+        entries_(table.entries.size()),
+        channel_(channel),
+        sign_(sign),
+        first_(first),
+        last_(last) {
+    for (std::size_t i = first; i <= last; ++i) rising_.push_back(sign * table.entries[i][channel]);
+  }
+  float value_of(double entry) const { return value_at({low_, high_}, entry / double(entries_ - 1)); }
+
+  static constexpr double margin = 0.05;
+
+  float low_, high_;
+  std::size_t entries_;
+  std::size_t channel_;
+  float sign_;
+  std::size_t first_, last_;
+  std::vector<float> rising_;
+};
+
+std::optional<TellingStretch> TellingStretch::of(const volume::TransferFunction& table) {
+  constexpr float flat = 1e-5F;
+  float most = 0.2F;
+  std::optional<TellingStretch> best;
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    for (const float sign : {1.0F, -1.0F}) {
+      const auto at = [&](std::size_t entry) { return sign * table.entries[entry][channel]; };
+      for (std::size_t first = 0, last = 0; last + 1 < table.entries.size(); ++last) {
+        if (at(last + 1) < at(last) - flat) first = last + 1;
+        // What is flat before it rises tells nothing.
+        if (at(last + 1) <= at(first) + flat) first = last + 1;
+        if (at(last + 1) - at(first) <= most || at(last + 1) <= at(last) + flat) continue;
+        most = at(last + 1) - at(first);
+        best = TellingStretch(table, channel, sign, first, last + 1);
+      }
+    }
+  }
+  return best;
+}
+
+/// Where the first and the last sample of a ray lie, as parts of its way.
+struct RayEnds {
+  volume::Vec3 way{};
+  double first = 0;
+  double last = 1;
+};
+
+/// Of the rays in some rows that go far enough along `axis`.
+void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroughBox& rays, std::size_t axis,
+              bool premultiplied_already, std::vector<RayEnds>& ends) {
+  for (int band = 0; band < ramp_bands; ++band) {
+    const int y =
+        std::clamp((2 * band + 1) * probe.height() / (2 * ramp_bands), 0, std::max(0, probe.height() - 2));
+    const auto rising = probe.rows(y, 2, FieldProbe::RampField{axis, stretch.low(), stretch.high()});
+    const auto falling = probe.rows(y, 2, FieldProbe::RampField{axis, stretch.high(), stretch.low()});
+    for (std::size_t i = 0; i < rising.size(); ++i) {
+      if (!reached(rising[i]) || !reached(falling[i])) continue;
+      const int column = int(i) % probe.width();
+      const int row = y + int(i) / probe.width();
+      const auto through =
+          rays.through(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+      if (!through) continue;
+      const volume::Vec3& way = through->way;
+      const double longest = std::max({std::abs(way[0]), std::abs(way[1]), std::abs(way[2])});
+      if (std::abs(way[axis]) < longest) continue;
+      const auto one = stretch.place_of(premultiplied(rising[i], premultiplied_already));
+      const auto other = stretch.place_of(premultiplied(falling[i], premultiplied_already));
+      if (!one || !other) continue;
+      const double a = (*one - through->entry[axis]) / way[axis];
+      const double b = (1 - *other - through->entry[axis]) / way[axis];
+      ends.push_back({way, std::min(a, b), std::max(a, b)});
+    }
+  }
+}
+
+double length_of(const volume::Vec3& way, const volume::Vec3& unit) {
+  return volume::length({way[0] * unit[0], way[1] * unit[1], way[2] * unit[2]});
+}
+
+/// How well the ways from first to last sample are whole numbers of steps, `density` of them in one `unit`: 1
+/// is exactly, 0 not at all.
+double wholeness(const std::vector<RayEnds>& ends, const volume::Vec3& unit, double density) {
+  double sum = 0;
+  for (const RayEnds& ray : ends)
+    sum += std::cos(2 * M_PI * density * (ray.last - ray.first) * length_of(ray.way, unit));
+  return sum / double(ends.size());
+}
+
+/// Steps in a `unit`, of those that leave room behind the last sample as it was seen.
+std::optional<double> density_of(const std::vector<RayEnds>& ends, const volume::Vec3& unit) {
+  constexpr double whole_enough = 0.7;
+  std::vector<double> rooms;
+  double longest = 0;
+  for (const RayEnds& ray : ends) {
+    const double length = length_of(ray.way, unit);
+    rooms.push_back((1 - ray.last) * length);
+    longest = std::max(longest, length);
+  }
+  // Rays end anywhere within their last step: the room behind it is a step at most.
+  const auto widest = rooms.begin() + std::ptrdiff_t(0.95 * double(rooms.size()));
+  std::nth_element(rooms.begin(), widest, rooms.end());
+  if (!(*widest > 0)) return std::nullopt;
+  const double finest = 0.02 / longest;
+  double best = 0;
+  double most = whole_enough;
+  for (double density = 0.6 / *widest; density < 1.4 / *widest; density += finest) {
+    const double whole = wholeness(ends, unit, density);
+    if (whole <= most) continue;
+    most = whole;
+    best = density;
+  }
+  return best > 0 ? std::optional(best) : std::nullopt;
+}
+
+/// Whether the samples of nearly all rays lie where `steps` says.
+bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps) {
+  constexpr double colours_of_8_bits = 0.3;  // of a step
+  constexpr double rounding = 0.05;
+  constexpr double most_elsewhere = 0.05;
+  const auto elsewhere = std::ranges::count_if(ends, [&](const RayEnds& ray) {
+    const double length = steps_of_way(steps, ray.way);
+    if (!(std::abs(ray.first * length - steps.first) <= colours_of_8_bits)) return true;
+    return std::ranges::none_of(std::array{0.0, -rounding, rounding}, [&](double nudge) {
+      const double last = steps.first + samples_of_length(steps, length + nudge) - 1;
+      return std::abs(ray.last * length - last) <= colours_of_8_bits;
+    });
+  });
+  return double(elsewhere) <= most_elsewhere * double(ends.size());
+}
+
+/// Steps of which about so many as the ways tell make up a `unit`: exactly, by the number that each ray then
+/// has.
+std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const std::array<int, 3>& texels,
+                                         const volume::Vec3& unit) {
+  const auto density = density_of(ends, unit);
+  if (!density) return std::nullopt;
+  std::vector<CountedRay> counted;
+  for (const RayEnds& ray : ends) {
+    const double steps = *density * (ray.last - ray.first) * length_of(ray.way, unit);
+    counted.push_back({ray.way, std::round(steps) + 1});
+  }
+  for (const StepFit& fit : fit_steps(counted, texels)) {
+    const volume::RaySteps steps = rules_of(fit).front();
+    if (fit.unexplained <= most_unexplained && lie_as_said(ends, steps)) return steps;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
+                                              const volume::TransferFunction& table, const ProxyBox& box) {
+  constexpr std::size_t most_rays = 1024;
+  const auto stretch = TellingStretch::of(table);
+  if (!stretch || !box.cuts.empty()) return std::nullopt;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  std::vector<RayEnds> all;
+  for (const std::size_t axis : {0U, 1U, 2U})
+    add_ends(probe, *stretch, rays, axis, measured.run.pipeline().blending.premultiplied, all);
+  if (all.size() < fewest_rays) return std::nullopt;
+  std::vector<RayEnds> ends;
+  const std::size_t every = (all.size() + most_rays - 1) / most_rays;
+  for (std::size_t i = 0; i < all.size(); i += every) ends.push_back(all[i]);
+  const auto& size = measured.texture.size;
+  const volume::Vec3 texels{double(size[0]), double(size[1]), double(size[2])};
+  if (const auto steps = steps_in(ends, size, texels)) return steps;
+  return steps_in(ends, size, {1, 1, 1});
+}
+
+}  // namespace understudy::spu

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -154,6 +155,35 @@ TEST(Fog, OfAnotherColourIsProbedAgain) {
   EXPECT_GE(psnr(under, app->read_pixels()), 40);
   EXPECT_EQ(app->substituted(), 2U) << app->last_reason();
   EXPECT_EQ(probes(), 2U);
+}
+
+TEST(Fog, OverColoursInTheTexelsIsMeasured) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  const std::array<GLfloat, 4> haze{0.9F, 0.3F, 0.1F, 1};
+  app->gl().Fogi(GL_FOG_MODE, GL_EXP2);
+  app->gl().Fogf(GL_FOG_DENSITY, 0.25F);
+  app->gl().Fogfv(GL_FOG_COLOR, haze.data());
+  for (const double angle : {-25.0, 10.0, 40.0}) {
+    app->gl().Enable(GL_FOG);
+    app->use_chain(true);
+    scene.draw(*app, angle);
+    app->end_frame();
+    const auto under = app->read_pixels();
+    app->use_chain(false);
+    scene.draw(*app, angle);
+    const auto bare = app->read_pixels();
+    app->gl().Disable(GL_FOG);
+    scene.draw(*app, angle);
+    EXPECT_LT(psnr(bare, app->read_pixels()), 35) << "the fog shows nowhere: the test tests nothing";
+    std::printf("fog over colours, %g degrees: %.1f dB\n", angle, psnr(under, bare));
+    EXPECT_GE(psnr(under, bare), 40) << angle;
+  }
+  EXPECT_EQ(app->substituted(), 3U) << app->last_reason();
+  EXPECT_EQ(probes(), 1U);
+  EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR));
 }
 
 TEST(Fog, ThatHidesTheVolumeIsLeft) {

@@ -17,8 +17,6 @@ struct Refusal {
 
 std::vector<Refusal> refusals() {
   return {
-      {"fog over colours in the texels", "the colour depends on more than the sample (position, lighting)",
-       [](GlApplication& a) { a.gl().Enable(GL_FOG); }},
       {"fog by coordinates", "fog is enabled, by coordinates of the application's own",
        [](GlApplication& a) {
          a.gl().Fogi(GL_FOG_COORD_SRC, GL_FOG_COORD);

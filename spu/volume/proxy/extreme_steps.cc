@@ -138,20 +138,21 @@ double wholeness(const std::vector<RayEnds>& ends, const volume::Vec3& unit, dou
   return sum / double(ends.size());
 }
 
-/// Steps in a `unit`, of those that leave room behind the last sample as it was seen.
+/// Steps in a `unit`, of those that leave so much way behind the last sample as it was seen.
 std::optional<double> density_of(const std::vector<RayEnds>& ends, const volume::Vec3& unit) {
   constexpr double whole_enough = 0.7;
-  std::vector<double> rooms;
+  constexpr double most_steps = 2000;  // more are not told apart by colours, and take long to try
+  std::vector<double> behind;
   double longest = 0;
   for (const RayEnds& ray : ends) {
     const double length = length_of(ray.way, unit);
-    rooms.push_back((1 - ray.last) * length);
+    behind.push_back((1 - ray.last) * length);
     longest = std::max(longest, length);
   }
-  // Rays end anywhere within their last step: the room behind it is a step at most.
-  const auto widest = rooms.begin() + std::ptrdiff_t(0.95 * double(rooms.size()));
-  std::nth_element(rooms.begin(), widest, rooms.end());
-  if (!(*widest > 0)) return std::nullopt;
+  // Rays end anywhere within their last step: the way behind it is a step at most.
+  const auto widest = behind.begin() + std::ptrdiff_t(0.95 * double(behind.size()));
+  std::nth_element(behind.begin(), widest, behind.end());
+  if (!(*widest * most_steps > longest)) return std::nullopt;
   const double finest = 0.02 / longest;
   double best = 0;
   double most = whole_enough;
@@ -202,7 +203,7 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
 
 std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
                                               const volume::TransferFunction& table, const ProxyBox& box) {
-  constexpr std::size_t most_rays = 1024;
+  constexpr std::size_t most_rays = 512;
   const auto stretch = TellingStretch::of(table);
   if (!stretch || !box.cuts.empty()) return std::nullopt;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);

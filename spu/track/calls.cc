@@ -92,6 +92,10 @@ CallKind kind_of(CallId call) {
   return kinds[std::size_t(call)];
 }
 
+bool draws_polygons(GLenum mode) {
+  return mode >= GL_TRIANGLES && mode <= GL_POLYGON;
+}
+
 int texture_dimensions(CallId call) {
   const std::string_view name = call_name(call);
   for (int d = 1; d <= 3; ++d) {

@@ -17,6 +17,9 @@ enum class CallKind {
 
 CallKind kind_of(CallId call);
 
+/// Whether glBegin and its relatives draw polygons with `mode`; points, lines and patches are none.
+bool draws_polygons(GLenum mode);
+
 /// 1, 2 or 3 for commands of kind bound_texture.
 int texture_dimensions(CallId call);
 

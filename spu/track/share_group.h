@@ -26,6 +26,7 @@ enum class ChosenBuffer : std::uint8_t { as_before, front, other };
 struct ListRecord {
   bool draws = false;
   bool only_geometry = true;  ///< nothing but vertices, attributes and draws
+  bool only_polygons = true;  ///< no draw is of points or lines, or of what nobody knows
   bool changes_textures = false;
   // Followed where a GL server makes the calls (spu/remote/front_buffer.h):
   bool draws_front = false;  ///< into a front buffer that it has chosen itself

@@ -24,6 +24,7 @@ struct NoteListContent {
     switch (kind_of(call)) {
       case CallKind::draw:
         list.draws = true;
+        list.only_polygons &= call == CallId::End;
         break;
       case CallKind::bound_texture:
       case CallKind::unknown_texture:
@@ -38,6 +39,19 @@ struct NoteListContent {
         break;
     }
     return track.below();
+  }
+};
+
+/// The same for draws whose first argument says what of.
+template <auto Slot>
+struct NotesMode;
+template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLenum, A...)>
+struct NotesMode<Slot> {
+  static void APIENTRY call(GLenum mode, A... rest) {
+    Track& track = here();
+    track.open_list().draws = true;
+    track.open_list().only_polygons &= draws_polygons(mode);
+    (track.below().*Slot)(mode, rest...);
   }
 };
 
@@ -189,6 +203,7 @@ void APIENTRY call_list_in_list(GLuint list) {
   ListRecord& open = track.open_list();
   open.draws |= !record || record->draws;
   open.only_geometry &= record && record->only_geometry;
+  open.only_polygons &= record && record->only_polygons;
   open.changes_textures |= record && record->changes_textures;
   track.below().CallList(list);
 }
@@ -199,6 +214,7 @@ void APIENTRY call_lists_in_list(GLsizei count, GLenum type, const void* lists) 
   ListRecord& open = track.open_list();
   open.draws = true;
   open.only_geometry = false;
+  open.only_polygons = false;
   open.changes_textures |= track.chain().group().lists_change_textures();
   track.below().CallLists(count, type, lists);
 }
@@ -209,6 +225,12 @@ void fill_compiling(DispatchTable& table) {
   for (std::size_t i = 0; i < call_count; ++i) {
     if (kind_of(CallId(i)) == CallKind::not_compiled) set_slot(table, CallId(i), slot(next, CallId(i)));
   }
+  table.Begin = NotesMode<&DispatchTable::Begin>::call;
+  table.DrawArrays = NotesMode<&DispatchTable::DrawArrays>::call;
+  table.DrawElements = NotesMode<&DispatchTable::DrawElements>::call;
+  table.DrawRangeElements = NotesMode<&DispatchTable::DrawRangeElements>::call;
+  table.MultiDrawArrays = NotesMode<&DispatchTable::MultiDrawArrays>::call;
+  table.MultiDrawElements = NotesMode<&DispatchTable::MultiDrawElements>::call;
   table.CallList = call_list_in_list;
   table.CallLists = call_lists_in_list;
   table.EndList = close_list;

@@ -6,72 +6,10 @@
 #include <cstring>
 
 #include "spu/volume/context/context.h"
+#include "spu/volume/geometry/transform_feedback.h"
 
 namespace understudy::spu {
 namespace {
-
-constexpr GLsizeiptr first_buffer = GLsizeiptr(1) << 20;  // bytes
-constexpr GLsizeiptr largest_buffer = GLsizeiptr(1) << 26;
-
-/// Transform feedback's part of the context, put back afterwards.
-class CaptureState {
- public:
-  CaptureState(const DispatchTable& gl, GLuint observer) : gl_(gl) {
-    gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
-    gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
-    gl_.GetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &indexed_);
-    gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &start_);
-    gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
-    discard_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
-    gl_.GenBuffers(1, &buffer_);
-    gl_.GenQueries(2, queries_.data());
-    gl_.UseProgram(observer);
-    gl_.Enable(GL_RASTERIZER_DISCARD);
-  }
-  ~CaptureState() {
-    if (!discard_) gl_.Disable(GL_RASTERIZER_DISCARD);
-    gl_.UseProgram(GLuint(program_));
-    if (size_ > 0) {
-      gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_),
-                          GLsizeiptr(size_));
-    } else {
-      gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_));
-    }
-    gl_.BindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, GLuint(generic_));
-    gl_.DeleteBuffers(1, &buffer_);
-    gl_.DeleteQueries(2, queries_.data());
-  }
-  CaptureState(const CaptureState&) = delete;
-  CaptureState& operator=(const CaptureState&) = delete;
-
-  /// Triangles that the run generates and that fitted into a buffer of `bytes`.
-  std::array<GLuint, 2> draw(const Run& run, GLsizeiptr bytes) {
-    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
-    gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
-    gl_.BeginQuery(GL_PRIMITIVES_GENERATED, queries_[0]);
-    gl_.BeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, queries_[1]);
-    gl_.BeginTransformFeedback(GL_TRIANGLES);
-    run.replay(gl_);
-    gl_.EndTransformFeedback();
-    gl_.EndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
-    gl_.EndQuery(GL_PRIMITIVES_GENERATED);
-    std::array<GLuint, 2> counts{};
-    gl_.GetQueryObjectuiv(queries_[0], GL_QUERY_RESULT, &counts[0]);
-    gl_.GetQueryObjectuiv(queries_[1], GL_QUERY_RESULT, &counts[1]);
-    return counts;
-  }
-
- private:
-  const DispatchTable& gl_;
-  GLint program_ = 0;
-  GLint generic_ = 0;
-  GLint indexed_ = 0;
-  GLint64 start_ = 0;
-  GLint64 size_ = 0;
-  GLboolean discard_ = GL_FALSE;
-  GLuint buffer_ = 0;
-  std::array<GLuint, 2> queries_{};
-};
 
 float component_of(const StageInput& input, const float* captured) {
   if (!input.integer) return *captured;
@@ -143,21 +81,10 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
 /// too much.
 std::vector<float> captured_data(const GlContext& context, const Run& run, const ProgramStages& stages,
                                  std::size_t stride) {
-  const DispatchTable& gl = *context.gl;
-  CaptureState state(gl, stages.observer);
+  TransformFeedback feedback(*context.gl, stages.observer);
   copy_uniforms(context, run.pipeline().program, stages.observer);
-  gl.UseProgram(stages.observer);
-  GLsizeiptr bytes = first_buffer;
-  std::array<GLuint, 2> triangles = state.draw(run, bytes);
-  if (triangles[1] < triangles[0]) {
-    bytes = GLsizeiptr(triangles[0]) * 3 * GLsizeiptr(stride * sizeof(float));
-    if (bytes > largest_buffer) return {};
-    triangles = state.draw(run, bytes);
-  }
-  if (triangles[1] == 0 || triangles[1] < triangles[0]) return {};
-  std::vector<float> data(std::size_t(triangles[1]) * 3 * stride);
-  gl.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
-  return data;
+  context.gl->UseProgram(stages.observer);
+  return feedback.triangles(run, stride);
 }
 
 /// Positions; texture coordinates are not chosen yet.

@@ -85,7 +85,7 @@ ObservedPolygons parse(std::span<const float> feedback, const Window& window, bo
 
 }  // namespace
 
-ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
+ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run, GivenVertices& given) {
   const DispatchTable& gl = *context.gl;
   Window window;
   gl.GetIntegerv(GL_VIEWPORT, window.viewport.data());
@@ -93,13 +93,18 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run) {
   if (window.viewport[2] <= 0 || window.viewport[3] <= 0 || window.depth_range[0] == window.depth_range[1])
     return {};
 
+  const std::vector<float> vertices = given.read(run);
   std::vector<float> buffer(first_buffer);
   GLint values = -1;
   while (true) {
     const FeedbackState application(gl);
     gl.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
     gl.RenderMode(GL_FEEDBACK);
-    run.replay(gl);
+    if (vertices.empty()) {
+      run.replay(gl);
+    } else {
+      given.draw(run, vertices);
+    }
     values = gl.RenderMode(GL_RENDER);
     if (values >= 0 || buffer.size() >= largest_buffer) break;
     buffer.resize(buffer.size() * 4);

@@ -75,6 +75,7 @@ void APIENTRY begin(GLenum mode) {
     return observer.next().Begin(mode);
   }
   append_call(observer.run().calls(), &DispatchTable::Begin, mode);
+  observer.run().only_polygons &= draws_polygons(mode);
   observer.run().inside_begin = true;
   ++observer.run().draws;
 }
@@ -102,6 +103,7 @@ void APIENTRY call_list(GLuint list) {
     return observer.next().CallList(list);
   }
   append_call(observer.run().calls(), &DispatchTable::CallList, list);
+  observer.run().only_polygons &= record->only_polygons;
   ++observer.run().draws;
 }
 
@@ -149,6 +151,7 @@ bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> fi
   } else {
     run.draw_arrays(mode, first, count);
   }
+  run.only_polygons &= draws_polygons(mode);
   ++run.draws;
   return true;
 }
@@ -208,6 +211,7 @@ bool defer_elements(DrawObserver& observer, GLenum mode, std::span<const Element
   } else {
     return false;
   }
+  run.only_polygons &= draws_polygons(mode);
   ++run.draws;
   return true;
 }

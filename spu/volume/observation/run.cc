@@ -104,6 +104,16 @@ std::vector<GLuint> Run::slices() const {
   return textures;
 }
 
+std::size_t Run::slices_drawn_alike() const {
+  const std::size_t drawn = slices().size();
+  if (drawn == 0 || draws % drawn != 0) return 0;
+  const std::size_t of_slice = draws / drawn;
+  for (std::size_t i = 0; i < drawn; ++i) {
+    if (slices_[i].draws_before != i * of_slice) return 0;
+  }
+  return drawn;
+}
+
 GLuint Run::volume_texture() const {
   if (!pipeline_.stack) return pipeline_.volume.texture;
   const std::vector<GLuint> textures = slices();

@@ -33,6 +33,8 @@ class Run {
   void bind_slice(GLuint texture);
   /// The stack's textures in the order of drawing; without those that nothing was drawn with in the end.
   std::vector<GLuint> slices() const;
+  /// How many slices a stack has; 0 where their numbers of draws differ.
+  std::size_t slices_drawn_alike() const;
   /// The texture that the volume is known by: of a stack one of its ends, whichever is drawn first.
   GLuint volume_texture() const;
 
@@ -46,6 +48,8 @@ class Run {
   bool expanded_arrays = false;
   /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
   bool reads_arrays = false;
+  /// No draw is of points or lines, or of what nobody knows.
+  bool only_polygons = true;
   bool inside_begin = false;
   std::size_t draws = 0;
   /// Its image, or its calls, have reached the framebuffer: whatever happens then, it is not drawn again.

@@ -215,7 +215,7 @@ void Recogniser::observe_fixed_function(const Run& run, RecognisedRun& seen) {
   if (gl.IsEnabled(GL_LIGHTING) && colour_control == GL_SEPARATE_SPECULAR_COLOR) {
     throw Refusal{"specular colour is added after texturing"};
   }
-  seen.polygons = observe_by_feedback(context_, run);
+  seen.polygons = observe_by_feedback(context_, run, given_);
   if (seen.polygons.count() == 0) throw NothingVisible{};
   if (pipeline.stack) seen.stack = place_slices(run, seen.polygons);
   if (pipeline.fog) {

@@ -6,6 +6,9 @@
 
 #include <string>
 
+#include "spu/track/share_group.h"
+#include "spu/volume/context/context.h"
+#include "spu/volume/geometry/given_vertices.h"
 #include "spu/volume/geometry/recognised_run.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/program_check/program_reader.h"
@@ -19,7 +22,7 @@ struct GlContext;
 class Recogniser {
  public:
   Recogniser(const GlContext& context, ShareGroup& group, ProgramReader& programs)
-      : context_(context), group_(group), programs_(programs) {}
+      : context_(context), group_(group), programs_(programs), given_(context) {}
 
   /// What `run` is. `known_coordinate` names the input that addressed the volume of this ray caster before;
   /// empty: none is known. Throws Refusal where the run is no volume that nodes can render, NothingVisible
@@ -39,6 +42,7 @@ class Recogniser {
   const GlContext& context_;
   ShareGroup& group_;
   ProgramReader& programs_;
+  GivenVertices given_;
 };
 
 }  // namespace understudy::spu

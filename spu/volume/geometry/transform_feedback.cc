@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/geometry/transform_feedback.h"
+
+namespace understudy::spu {
+namespace {
+
+constexpr GLsizeiptr usual_capture = GLsizeiptr(1) << 20;  // bytes
+constexpr GLsizeiptr largest_capture = GLsizeiptr(1) << 26;
+
+}  // namespace
+
+TransformFeedback::TransformFeedback(const DispatchTable& gl, GLuint program) : gl_(gl) {
+  gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
+  gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
+  gl_.GetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &indexed_);
+  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &start_);
+  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
+  discard_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
+  gl_.GenBuffers(1, &buffer_);
+  gl_.GenQueries(2, queries_.data());
+  gl_.UseProgram(program);
+  gl_.Enable(GL_RASTERIZER_DISCARD);
+}
+
+TransformFeedback::~TransformFeedback() {
+  if (!discard_) gl_.Disable(GL_RASTERIZER_DISCARD);
+  gl_.UseProgram(GLuint(program_));
+  if (size_ > 0) {
+    gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_), GLsizeiptr(size_));
+  } else {
+    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_));
+  }
+  gl_.BindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, GLuint(generic_));
+  gl_.DeleteBuffers(1, &buffer_);
+  gl_.DeleteQueries(2, queries_.data());
+}
+
+std::array<GLuint, 2> TransformFeedback::draw(const Run& run, GLsizeiptr bytes) {
+  gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
+  gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
+  gl_.BeginQuery(GL_PRIMITIVES_GENERATED, queries_[0]);
+  gl_.BeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, queries_[1]);
+  gl_.BeginTransformFeedback(GL_TRIANGLES);
+  run.replay(gl_);
+  gl_.EndTransformFeedback();
+  gl_.EndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+  gl_.EndQuery(GL_PRIMITIVES_GENERATED);
+  std::array<GLuint, 2> counts{};
+  gl_.GetQueryObjectuiv(queries_[0], GL_QUERY_RESULT, &counts[0]);
+  gl_.GetQueryObjectuiv(queries_[1], GL_QUERY_RESULT, &counts[1]);
+  return counts;
+}
+
+std::vector<float> TransformFeedback::triangles(const Run& run, std::size_t stride) {
+  std::array<GLuint, 2> triangles = draw(run, usual_capture);
+  if (triangles[1] < triangles[0]) {
+    const GLsizeiptr bytes = GLsizeiptr(triangles[0]) * 3 * GLsizeiptr(stride * sizeof(float));
+    if (bytes > largest_capture) return {};
+    triangles = draw(run, bytes);
+  }
+  if (triangles[1] == 0 || triangles[1] < triangles[0]) return {};
+  std::vector<float> data(std::size_t(triangles[1]) * 3 * stride);
+  gl_.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
+  return data;
+}
+
+}  // namespace understudy::spu

@@ -6,6 +6,7 @@
 #include "compositor/service.h"
 #include "compositor/service/integral_parts.h"
 #include "compositor/service/rank_renderer.h"
+#include "compositor/service/worker_threads.h"
 #include "volume/frame_counts.h"
 #include "volume/image.h"
 #include "volume/request.h"
@@ -45,6 +46,7 @@ class EmbeddedService : public RenderService {
  private:
   static constexpr std::uint64_t application = 0;
 
+  WorkerThreads threads_;
   RankRenderer renderer_{0, 1};
   volume::Image image_;
 };

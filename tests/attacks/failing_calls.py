@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One allocation that Understudy makes fails: the viewer shows its image.
+"""One allocation, or one call of the operating system, that Understudy makes fails: the viewer shows its image.
 
     failing_calls.py UNDERSTUDY UNDERSTUDY-VIEWER ENTRY-LIBRARY FAILING-CALLS PLACES
 
-The bundled viewer draws three frames in four modes, alone. Of its allocations PLACES fail, one in each run, spread evenly
-over all that there are. Status and image must be those of the viewer without Understudy,
-to 40 dB. FAILING-CALLS is the library that makes them fail (shortage/failing_calls.cc).
+The bundled viewer draws three frames in four modes, alone, and in one of them with a render node. Of its allocations
+PLACES fail, one in each run, spread evenly over all that there are; so do its reads, writes, mappings, sockets and
+threads, which are fewer. Status and image must be those of the viewer without Understudy, to 40 dB. FAILING-CALLS is the library that makes them fail (shortage/failing_calls.cc).
 """
 
 import concurrent.futures
@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 SIDE = 41
-MODES = ("table", "rgba", "core", "bricks")
+WAYS = (("table", 0), ("rgba", 0), ("core", 0), ("bricks", 0), ("rgba", 1))  # of the viewer, and how many nodes
 LEAST_DECIBELS = 40
 PATIENCE_SECONDS = 600  # a machine may be busy; a viewer takes half a second
 AT_ONCE = 2
@@ -27,13 +27,13 @@ AT_ONCE = 2
 class Viewer:
     def __init__(self, understudy, viewer, entry, failing, folder):
         self.understudy, self.viewer, self.folder = understudy, viewer, folder
-        self.libraries = f"{failing} {entry}"
+        self.entry, self.failing = entry, failing
         self.volume = folder / f"volume.{SIDE}x{SIDE}x{SIDE}"
         blurred = random.Random(1).randbytes(SIDE)
         self.volume.write_bytes(bytes(blurred[x] // 4 + 3 * min(x, y, z) for z in range(SIDE) for y in range(SIDE) for x in range(SIDE)))
 
-    def draw(self, mode, image, **environment):
-        words = [self.viewer, self.volume, "--size", SIDE, SIDE, SIDE, "--type", "u8", "--offscreen", "--frames", 3, "--orbit", 5,
+    def draw(self, mode, image, before=(), **environment):
+        words = [*before, self.viewer, self.volume, "--size", SIDE, SIDE, SIDE, "--type", "u8", "--offscreen", "--frames", 3, "--orbit", 5,
                  "--window-size", 200, 200, "--mode", mode, "--screenshot", image]
         everything = {name: value for name, value in os.environ.items() if not name.startswith("UNDERSTUDY")}
         everything |= {"UNDERSTUDY_SPEED_GUARD": "off", "XDG_RUNTIME_DIR": str(self.folder)} | environment
@@ -47,12 +47,19 @@ class Viewer:
             raise SystemExit(f"the viewer itself does not draw:\n{result.stderr}")
         return image
 
-    def count(self, mode, what):
+    def draw_under_shortage(self, mode, nodes, image, **environment):
+        if nodes == 0:
+            return self.draw(mode, image, LD_PRELOAD=f"{self.failing} {self.entry}", **environment)
+        # The auditor's libraries live in a namespace of their own, where the failing calls would not find theirs.
+        launcher = [self.understudy, "run", "--injection", "preload", "-n", nodes, "--"]
+        return self.draw(mode, image, launcher, LD_PRELOAD=self.failing, **environment)
+
+    def count(self, mode, nodes, what):
         """How many such calls there are when none fails."""
         file = self.folder / "count"
         file.unlink(missing_ok=True)
-        self.draw(mode, self.folder / "unused.png", LD_PRELOAD=self.libraries, FAIL_WHAT=what, FAIL_COUNT=str(file))
-        return int(file.read_text())
+        self.draw_under_shortage(mode, nodes, self.folder / "unused.png", FAIL_WHAT=what, FAIL_COUNT=str(file))
+        return int.from_bytes(file.read_bytes(), "little")
 
     def difference(self, image, other):
         if not other.exists():
@@ -61,11 +68,11 @@ class Viewer:
         found = re.search(r"PSNR ([\d.]+|inf)", said)
         return float(found[1]) if found else None
 
-    def trouble(self, mode, bare, what, number):
+    def trouble(self, mode, nodes, bare, what, number):
         """What is wrong when that call fails; and whether one did."""
-        image = self.folder / f"{mode}.{what}.{number}.png"
+        image = self.folder / f"{mode}.{nodes}.{what}.{number}.png"
         try:
-            result = self.draw(mode, image, LD_PRELOAD=self.libraries, FAIL_WHAT=what, FAIL_NTH=str(number))
+            result = self.draw_under_shortage(mode, nodes, image, FAIL_WHAT=what, FAIL_NTH=str(number))
         except subprocess.TimeoutExpired:
             return f"no end after {PATIENCE_SECONDS} s", True
         decibels = self.difference(bare, image)
@@ -82,18 +89,19 @@ def main():
     wrong, runs, failed = [], 0, 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(AT_ONCE) as workers:
         drawn = Viewer(understudy, viewer, entry, failing, Path(folder))
-        for mode in MODES:
+        for mode, nodes in WAYS:
             bare = drawn.bare(mode)
-            for what in ("memory",):
-                total = drawn.count(mode, what)
+            for what in ("memory", "system"):
+                total = drawn.count(mode, nodes, what)
                 step = max(1, total // int(places))
                 numbers = range(step // 2, total, step)
-                answers = list(workers.map(lambda number: drawn.trouble(mode, bare, what, number), numbers))
-                bad = [f"{mode}, {what} {number}: {said}" for number, (said, _) in zip(numbers, answers) if said]
+                answers = list(workers.map(lambda number: drawn.trouble(mode, nodes, bare, what, number), numbers))
+                way = f"{mode} with {nodes} nodes"
+                bad = [f"{way}, {what} {number}: {said}" for number, (said, _) in zip(numbers, answers) if said]
                 wrong += bad
                 runs += len(answers)
                 failed += sum(hit for _, hit in answers)
-                print(f"{mode}: {total} calls for {what}, {len(answers)} runs, {len(bad)} went wrong", flush=True)
+                print(f"{way}: {total} calls for {what}, {len(answers)} runs, {len(bad)} went wrong", flush=True)
     for line in wrong[:20]:
         print(line)
     # Threads share the work anew in each run, so the last numbers are not always reached.

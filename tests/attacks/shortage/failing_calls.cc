@@ -4,11 +4,14 @@
 //   FAIL_WHAT=memory   malloc, calloc, realloc, posix_memalign, aligned_alloc and operator new
 //   FAIL_WHAT=system   calls of the operating system: files, mappings, sockets, threads
 //   FAIL_NTH=N         the Nth such call of the process fails, from 0
-//   FAIL_COUNT=FILE    how many there were is written there when the process ends; nothing need fail
+//   FAIL_COUNT=FILE    how many there were stands there afterwards, a number of 8 bytes, however the process
+//   ends
 //
 // A call is Understudy's when the core or the entry library makes it, or a library of the C or C++ language, of
 // tasks, of text or of compression on behalf of one of them. The driver's calls, and the program's own, are
-// left alone.
+// left alone. So are the threads that oneTBB starts: its exception leaves a lock of its own locked when one
+// cannot be started, in tbb::detail::r1::spawn, and no caller can mend that
+// (compositor/service/worker_threads.h tries whether they can be started before).
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -48,7 +51,12 @@ thread_local bool inside = false;
 class Inside {
  public:
   Inside() { inside = true; }
-  ~Inside() { inside = false; }
+  ~Inside() { inside = before_; }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+
+ private:
+  const bool before_ = inside;
 };
 
 bool is_named(const char* path, const char* name) {
@@ -80,6 +88,12 @@ Owner owner_of(const void* address) {
   return here.owner;
 }
 
+bool is_tbb(const void* address) {
+  dl_find_object found;
+  return _dl_find_object(const_cast<void*>(address), &found) == 0 && found.dlfo_link_map->l_name != nullptr &&
+         is_named(found.dlfo_link_map->l_name, "libtbb");
+}
+
 _Unwind_Reason_Code look_at_frame(_Unwind_Context* context, void* answer) {
   const Owner owner = owner_of(reinterpret_cast<const void*>(_Unwind_GetIP(context)));
   if (owner == Owner::library) return _URC_NO_REASON;
@@ -95,11 +109,26 @@ bool is_understudys(const void* caller) {
   return first == Owner::understudy;
 }
 
+using Count = std::atomic<long>;
+
 struct Plan {
   bool counts = false;
   Kind kind = Kind::memory;
   long nth = -1;
+  Count* calls = nullptr;
 };
+
+Count calls_unless_kept = 0;
+
+/// In the file, which keeps it when the process is killed.
+Count* kept_count(const char* path) {
+  const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  void* const memory = file >= 0 && ftruncate(file, sizeof(Count)) == 0
+                           ? mmap(nullptr, sizeof(Count), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
+                           : MAP_FAILED;
+  if (file >= 0) close(file);
+  return memory != MAP_FAILED ? static_cast<Count*>(memory) : &calls_unless_kept;
+}
 
 Plan plan_of_environment() {
   Plan plan;
@@ -108,10 +137,10 @@ Plan plan_of_environment() {
   plan.counts = true;
   plan.kind = strcmp(what, "system") == 0 ? Kind::system : Kind::memory;
   if (const char* const nth = getenv("FAIL_NTH")) plan.nth = atol(nth);
+  const char* const path = getenv("FAIL_COUNT");
+  plan.calls = path != nullptr ? kept_count(path) : &calls_unless_kept;
   return plan;
 }
-
-std::atomic<long> calls = 0;
 
 const Plan& plan() {
   static const Plan plan = plan_of_environment();
@@ -122,22 +151,12 @@ bool fails(Kind kind, const void* caller) {
   if (inside) return false;
   const Inside now;
   if (!plan().counts || plan().kind != kind || !is_understudys(caller)) return false;
-  if (calls.fetch_add(1, std::memory_order_relaxed) != plan().nth) return false;
+  if (plan().calls->fetch_add(1, std::memory_order_relaxed) != plan().nth) return false;
   constexpr char said[] = "A CALL FAILS\n";
   (void)!write(2, said, sizeof said - 1);
   // For a debugger, and for whoever wants to see where.
   if (getenv("FAIL_ABORT") != nullptr) abort();
   return true;
-}
-
-[[gnu::destructor]] void leave_count() {
-  const Inside now;
-  const char* const path = getenv("FAIL_COUNT");
-  if (path == nullptr || calls == 0) return;
-  if (FILE* const file = fopen(path, "we")) {
-    fprintf(file, "%ld\n", calls.load());
-    fclose(file);
-  }
 }
 
 template <class Function>
@@ -292,10 +311,13 @@ SYSTEM_CALL(int, posix_fallocate64, (int file, off64_t from, off64_t size), (fil
 SYSTEM_CALL(int, eventfd, (unsigned value, int flags) noexcept, (value, flags), -1, EMFILE)
 SYSTEM_CALL(FILE*, fopen, (const char* path, const char* mode), (path, mode), nullptr, EMFILE)
 SYSTEM_CALL(FILE*, fopen64, (const char* path, const char* mode), (path, mode), nullptr, EMFILE)
-SYSTEM_CALL(int, pthread_create,
-            (pthread_t * thread, const pthread_attr_t* attributes, void* (*body)(void*),
-             void* argument) noexcept,
-            (thread, attributes, body, argument), EAGAIN, EAGAIN)
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*),
+                   void* argument) noexcept {
+  static int (*const real)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*) =
+      next<decltype(real)>("pthread_create");
+  if (is_tbb(CALLER) || !fails(Kind::system, CALLER)) return real(thread, attributes, body, argument);
+  return EAGAIN;
+}
 
 int open(const char* path, int flags, ...) {
   va_list rest;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/service/worker_threads.h"
+
+#include <exception>
+#include <latch>
+#include <thread>
+#include <vector>
+
+#include "compositor/logging/log.h"
+
+namespace understudy::compositor {
+namespace {
+
+/// Whether `count` threads can run at once, besides those that there are.
+bool can_start(std::size_t count) {
+  std::latch all_tried(1);
+  std::vector<std::jthread> threads;
+  try {
+    threads.reserve(count);
+    while (threads.size() < count) threads.emplace_back([&all_tried] { all_tried.wait(); });
+  } catch (const std::exception&) {
+    // Counted below.
+  }
+  all_tried.count_down();
+  return threads.size() == count;
+}
+
+}  // namespace
+
+WorkerThreads::WorkerThreads() {
+  const std::size_t parallel = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  if (can_start(parallel - 1)) return;
+  logging::log(logging::Level::warn,
+               "{} threads cannot be started, so volumes are rendered on one; raise `ulimit -u` or `ulimit -v`",
+               parallel - 1);
+  one_.emplace(tbb::global_control::max_allowed_parallelism, 1);
+}
+
+}  // namespace understudy::compositor

@@ -11,6 +11,7 @@
 
 #include <atomic>
 
+#include "interceptor/address_space.h"
 #include "interceptor/context_ledger.h"
 #include "interceptor/entry_thread.h"
 #include "interceptor/log_line.h"
@@ -68,6 +69,15 @@ bool complete(const CoreServices& services) {
 
 const CoreServices* load_core() {
   if (switched_off()) return nullptr;
+  const unsigned long left = address_space_left();
+  if (left < address_space_needed()) {
+    log_line(logging::Level::error,
+             "`ulimit -v` leaves this program %lu MiB of address space, and %lu are needed, so the application "
+             "draws "
+             "by itself",
+             left, address_space_needed());
+    return nullptr;
+  }
 
   static constinit EntryServices entry;
   entry.thread_state = &state_of_this_thread;

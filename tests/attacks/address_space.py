@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A limit of address space (ulimit -v): wherever the viewer itself ends well, it does so under Understudy.
+
+    address_space.py UNDERSTUDY UNDERSTUDY-VIEWER ENTRY-LIBRARY
+
+The viewer's need is the least limit, in steps of 50 MB, from which on it ends well in 10 of 10 runs at each step: below, the
+driver crashes at some limits and not at others. From that need and 96 MB for the libraries' mappings upwards, status and
+image under Understudy are the viewer's, to 40 dB, until its volume is substituted, and five steps beyond.
+"""
+
+import os
+import random
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SIDE = 41
+STEP_MB = 50
+MAPPINGS_MB = 96
+MOST_MB = 16000
+STEPS_BEYOND = 5
+RUNS_ALONE = 10
+RUNS_UNDER = 3
+LEAST_DECIBELS = 40
+PATIENCE_SECONDS = 600
+
+
+class Viewer:
+    def __init__(self, understudy, viewer, entry, folder):
+        self.understudy, self.viewer, self.entry, self.folder = understudy, viewer, entry, folder
+        self.volume = folder / "volume.raw"
+        noise = random.Random(1).randbytes(SIDE)
+        self.volume.write_bytes(bytes(noise[x] // 4 + 3 * min(x, y, z) for z in range(SIDE) for y in range(SIDE) for x in range(SIDE)))
+        self.expected = folder / "expected.png"
+        if self.draw(self.expected, None).returncode != 0:
+            raise SystemExit("the viewer itself does not draw")
+
+    def draw(self, image, limit_mb, **more):
+        words = [self.viewer, self.volume, "--size", SIDE, SIDE, SIDE, "--type", "u8", "--offscreen", "--frames", 3, "--orbit", 5,
+                 "--window-size", 200, 200, "--mode", "table", "--screenshot", image]
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("UNDERSTUDY")}
+        environment |= {"UNDERSTUDY_SPEED_GUARD": "off", "XDG_RUNTIME_DIR": str(self.folder)} | more
+
+        def limit():
+            if limit_mb is not None:
+                resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20))
+
+        return subprocess.run([str(word) for word in words], env=environment, capture_output=True, text=True, errors="replace",
+                              timeout=PATIENCE_SECONDS, check=False, preexec_fn=limit)
+
+    def ends(self, limit_mb, **more):
+        """Status and PSNR of one run; no PSNR where there is no image."""
+        image = self.folder / "image.png"
+        image.unlink(missing_ok=True)
+        result = self.draw(image, limit_mb, **more)
+        if not image.exists():
+            return result.returncode, None
+        said = subprocess.run([self.understudy, "compare", self.expected, image], capture_output=True, text=True, check=False).stdout
+        found = re.search(r"PSNR ([\d.]+|inf)", said)
+        return result.returncode, float(found[1]) if found else None
+
+    def ends_well(self, limit_mb, runs, **more):
+        """How many of `runs` runs, and the worst PSNR of those that did."""
+        ends = [self.ends(limit_mb, **more) for _ in range(runs)]
+        good = [decibels for status, decibels in ends if status == 0 and decibels is not None and decibels >= LEAST_DECIBELS]
+        return len(good), min(good, default=0)
+
+
+def need_of(viewer, largest_mb):
+    """Of the viewer alone."""
+    need = None
+    for limit in range(STEP_MB * 4, largest_mb, STEP_MB):
+        # One run that fails tells enough.
+        well = all(viewer.ends_well(limit, 1)[0] for _ in range(RUNS_ALONE))
+        if not well:
+            need = None
+        elif need is None:
+            need = limit
+    return need
+
+
+def main():
+    understudy, program, entry = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        viewer = Viewer(understudy, program, entry, Path(folder))
+        peak = max(1000, 100 * os.cpu_count())
+        need = need_of(viewer, 2 * peak)
+        if need is None:
+            raise SystemExit(f"the viewer itself does not end well below {2 * peak} MB")
+        print(f"the viewer alone needs {need} MB", flush=True)
+        wrong = []
+        substituted = 0
+        for limit in range(need + MAPPINGS_MB, MOST_MB, STEP_MB):
+            good, decibels = viewer.ends_well(limit, RUNS_UNDER, LD_PRELOAD=entry)
+            print(f"{limit} MB: {good} of {RUNS_UNDER} runs end well, {decibels} dB", flush=True)
+            if good < RUNS_UNDER:
+                wrong.append(limit)
+            # An image to the last bit is the viewer's own.
+            substituted += decibels not in (0, float("inf"))
+            if substituted > STEPS_BEYOND:
+                break
+        else:
+            raise SystemExit(f"nothing is substituted below {MOST_MB} MB")
+    if wrong:
+        print(f"went wrong under Understudy: {wrong} MB")
+    return len(wrong) > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -11,9 +11,9 @@ namespace {
 
 // In the order of GL_T4F_C4F_N3F_V4F. They are all that the fixed-function pipeline makes position, colour and
 // the coordinate of texture unit 0 from.
-constexpr std::array<const char*, 4> captured = {"coordinate", "colour", "normal", "vertex"};
+constexpr std::array<const char*, 4> captured_attributes = {"coordinate", "colour", "normal", "vertex"};
 constexpr std::size_t floats_per_given_vertex = 15;
-constexpr const char* source =
+constexpr const char* attribute_shader =
     "#version 120\n"
     "varying vec4 coordinate;\n"
     "varying vec4 colour;\n"
@@ -94,12 +94,13 @@ bool GivenVertices::prepare() {
   if (program_ != 0) return true;
   const DispatchTable& gl = *context_.gl;
   const GLuint shader = gl.CreateShader(GL_VERTEX_SHADER);
-  gl.ShaderSource(shader, 1, &source, nullptr);
+  gl.ShaderSource(shader, 1, &attribute_shader, nullptr);
   gl.CompileShader(shader);
   const GLuint program = gl.CreateProgram();
   gl.AttachShader(program, shader);
   gl.DeleteShader(shader);
-  gl.TransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
+  gl.TransformFeedbackVaryings(program, GLsizei(captured_attributes.size()), captured_attributes.data(),
+                               GL_INTERLEAVED_ATTRIBS);
   gl.LinkProgram(program);
   GLint linked = 0;
   gl.GetProgramiv(program, GL_LINK_STATUS, &linked);

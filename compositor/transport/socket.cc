@@ -13,9 +13,12 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
+#include "compositor/transport/connector.h"
 #include "compositor/transport/peer.h"
 
 namespace understudy::compositor {
@@ -111,20 +114,28 @@ FileDescriptor accept_from(const FileDescriptor& listener) {
   }
 }
 
-FileDescriptor connect_to(const std::string& path, Deadline deadline) {
+ConnectionAttempt attempt_to_connect(const std::string& path) {
   const sockaddr_un address = address_of(path);
-  FileDescriptor result = new_socket();
+  ConnectionAttempt attempt{new_socket(), 0};
+  attempt.error = try_to_connect(attempt.socket.get(), address);
+  if (attempt.error != 0) attempt.socket.reset();
+  return attempt;
+}
+
+FileDescriptor connect_to(const std::string& path, Deadline deadline) {
   for (;;) {
-    const int error = try_to_connect(result.get(), address);
-    if (error == 0) {
-      require_listener_of(::geteuid(), result.get(), path);
-      return result;
+    std::optional<ConnectionAttempt> attempt = ask_for_connection(path, deadline);
+    if (!attempt) attempt = attempt_to_connect(path);
+    if (attempt->error == 0) {
+      require_listener_of(::geteuid(), attempt->socket.get(), path);
+      return std::move(attempt->socket);
     }
     // The listener's queue is full: there is nothing to poll for.
-    const bool busy = error == EAGAIN || error == EINTR;
+    const bool busy = attempt->error == EAGAIN || attempt->error == EINTR;
     if (!busy || Clock::now() >= deadline)
-      throw std::runtime_error(fmt::format("cannot connect to '{}': {}", path,
-                                           busy ? "its launcher does not accept" : std::strerror(error)));
+      throw std::runtime_error(
+          fmt::format("cannot connect to '{}': {}", path,
+                      busy ? "its launcher does not accept" : std::strerror(attempt->error)));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 }

@@ -23,7 +23,17 @@ FileDescriptor listen_at(const std::string& path);
 /// Without one errno says why, as accept() does.
 FileDescriptor accept_from(const FileDescriptor& listener);
 
-/// Throws std::runtime_error, and ForeignListener (peer.h) when another user listens there.
+/// What came of one attempt to connect: a socket, or errno's reason (EAGAIN: the listener's queue is full).
+struct ConnectionAttempt {
+  FileDescriptor socket;
+  int error = 0;
+};
+
+/// One attempt, without waiting, by this process. Throws std::runtime_error for what cannot name a socket.
+ConnectionAttempt attempt_to_connect(const std::string& path);
+
+/// Where this process may make no socket, another one connects for it (connector.h). Throws std::runtime_error,
+/// and ForeignListener (peer.h) when another user listens there.
 FileDescriptor connect_to(const std::string& path, Deadline deadline);
 
 }  // namespace understudy::compositor

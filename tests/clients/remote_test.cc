@@ -99,6 +99,7 @@ TEST_F(Remote, PolygonsInTilesAreThoseOfOneProcess) {
                              file("tiles_" + tiles)}),
         on_display());
     EXPECT_EQ(substituted(json("report.json")), 3) << outcome.err;
+    EXPECT_EQ(outcome.err.find("was killed by signal"), std::string::npos) << outcome.err;
     return json("report.json").at("tiles");
   };
   EXPECT_EQ(frames("off"), nullptr);

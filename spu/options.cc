@@ -94,6 +94,12 @@ bool set_server_opengl(Options& options, const std::string& text) {
   return true;
 }
 
+bool set_sandbox(Options& options, const std::string& text) {
+  if (text != "auto" && text != "off") return false;
+  options.sandbox = text == "auto";
+  return true;
+}
+
 struct Row {
   OptionText text;
   bool (*set)(Options&, const std::string&);
@@ -173,6 +179,11 @@ constexpr std::array rows{
          "the OpenGL library of --remote and of traces: egl (without a window system), osmesa (on the CPU, one "
          "colour buffer), or auto: OSMesa where EGL makes no context"},
         set_server_opengl},
+    Row{{"--sandbox", "UNDERSTUDY_SANDBOX", "auto|off", "auto",
+         "with --remote, what draws for a viewer may open no file, start no program and make no connection, as "
+         "far "
+         "as the kernel has seccomp and Landlock (see `understudy doctor`); off for drivers that need more"},
+        set_sandbox},
     Row{{"", "UNDERSTUDY_RUN_DIR", "DIR", "", "the launcher's folder for this run (set by `understudy run`)"},
         set_text<&Options::run_dir>},
     Row{{"", "UNDERSTUDY_REMOTE", "PATH", "",

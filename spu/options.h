@@ -37,6 +37,7 @@ struct Options {
   std::string chain = "track volume driver";
   std::string run_dir;                 ///< the launcher's folder for this run (counters); empty: no launcher
   std::string server_opengl = "auto";  ///< what GL servers and replays draw with: auto, egl or osmesa
+  bool sandbox = true;                 ///< processes of GL servers keep what drawing needs, and no more
   std::string remote;      ///< Unix socket of the GL server that makes the calls; empty: they are made here
   double verify_psnr = 0;  ///< dB; below this a compared image is refused
 

@@ -47,8 +47,12 @@ std::uint64_t control_group_limit() {
 }  // namespace
 
 std::uint64_t usable_memory() {
-  const auto physical = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
-  return std::min(physical, control_group_limit());
+  // Once: later this process may be one that opens no files.
+  static const std::uint64_t found = [] {
+    const auto physical = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
+    return std::min(physical, control_group_limit());
+  }();
+  return found;
 }
 
 ClientLimits client_limits(int ranks, std::chrono::milliseconds image_time) {

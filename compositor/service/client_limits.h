@@ -15,7 +15,8 @@ struct ClientLimits {
   std::chrono::milliseconds image_time{0};
 };
 
-/// What this process could have at most: the machine's memory, or that of the control group it is in.
+/// What this process could have at most: the machine's memory, or that of the control group it is in, as it was
+/// when this was first asked.
 std::uint64_t usable_memory();
 
 /// Of one of `ranks` ranks on this machine. Bricks take half as much again as the texels that they show.

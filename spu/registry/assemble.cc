@@ -99,6 +99,19 @@ std::vector<PlannedUnit> plan(const ChainSettings& settings, UnitTable units) {
   return planned;
 }
 
+/// Calls `take` for each option that names a file.
+template <typename Take>
+void for_each_file(ChainSettings& settings, UnitTable units, const Take& take) {
+  for (UnitSetting& unit : settings) {
+    for (const UnitOption& option : find_unit(unit, units).options) {
+      if (option.type != OptionType::file) continue;
+      for (OptionSetting& setting : unit.options) {
+        if (setting.name == option.name && !setting.value.empty()) take(setting);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 UnitTable unit_table() {
@@ -124,15 +137,15 @@ std::optional<std::string> assemble(Chain& chain, std::string_view description,
 std::string resolved_chain(std::string_view description, const std::filesystem::path& folder, UnitTable units) {
   ChainSettings settings = settings_of(description);
   plan(settings, units);
-  for (UnitSetting& unit : settings) {
-    for (const UnitOption& option : find_unit(unit, units).options) {
-      if (option.type != OptionType::file) continue;
-      for (OptionSetting& setting : unit.options) {
-        if (setting.name == option.name && !setting.value.empty()) setting.value = folder / setting.value;
-      }
-    }
-  }
+  for_each_file(settings, units, [&](OptionSetting& setting) { setting.value = folder / setting.value; });
   return chain_text(settings);
+}
+
+std::vector<std::filesystem::path> files_of_units(std::string_view resolved, UnitTable units) {
+  ChainSettings settings = settings_of(resolved);
+  std::vector<std::filesystem::path> files;
+  for_each_file(settings, units, [&](const OptionSetting& setting) { files.emplace_back(setting.value); });
+  return files;
 }
 
 }  // namespace understudy::spu

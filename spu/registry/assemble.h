@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "spu/chain.h"
 #include "spu/unit_description.h"
@@ -34,5 +35,8 @@ std::optional<std::string> assemble(Chain& chain, std::string_view description,
 /// assembled.
 std::string resolved_chain(std::string_view description, const std::filesystem::path& folder,
                            UnitTable units = unit_table());
+
+/// The files that units of a resolved chain write. Throws ChainError.
+std::vector<std::filesystem::path> files_of_units(std::string_view resolved, UnitTable units = unit_table());
 
 }  // namespace understudy::spu

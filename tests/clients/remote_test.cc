@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <string>
 
 #include "tests/clients/remote_viewer.h"
 
@@ -173,6 +176,53 @@ TEST_F(Remote, ImagesAreInTheWindowOfAServerWithoutSharedMemory) {
   display_.reset();
   display_.emplace(std::move(*viewer_test::VirtualDisplay::start("MIT-SHM")));
   expect_images_in_the_window(false);
+}
+
+/// What the kernel says of a process: "Seccomp_filters", and so on.
+std::string status_of(pid_t process, const std::string& name) {
+  const std::string text = contents(fmt::format("/proc/{}/status", process));
+  const std::size_t at = text.find("\n" + name + ":\t");
+  if (at == std::string::npos) return {};
+  const std::size_t from = at + name.size() + 3;
+  return text.substr(from, text.find('\n', from) - from);
+}
+
+TEST_F(Remote, ItsCallsAreMadeInASandboxUnlessThatIsSwitchedOff) {
+  const auto filters_of_this_test = std::stoi(status_of(::getpid(), "Seccomp_filters"));
+  for (const bool wanted : {true, false}) {
+    Child child(command_of(under({"--remote", "--sandbox", wanted ? "auto" : "off"}) +
+                               viewer("table", {"--frames", "100000", "--orbit", "1"}),
+                           {{"DISPLAY", display_->name()}, {"A_SECRET", "of the server's user"}}),
+                file(""));
+    // It draws: whatever closes is closed.
+    pid_t drawing = 0;
+    ASSERT_TRUE(comes_true([&] {
+      for (const pid_t process : processes("understudy")) {
+        if (contents(fmt::format("/proc/{}/cmdline", process)).find("--client") != std::string::npos)
+          drawing = process;
+      }
+      const auto now = screen();
+      return !child.running() || (drawing != 0 && now && shows_something(*now));
+    })) << child.err();
+    ASSERT_TRUE(child.running()) << child.err();
+    EXPECT_EQ(std::stoi(status_of(drawing, "Seccomp_filters")), filters_of_this_test + int(wanted));
+    if (wanted) {
+      EXPECT_EQ(status_of(drawing, "NoNewPrivs"), "1");
+    }
+    const std::string environment = contents(fmt::format("/proc/{}/environ", drawing));
+    EXPECT_EQ(environment.find("A_SECRET") == std::string::npos, wanted);
+    child.signal(SIGTERM);
+    EXPECT_EQ(child.finish().status, 128 + SIGTERM);
+    EXPECT_EQ(child.err().find("without a sandbox"), std::string::npos) << child.err();
+  }
+  EXPECT_EQ(leftovers(), "");
+}
+
+TEST_F(Remote, FramesAreSavedFromTheSandbox) {
+  run_well(under({"--remote", "--save-frames", file("frames")}) + without_opengl() +
+               viewer("table", {"--frames", "2"}),
+           on_display());
+  EXPECT_TRUE(std::filesystem::exists(file("frames") / "frame_0001.pfm"));
 }
 
 TEST_F(Remote, AStageThatIsKilledIsSaidOnce) {

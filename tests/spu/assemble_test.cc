@@ -200,6 +200,12 @@ TEST_F(Assemble, AFileStandsForItsChain) {
   EXPECT_THAT(error_of(file.string()), HasSubstr("cannot read this chain file"));
 }
 
+TEST_F(Assemble, FilesThatUnitsWriteAreThoseThatTheirOptionsName) {
+  using Files = std::vector<std::filesystem::path>;
+  EXPECT_EQ(files_of_units("sample(file=/a/b, title=/c) pass driver", units()), Files{"/a/b"});
+  EXPECT_EQ(files_of_units("sample(file=) pass driver", units()), Files());
+}
+
 TEST_F(Assemble, AResolvedChainMeansTheSameInEveryFolder) {
   EXPECT_EQ(resolved_chain("sample(file=a/b) pass  driver", "/somewhere", units()),
             "sample(file=/somewhere/a/b) pass driver");

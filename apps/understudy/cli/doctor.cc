@@ -3,11 +3,16 @@
 
 #include <GL/glx.h>
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/ptrace.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +22,7 @@
 #include <vector>
 
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/sandbox/sandbox.h"
 #include "volume/offscreen/egl.h"
 #include "volume/offscreen/osmesa.h"
 
@@ -142,6 +148,31 @@ Finding look_at_injection_methods() {
   return {true, "audit, preload and folder, in " + here.libraries.string()};
 }
 
+/// What can still be done in the sandbox of a GL server's processes: nothing, if it holds.
+std::vector<std::string> escapes() {
+  std::vector<std::string> found;
+  if (open("/proc/self/status", O_RDONLY | O_CLOEXEC) >= 0) found.emplace_back("files can be opened");
+  if (socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0) >= 0) found.emplace_back("sockets can be made");
+  if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0) found.emplace_back("processes can be traced");
+  // Last: where it works, another program is here.
+  std::array<char*, 1> none{};
+  execve("/proc/self/exe", none.data(), none.data());
+  if (errno != EPERM) found.emplace_back("programs can be started");
+  return found;
+}
+
+Finding look_at_sandbox() {
+  const SandboxState state = Sandbox({}).close(Renderer::cpu);
+  if (!state.obstacle.empty())
+    return {false, state.obstacle + "; run --remote and serve --gl-server have none"};
+  if (const auto found = escapes(); !found.empty()) return {false, fmt::format("{}", fmt::join(found, ", "))};
+  const std::string landlock = state.landlock > 0 ? fmt::format("and Landlock {}", state.landlock)
+                                                  : "alone; this kernel has no Landlock";
+  return {true,
+          fmt::format("seccomp {}: processes of GL servers open no files, start no programs, make no sockets",
+                      landlock)};
+}
+
 constexpr std::array checks{
     Check{"injection methods", look_at_injection_methods, "./run build"},
     Check{"X", look_at_x,
@@ -150,6 +181,8 @@ constexpr std::array checks{
     Check{"EGL", look_at_egl, "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"},
     Check{"OSMesa", look_at_osmesa, "apt install libosmesa6"},
     Check{"MPI", look_at_mpi, "apt install openmpi-bin libopenmpi-dev"},
+    Check{"sandbox", look_at_sandbox,
+          "a kernel with CONFIG_SECCOMP_FILTER, or a container that lets it be used"},
     Check{"nodes", look_at_nodes, "apt install libopenmpi-dev openmpi-bin && ./run build"},
 };
 

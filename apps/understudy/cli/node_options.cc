@@ -38,6 +38,10 @@ void add_gl_server_option(CLI::App& subcommand, std::string& opengl) {
   add_option_of_the_table(subcommand, "--server-opengl", opengl);
 }
 
+void add_sandbox_option(CLI::App& subcommand, std::string& sandbox) {
+  add_option_of_the_table(subcommand, "--sandbox", sandbox);
+}
+
 void add_tiles_option(CLI::App& subcommand, std::string& tiles) {
   add_option_of_the_table(subcommand, "--tiles", tiles);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Options of commands that start nodes: `--exchange`, `--pixels`, `--gather` and `--overlap`, how partial
-// images become one, `--hostfile`, where the ranks are, and `--server-opengl`.
+// images become one, `--hostfile`, where the ranks are, and `--server-opengl` and `--sandbox`, of GL servers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,6 +19,7 @@ void add_tiles_option(CLI::App& subcommand, std::string& tiles);
 
 /// What a GL server beside the nodes draws with, as spu/options.h has it.
 void add_gl_server_option(CLI::App& subcommand, std::string& opengl);
+void add_sandbox_option(CLI::App& subcommand, std::string& sandbox);
 
 void add_hostfile_option(CLI::App& subcommand, std::filesystem::path& hostfile);
 

@@ -43,8 +43,8 @@ int replay(const ReplayArguments& replay, RunArguments arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, std::function<int()>& chosen) {
-  // These mean something else to a replay.
-  constexpr std::array<std::string_view, 2> without = {"--save-frames", "--chain"};
+  // These mean something else to a replay, or nothing.
+  constexpr std::array<std::string_view, 3> without = {"--save-frames", "--chain", "--sandbox"};
   const auto own = std::make_shared<ReplayArguments>();
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App* subcommand =

@@ -47,6 +47,7 @@ struct ServeArguments {
   bool plain = false;
   std::string tiles = "off";
   std::string server_opengl = "auto";
+  std::string sandbox = "auto";
 };
 
 bool is_over(const ServeArguments& arguments) {
@@ -63,14 +64,15 @@ struct Frontends {
 std::unique_ptr<ChildProcess> start_gl_server_of_nodes(const Installation& installation,
                                                        const NodeGroupPlan& nodes,
                                                        const std::filesystem::path& socket,
-                                                       const std::string& tiles, const std::string& opengl) {
+                                                       const ServeArguments& arguments) {
   Environment environment = current_environment();
   environment.erase("UNDERSTUDY_REMOTE");
   environment.erase("UNDERSTUDY_RUN_DIR");
   environment["UNDERSTUDY_NODES"] = std::to_string(nodes.placement.ranks);
   environment["UNDERSTUDY_CONNECT"] = nodes.socket.string();
-  environment["UNDERSTUDY_TILES"] = tiles;
-  environment["UNDERSTUDY_SERVER_OPENGL"] = opengl;
+  environment["UNDERSTUDY_TILES"] = arguments.tiles;
+  environment["UNDERSTUDY_SERVER_OPENGL"] = arguments.server_opengl;
+  environment["UNDERSTUDY_SANDBOX"] = arguments.sandbox;
   return start_gl_server(installation, socket, environment);
 }
 
@@ -99,8 +101,7 @@ Frontends open_frontends(const Installation& installation, const ServeArguments&
                     .plain = arguments.plain};
   if (arguments.server) {
     plan.server = nodes.folder / "gl_server.sock";
-    frontends.server =
-        start_gl_server_of_nodes(installation, nodes, plan.server, arguments.tiles, arguments.server_opengl);
+    frontends.server = start_gl_server_of_nodes(installation, nodes, plan.server, arguments);
   }
   frontends.listener = start_listener(installation, plan);
   return frontends;
@@ -244,6 +245,7 @@ void add_serve(CLI::App& app, std::function<int()>& chosen) {
                  "encryption; all others are encrypted")
       ->needs(listen);
   add_gl_server_option(*subcommand, arguments->server_opengl);
+  add_sandbox_option(*subcommand, arguments->sandbox);
   subcommand->add_option("--while", arguments->while_process, "end when the process PID has ended")
       ->type_name("PID")
       ->check(CLI::PositiveNumber);

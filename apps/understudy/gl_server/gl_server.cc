@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/understudy/gl_server/gl_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,13 +22,15 @@
 #include <stdexcept>
 #include <vector>
 
+#include "apps/understudy/gl_server/client_process.h"
 #include "apps/understudy/gl_server/frame_changes.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
-#include "apps/understudy/processes/client_processes.h"
-#include "apps/understudy/processes/signal_inbox.h"
+#include "apps/understudy/sandbox/sandbox.h"
 #include "compositor/logging/log.h"
+#include "compositor/service/client_limits.h"
 #include "compositor/service/limits.h"
 #include "compositor/transport/connection.h"
+#include "compositor/transport/connector.h"
 #include "spu/chain_text.h"
 #include "spu/options.h"
 #include "spu/player/player.h"
@@ -58,8 +62,8 @@ constexpr std::size_t most_faults_told = 20;
 /// What the GL server of an application is given: where its chain finds others that draw tiles of its windows.
 spu::Options options_of_application(const std::string& socket) {
   spu::Options options = spu::options_from_environment();
-  spu::ChainSettings chain =
-      spu::parse_chain(spu::resolved_chain(options.chain, std::filesystem::current_path()));
+  options.chain = spu::resolved_chain(options.chain, std::filesystem::current_path());
+  spu::ChainSettings chain = spu::parse_chain(options.chain);
   auto tiles = std::find_if(chain.begin(), chain.end(),
                             [](const spu::UnitSetting& unit) { return unit.name == "tiles"; });
   if (tiles == chain.end() && options.tiles) {
@@ -81,16 +85,49 @@ spu::Options options_of_application(const std::string& socket) {
 spu::Options options_of_tile_worker(const spu::TilePlace& place) {
   spu::Options options = spu::options_from_environment();
   options.chain = fmt::format("tile(part={},of={}) driver", place.part, place.parts);
+  options.save_frames.clear();
   return options;
+}
+
+/// Folders that what the options ask for is written into.
+std::vector<std::filesystem::path> folders_written(const spu::Options& options) {
+  std::vector<std::filesystem::path> folders;
+  if (!options.save_frames.empty()) folders.emplace_back(options.save_frames);
+  for (const std::filesystem::path& file : spu::files_of_units(options.chain))
+    folders.push_back(file.parent_path());
+  return folders;
+}
+
+/// Draws once, with a context of its own: a driver makes its threads, and opens what it needs. Throws
+/// std::runtime_error where it cannot.
+Renderer draw_once(OffscreenContexts& windows, const spu::GlServerVersions& versions) {
+  constexpr spu::Extent2D small{16, 16};
+  spu::RecordedContext context;
+  context.number = ~std::uint64_t(0);  // applications count theirs from 1
+  context.version = versions.compatibility > 0 ? versions.compatibility : versions.core;
+  if (versions.compatibility == 0) context.profile = GL_CONTEXT_CORE_PROFILE_BIT;
+  windows.create(context);
+  windows.make_current(context.number, 0, small);
+  const spu::DispatchTable& gl = windows.driver();
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  std::array<std::uint8_t, std::size_t(4) * small.width * small.height> pixels{};
+  gl.ReadPixels(0, 0, small.width, small.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  const auto* const text = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
+  const Renderer renderer = renderer_named(text != nullptr ? text : "");
+  windows.release_current();
+  windows.destroy(context.number);
+  return renderer;
 }
 
 /// The calls of one application, played as they come; or of an application's GL server, by one of its tile
 /// workers.
 class Performance {
  public:
-  Performance(Connection& connection, const spu::Options& options, bool paints)
+  Performance(Connection& connection, const spu::Options& options, bool paints, const Sandbox* sandbox)
       : connection_(connection),
         paints_(paints),
+        sandbox_(sandbox),
+        embedded_(options.connect.empty()),
         windows_(open_offscreen_contexts(options.server_opengl)),
         player_(*windows_, options, paints ? spu::StreamOrigin::elsewhere : spu::StreamOrigin::linked) {
     player_.on_frame = [this](const spu::ShownFrame& frame) {
@@ -102,6 +139,7 @@ class Performance {
   /// Returns when the application closes the connection. Throws std::runtime_error for what is no stream.
   void run() {
     const spu::GlServerVersions versions{windows_->highest_version(true), windows_->highest_version(false)};
+    if (sandbox_ != nullptr) close_sandbox(versions);
     connection_.send(compositor::LauncherMessage::accepted, 0, spu::encode(versions),
                      Clock::now() + limits::server_patience);
     for (;;) {
@@ -117,6 +155,22 @@ class Performance {
   }
 
  private:
+  /// What opens files when it is first used has been used: from then on files are refused.
+  void close_sandbox(const spu::GlServerVersions& versions) {
+    compositor::usable_memory();
+    // Looks for its allocator, and for what there is of processors.
+    if (embedded_) tbb::parallel_for(0, 64, [](int) {});
+    Renderer renderer = Renderer::cpu;
+    try {
+      renderer = draw_once(*windows_, versions);
+    } catch (const std::runtime_error&) {
+      // The application is told when it makes a context.
+    }
+    const SandboxState state = sandbox_->close(renderer);
+    if (!state.obstacle.empty())
+      logging::log(logging::Level::warn, "GL server: calls are made without a sandbox: {}", state.obstacle);
+  }
+
   /// An application may be silent for as long as nobody touches it, but not within a message.
   Message next() {
     for (;;) {
@@ -201,6 +255,8 @@ class Performance {
 
   Connection& connection_;
   const bool paints_;
+  const Sandbox* const sandbox_;  ///< null: none is wanted
+  const bool embedded_;           ///< rays are cast in this process
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   spu::ChunkReceiver chunks_;
@@ -212,7 +268,7 @@ class Performance {
 
 /// What a process of its own does for one application, or for another GL server's. Returns its exit status.
 int perform(FileDescriptor socket, const std::string& address) {
-  FileDescriptor same(::dup(socket.get()));
+  FileDescriptor same(::fcntl(socket.get(), F_DUPFD_CLOEXEC, 0));
   try {
     // Nothing long is read from whoever has not said what it is.
     Connection pending(std::move(socket), spu::gl_server_protocols, limits::max_hello_bytes);
@@ -224,11 +280,12 @@ int perform(FileDescriptor socket, const std::string& address) {
       const bool paints = !hello.payload.empty();
       // The frames that a tile worker has a part in are counted by the GL server of the application.
       if (paints) ::unsetenv("UNDERSTUDY_RUN_DIR");
-      Performance(connection,
-                  paints ? options_of_tile_worker(spu::decode_tile_place(hello.payload))
-                         : options_of_application(address),
-                  paints)
-          .run();
+      const spu::Options options = paints ? options_of_tile_worker(spu::decode_tile_place(hello.payload))
+                                          : options_of_application(address);
+      spu::process_counters();  // makes a file, where there is a folder for it
+      std::optional<Sandbox> sandbox;
+      if (options.sandbox) sandbox.emplace(folders_written(options));
+      Performance(connection, options, paints, sandbox ? &*sandbox : nullptr).run();
     } catch (const compositor::ConnectionLost&) {
       throw;
     } catch (const std::exception& error) {
@@ -241,6 +298,15 @@ int perform(FileDescriptor socket, const std::string& address) {
     return 1;
   }
   return 0;
+}
+
+/// Ends the process: what drivers do when a process returns is not needed, and may want files.
+[[noreturn]] void serve_one(const std::string& socket, int client, int connector) {
+  for (const int descriptor : {client, connector}) ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+  compositor::connect_through(FileDescriptor(connector));
+  const int status = perform(FileDescriptor(client), socket);
+  std::fflush(nullptr);
+  ::_exit(status);
 }
 
 }  // namespace
@@ -262,14 +328,21 @@ std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
 }
 
 void add_gl_server_command(CLI::App& app, std::function<int()>& chosen) {
-  const auto socket = std::make_shared<std::string>();
+  struct Arguments {
+    std::string socket;
+    int client = -1;     ///< descriptor of the connection to serve; -1: this process listens
+    int connector = -1;  ///< descriptor of the channel to the one that listens
+  };
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App* subcommand = app.add_subcommand("gl-server", "makes the calls of viewers, for run --remote");
   subcommand->group("");
-  subcommand->add_option("--socket", *socket)->required();
-  subcommand->callback([socket, &chosen] {
-    chosen = [socket] {
-      listen_for_clients(*socket, "gl-server",
-                         [&](FileDescriptor client) { return perform(std::move(client), *socket); });
+  subcommand->add_option("--socket", arguments->socket)->required();
+  subcommand->add_option("--connector", arguments->connector)
+      ->needs(subcommand->add_option("--client", arguments->client));
+  subcommand->callback([arguments, &chosen] {
+    chosen = [arguments] {
+      if (arguments->client >= 0) serve_one(arguments->socket, arguments->client, arguments->connector);
+      serve_clients(arguments->socket);
       return 0;
     };
   });

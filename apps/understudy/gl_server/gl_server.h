@@ -2,8 +2,9 @@
 // The GL server: makes the OpenGL calls of applications that have none (`understudy run --remote`), on contexts
 // without a window system, through the chain that a viewer here would have, and sends their images back.
 //
-// One process listens; every application gets a process of its own, so that neither a driver's faults nor a
-// closed connection concern another one.
+// One process listens; every application gets a process of its own (client_process.h), so that neither a
+// driver's faults nor a closed connection concern another one. What it draws with is opened first; then a
+// sandbox closes (apps/understudy/sandbox), and only then calls are read.
 #pragma once
 
 #include <CLI/CLI.hpp>

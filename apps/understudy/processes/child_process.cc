@@ -45,6 +45,9 @@ void become(const Command& command, char* const* arguments, char* const* environ
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
   }
+  for (const int descriptor : command.descriptors) {
+    if (fcntl(descriptor, F_SETFD, 0) != 0) return;
+  }
   execvpe(arguments[0], arguments, environment);
 }
 

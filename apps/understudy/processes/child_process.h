@@ -18,6 +18,7 @@ struct Command {
   Environment environment;
   std::filesystem::path output;  ///< file for both outputs, with no input; empty: those of this process
   bool own_group = false;        ///< apart from the terminal's Ctrl-C, and signalled as a group
+  std::vector<int> descriptors;  ///< that it has, too, under their numbers
 };
 
 /// How a process ended.

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "apps/understudy/gl_server/client_environment.h"
+
 namespace understudy::launcher {
 namespace {
 
@@ -48,6 +50,19 @@ TEST(Environment, NodesSeeNoLibraryAndNoOptionOfTheViewer) {
 TEST(Environment, ALibraryPathThatHeldOnlyTheEntryLibraryIsGone) {
   EXPECT_EQ(node_environment({{"LD_LIBRARY_PATH", "/opt/understudy/lib/entry"}}, here).count("LD_LIBRARY_PATH"),
             0);
+}
+
+TEST(Environment, AProcessOfTheGlServerHasWhatIsListedAndNothingElse) {
+  const Environment client = client_environment({{"AWS_SECRET_ACCESS_KEY", "x"},
+                                                 {"HOME", "/nowhere"},
+                                                 {"LD_PRELOAD", "y.so"},
+                                                 {"LIBGL_DRIVERS_PATH", "/opt/mesa"},
+                                                 {"UNDERSTUDY_CONNECT", "/run/nodes.sock"},
+                                                 {"UNDERSTUDY_WHATEVER", "1"}});
+  EXPECT_EQ(client, (Environment{{"LIBGL_DRIVERS_PATH", "/opt/mesa"},
+                                 {"MESA_SHADER_CACHE_DISABLE", "true"},
+                                 {"UNDERSTUDY_CONNECT", "/run/nodes.sock"},
+                                 {"__GL_SHADER_DISK_CACHE", "0"}}));
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ TEST(Options, DefaultsInTheTableAreThoseInTheStructure) {
     EXPECT_EQ(options.debug_tint, untouched.debug_tint);
     EXPECT_EQ(options.chain, untouched.chain);
     EXPECT_EQ(options.server_opengl, untouched.server_opengl);
+    EXPECT_EQ(options.sandbox, untouched.sandbox);
     EXPECT_EQ(options.error, untouched.error);
     EXPECT_EQ(options.time_ms, untouched.time_ms);
   }

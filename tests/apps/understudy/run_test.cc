@@ -100,6 +100,13 @@ TEST_F(UnderstudyRun, HelpFitsIntoAHundredColumns) {
   EXPECT_THAT(understudy("render --help").output, HasSubstr("\nNodes:\n"));
 }
 
+TEST_F(UnderstudyRun, DoctorSaysWhetherTheSandboxOfGlServersHolds) {
+  const bool has_seccomp = contents("/proc/self/status").find("\nSeccomp:\t") != std::string::npos;
+  const std::string output = understudy("doctor").output;
+  EXPECT_THAT(output, HasSubstr(has_seccomp ? "\nok       sandbox           seccomp" : "\nmissing  sandbox"));
+  EXPECT_EQ(output.find("open no files, start no programs, make no sockets") != std::string::npos, has_seccomp);
+}
+
 TEST_F(UnderstudyRun, ABadHostfileIsRefusedInOneLineBeforeAnythingStarts) {
   const auto file = [&](const std::string& text) {
     std::ofstream(folder_ / "hosts") << text;

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/gl_server/client_environment.h"
+
+#include <array>
+
+#include "spu/options.h"
+
+namespace understudy::launcher {
+namespace {
+
+constexpr auto of_libraries = std::to_array<const char*>({
+    "LD_LIBRARY_PATH",
+    "UNDERSTUDY_LOG",
+    "XDG_RUNTIME_DIR",
+    // which driver, and how much of it
+    "CUDA_VISIBLE_DEVICES",
+    "DRI_PRIME",
+    "EGL_LOG_LEVEL",
+    "EGL_PLATFORM",
+    "GALLIUM_DRIVER",
+    "GBM_BACKENDS_PATH",
+    "LIBGL_ALWAYS_SOFTWARE",
+    "LIBGL_DRIVERS_PATH",
+    "LP_NATIVE_VECTOR_WIDTH",
+    "LP_NUM_THREADS",
+    "MESA_EXTENSION_OVERRIDE",
+    "MESA_GLSL_VERSION_OVERRIDE",
+    "MESA_GL_VERSION_OVERRIDE",
+    "MESA_LOADER_DRIVER_OVERRIDE",
+    "NVIDIA_VISIBLE_DEVICES",
+    "__EGL_VENDOR_LIBRARY_DIRS",
+    "__EGL_VENDOR_LIBRARY_FILENAMES",
+    // of sanitizers
+    "ASAN_OPTIONS",
+    "LSAN_OPTIONS",
+    "TSAN_OPTIONS",
+    "UBSAN_OPTIONS",
+});
+
+}  // namespace
+
+Environment client_environment(const Environment& whole) {
+  Environment kept;
+  const auto keep = [&](const char* name) {
+    if (const auto found = whole.find(name); found != whole.end()) kept.insert(*found);
+  };
+  for (const spu::OptionText& option : spu::option_table()) keep(option.environment);
+  for (const char* name : of_libraries) keep(name);
+  kept["MESA_SHADER_CACHE_DISABLE"] = "true";
+  kept["__GL_SHADER_DISK_CACHE"] = "0";
+  return kept;
+}
+
+}  // namespace understudy::launcher

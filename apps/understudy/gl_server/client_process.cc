@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/gl_server/client_process.h"
+
+#include <poll.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <list>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/understudy/gl_server/client_environment.h"
+#include "apps/understudy/processes/signal_inbox.h"
+#include "compositor/logging/log.h"
+#include "compositor/service/limits.h"
+#include "compositor/transport/connector.h"
+#include "compositor/transport/socket.h"
+#include "compositor/transport/socket_file.h"
+#include "spu/options.h"
+
+namespace understudy::launcher {
+namespace {
+
+using compositor::Clock;
+using compositor::FileDescriptor;
+
+constexpr std::chrono::seconds patience_with_ends{1};
+
+using ClientProcesses = std::list<ClientProcess>;
+
+void reap(ClientProcesses& clients) {
+  clients.remove_if([](ClientProcess& client) {
+    const std::optional<Ending> ending = client.poll_ending();
+    if (ending && WIFSIGNALED(ending->status) && WTERMSIG(ending->status) != SIGTERM)
+      logging::log(logging::Level::warn, "GL server: the process of an application {}", ending->text());
+    return ending.has_value();
+  });
+}
+
+bool asked_to_end(SignalInbox& inbox, ClientProcesses& clients) {
+  while (const std::optional<ReceivedSignal> received = inbox.next()) {
+    if (received->number != SIGCHLD) return true;
+    reap(clients);
+  }
+  return false;
+}
+
+/// Clients that have just gone: their processes have figures to write.
+void wait_for_ends(ClientProcesses& clients) {
+  const auto until = Clock::now() + patience_with_ends;
+  for (reap(clients); !clients.empty() && Clock::now() < until; reap(clients))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+}  // namespace
+
+ClientProcess::ClientProcess(const Installation& installation, const std::string& socket, FileDescriptor client,
+                             const Environment& environment) {
+  auto [ours, its] = compositor::connector_channel();
+  process_.emplace(
+      Command{.arguments = {installation.programs / "understudy", "gl-server", "--socket", socket, "--client",
+                            std::to_string(client.get()), "--connector", std::to_string(its.get())},
+              .environment = environment,
+              .output = {},
+              .own_group = false,
+              .descriptors = {client.get(), its.get()}});
+  channel_ = std::move(ours);
+}
+
+void ClientProcess::connect_for_it(std::span<const std::string> allowed) {
+  if (!compositor::answer_connector(channel_, allowed)) channel_.reset();
+}
+
+void serve_clients(const std::string& socket) {
+  const Installation installation = this_installation();
+  const spu::Options options = spu::options_from_environment();
+  // Tile workers are clients of this GL server, too.
+  const std::vector<std::string> reachable = {socket, options.connect};
+  const Environment environment =
+      options.sandbox ? client_environment(current_environment()) : current_environment();
+  SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
+  FileDescriptor listener = compositor::listen_at(socket);
+  const compositor::SocketFile file(socket);
+  ClientProcesses clients;
+  while (!asked_to_end(inbox, clients)) {
+    std::vector<pollfd> waiting = {{listener.get(), POLLIN, 0}, {inbox.descriptor(), POLLIN, 0}};
+    for (const ClientProcess& client : clients) waiting.push_back({client.channel(), POLLIN, 0});
+    ::poll(waiting.data(), waiting.size(), -1);
+    auto entry = waiting.begin() + 2;
+    for (ClientProcess& client : clients) {
+      if ((entry++)->revents != 0) client.connect_for_it(reachable);
+    }
+    if (waiting[0].revents == 0) continue;
+    FileDescriptor client = compositor::accept_from(listener);
+    if (!client) continue;
+    if (clients.size() >= compositor::limits::max_clients) {
+      logging::log(logging::Level::warn, "gl-server: {} applications are here already; sent one more away",
+                   clients.size());
+      continue;
+    }
+    try {
+      clients.emplace_back(installation, socket, std::move(client), environment);
+    } catch (const std::exception& error) {
+      logging::log(logging::Level::warn, "gl-server: no process for one more application: {}", error.what());
+    }
+  }
+  wait_for_ends(clients);
+}
+
+}  // namespace understudy::launcher

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/sandbox/file_restriction.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/landlock.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "compositor/transport/file_descriptor.h"
+
+namespace understudy::launcher {
+namespace {
+
+using compositor::FileDescriptor;
+
+// Headers are those of the distribution, kernels are often newer.
+constexpr std::uint64_t refer_right = 1ULL << 13;     // version 2
+constexpr std::uint64_t truncate_right = 1ULL << 14;  // version 3
+constexpr std::uint64_t tcp_rights = 3;               // version 4: bind and connect
+constexpr std::uint64_t other_processes = 3;          // version 6: abstract sockets and signals
+
+constexpr std::uint64_t reading =
+    LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+
+struct RulesetAttributes {
+  std::uint64_t files = 0;
+  std::uint64_t network = 0;
+  std::uint64_t scope = 0;
+};
+
+/// How much of the structure a kernel of this version knows.
+std::size_t bytes_known(int version) {
+  if (version >= 6) return sizeof(RulesetAttributes);
+  return version >= 4 ? offsetof(RulesetAttributes, scope) : offsetof(RulesetAttributes, network);
+}
+
+std::uint64_t writing_rights(int version) {
+  std::uint64_t rights = LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
+                         LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_MAKE_CHAR |
+                         LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_REG |
+                         LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO |
+                         LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SYM;
+  if (version >= 2) rights |= refer_right;
+  if (version >= 3) rights |= truncate_right;
+  return rights;
+}
+
+class Ruleset {
+ public:
+  explicit Ruleset(int version, const RulesetAttributes& attributes)
+      : rules_(int(::syscall(SYS_landlock_create_ruleset, &attributes, bytes_known(version), 0))) {
+    if (!rules_) trouble_ = fmt::format("Landlock makes no rules: {}", std::strerror(errno));
+  }
+
+  /// A folder that is not there needs no rule.
+  void allow(const std::filesystem::path& folder, std::uint64_t rights) {
+    const FileDescriptor opened(::open(folder.c_str(), O_PATH | O_CLOEXEC | O_DIRECTORY));
+    if (!opened || !rules_) return;
+    landlock_path_beneath_attr rule{};
+    rule.allowed_access = rights;
+    rule.parent_fd = opened.get();
+    if (::syscall(SYS_landlock_add_rule, rules_.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
+      trouble_ = fmt::format("Landlock takes no rule for {}: {}", folder.string(), std::strerror(errno));
+  }
+
+  std::string enforce() {
+    if (!trouble_.empty()) return trouble_;
+    if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+        ::syscall(SYS_landlock_restrict_self, rules_.get(), 0) != 0)
+      return fmt::format("Landlock does not take effect: {}", std::strerror(errno));
+    return {};
+  }
+
+ private:
+  FileDescriptor rules_;
+  std::string trouble_;
+};
+
+constexpr const char* no_landlock = "this kernel has no Landlock (Linux 5.13 and later, lsm=landlock)";
+
+}  // namespace
+
+int landlock_version() {
+  const long version = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  return version > 0 ? int(version) : 0;
+}
+
+std::string restrict_writing(std::span<const std::filesystem::path> folders) {
+  const int version = landlock_version();
+  if (version == 0) return no_landlock;
+  const std::uint64_t rights = writing_rights(version);
+  Ruleset rules(version, {.files = rights, .network = tcp_rights, .scope = other_processes});
+  for (const std::filesystem::path& folder : folders) rules.allow(folder, rights);
+  rules.allow("/dev", LANDLOCK_ACCESS_FS_WRITE_FILE);
+  return rules.enforce();
+}
+
+std::string restrict_reading(std::span<const std::filesystem::path> folders) {
+  const int version = landlock_version();
+  if (version == 0) return no_landlock;
+  Ruleset rules(version, {.files = reading, .network = 0, .scope = 0});
+  for (const std::filesystem::path& folder : folders) rules.allow(folder, reading);
+  return rules.enforce();
+}
+
+}  // namespace understudy::launcher

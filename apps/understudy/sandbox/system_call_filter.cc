@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/understudy/sandbox/system_call_filter.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/prctl.h>
+#include <sched.h>
+#include <seccomp.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <span>
+
+#ifndef PR_SET_VMA
+#define PR_SET_VMA 0x53564d41
+#endif
+
+namespace understudy::launcher {
+namespace {
+
+/// Whatever their arguments are. Names, since headers of older kernels lack numbers of newer calls.
+constexpr auto always = std::to_array<const char*>({
+    // Memory. Executable memory as well: drivers on the CPU compile shaders.
+    "brk",
+    "madvise",
+    "membarrier",
+    "memfd_create",
+    "mmap",
+    "mmap2",
+    "mprotect",
+    "mremap",
+    "munmap",
+    // Descriptors that are there, and files without a name.
+    "close",
+    "close_range",
+    "dup",
+    "dup2",
+    "dup3",
+    "epoll_create1",
+    "epoll_ctl",
+    "epoll_pwait",
+    "epoll_wait",
+    "eventfd2",
+    "fallocate",
+    "fstat",
+    "fstat64",
+    "fsync",
+    "ftruncate",
+    "ftruncate64",
+    "_llseek",
+    "lseek",
+    "pipe2",
+    "poll",
+    "ppoll",
+    "ppoll_time64",
+    "pread64",
+    "preadv",
+    "preadv2",
+    "pselect6",
+    "pselect6_time64",
+    "pwrite64",
+    "pwritev",
+    "pwritev2",
+    "read",
+    "readv",
+    "select",
+    "write",
+    "writev",
+    // Sockets that are there.
+    "getpeername",
+    "getsockname",
+    "getsockopt",
+    "recvfrom",
+    "recvmmsg",
+    "recvmsg",
+    "sendmmsg",
+    "sendmsg",
+    "sendto",
+    "setsockopt",
+    "shutdown",
+    // Threads, signals and the end.
+    "exit",
+    "exit_group",
+    "futex",
+    "futex_time64",
+    "futex_waitv",
+    "get_robust_list",
+    "getcpu",
+    "getpid",
+    "getppid",
+    "gettid",
+    "restart_syscall",
+    "rseq",
+    "rt_sigaction",
+    "rt_sigpending",
+    "rt_sigprocmask",
+    "rt_sigreturn",
+    "rt_sigsuspend",
+    "rt_sigtimedwait",
+    "sched_get_priority_max",
+    "sched_get_priority_min",
+    "sched_getaffinity",
+    "sched_getparam",
+    "sched_getscheduler",
+    "sched_setaffinity",
+    "sched_yield",
+    "set_robust_list",
+    "set_tid_address",
+    "sigaltstack",
+    // Time and facts.
+    "clock_getres",
+    "clock_gettime",
+    "clock_gettime64",
+    "clock_nanosleep",
+    "clock_nanosleep_time64",
+    "getegid",
+    "geteuid",
+    "getgid",
+    "getrandom",
+    "getrlimit",
+    "getrusage",
+    "gettimeofday",
+    "getuid",
+    "nanosleep",
+    "sysinfo",
+    "time",
+    "times",
+    "ugetrlimit",
+    "uname",
+});
+
+/// Of files by name, to read and to write them.
+constexpr auto of_files = std::to_array<const char*>(
+    {"access",   "creat",      "faccessat", "faccessat2", "fchmod",   "fstatat64",  "getdents64",
+     "lstat",    "newfstatat", "open",      "openat",     "readlink", "readlinkat", "rename",
+     "renameat", "renameat2",  "stat",      "statx",      "unlink",   "unlinkat"});
+
+/// Of drivers of graphics cards.
+constexpr auto of_cards = std::to_array<const char*>({"ioctl", "kcmp", "mlock", "munlock", "sched_setscheduler",
+                                                      "setpriority", "timerfd_create", "timerfd_settime"});
+
+/// Fail with EACCES, as files do that one may not open: libraries go on without them.
+constexpr auto opening =
+    std::to_array<const char*>({"creat", "open", "openat", "openat2", "open_by_handle_at"});
+
+class Filter {
+ public:
+  Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), &seccomp_release) {
+    if (!context_) trouble_ = "libseccomp makes no filter";
+  }
+
+  void add(std::uint32_t action, std::span<const char* const> names) {
+    for (const char* name : names) add(action, name, {});
+  }
+
+  void add(std::uint32_t action, const char* name, std::initializer_list<scmp_arg_cmp> arguments) {
+    const int call = seccomp_syscall_resolve_name(name);
+    // Below zero: this processor has no such call, or libseccomp is older than it.
+    if (!context_ || call < 0) return;
+    const int result =
+        seccomp_rule_add_array(context_.get(), action, call, unsigned(arguments.size()), arguments.begin());
+    if (result != 0)
+      trouble_ = fmt::format("libseccomp takes no rule for {}: {}", name, std::strerror(-result));
+  }
+
+  void allow(const char* name, std::initializer_list<scmp_arg_cmp> arguments) {
+    add(SCMP_ACT_ALLOW, name, arguments);
+  }
+
+  std::string load() {
+    if (!trouble_.empty()) return trouble_;
+    // All threads that there are, such as a driver's. A tree of comparisons takes less time than a list.
+    seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_TSYNC, 1);
+    seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_OPTIMIZE, 2);
+    const int result = seccomp_load(context_.get());
+    return result == 0 ? std::string()
+                       : fmt::format("the kernel takes no seccomp filter: {}", std::strerror(-result));
+  }
+
+ private:
+  std::unique_ptr<void, decltype(&seccomp_release)> context_;
+  std::string trouble_;
+};
+
+scmp_arg_cmp is(unsigned argument, std::uint64_t value) {
+  return {argument, SCMP_CMP_EQ, value, 0};
+}
+
+scmp_arg_cmp has(unsigned argument, std::uint64_t bits) {
+  return {argument, SCMP_CMP_MASKED_EQ, bits, bits};
+}
+
+/// What depends on arguments, since part of what the call does would be too much.
+void allow_by_arguments(Filter& filter) {
+  // Threads, and no processes. clone3 hides its flags; glibc uses clone where it is missing.
+  filter.allow("clone", {has(0, CLONE_THREAD)});
+  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3", {});
+  for (const int command :
+       {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_ADD_SEALS, F_GET_SEALS}) {
+    filter.allow("fcntl", {is(1, std::uint64_t(command))});
+    filter.allow("fcntl64", {is(1, std::uint64_t(command))});
+  }
+  for (const int what : {PR_SET_NAME, PR_GET_NAME, PR_SET_VMA})
+    filter.allow("prctl", {is(0, std::uint64_t(what))});
+  // Signals to this process alone, as abort() sends them.
+  const auto own = std::uint64_t(::getpid());
+  filter.allow("kill", {is(0, own)});
+  filter.allow("tgkill", {is(0, own)});
+  // Limits are read, not set.
+  filter.allow("prlimit64", {is(0, 0), is(2, 0)});
+  filter.allow("prlimit64", {is(0, own), is(2, 0)});
+}
+
+}  // namespace
+
+std::string restrict_system_calls(const SystemCalls& calls) {
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
+    return fmt::format("the kernel does not forbid new privileges: {}", std::strerror(errno));
+  Filter filter;
+  filter.add(SCMP_ACT_ALLOW, always);
+  allow_by_arguments(filter);
+  if (calls.renderer == Renderer::graphics_card) filter.add(SCMP_ACT_ALLOW, of_cards);
+  if (calls.opens_files) {
+    filter.add(SCMP_ACT_ALLOW, of_files);
+  } else {
+    filter.add(SCMP_ACT_ERRNO(EACCES), opening);
+    // glibc's fstat() of a descriptor.
+    filter.allow("newfstatat", {has(3, AT_EMPTY_PATH)});
+  }
+  return filter.load();
+}
+
+}  // namespace understudy::launcher

@@ -68,6 +68,7 @@ Clients::Event Clients::next() {
         if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
           turn_began_ = Clock::now();
+          refused_ = false;
           // A step of a load takes what it takes.
           const auto* request = std::get_if<Request>(&*event);
           if (request == nullptr || (request->message.type != LoadMessage::load_volume &&
@@ -84,7 +85,7 @@ Clients::Event Clients::next() {
 
 void Clients::end_turn() {
   if (turn_began_ == Deadline()) return;
-  if (clients_.contains(last_heard_)) turns_.served(last_heard_, turn_began_, Clock::now());
+  if (clients_.contains(last_heard_)) turns_.served(last_heard_, turn_began_, Clock::now(), refused_);
   turn_began_ = {};
 }
 
@@ -159,6 +160,7 @@ ImageBuffer Clients::take_image_buffer(Connection& connection, Message message) 
 }
 
 void Clients::reply(const Request& request, MessageType type, Bytes payload) {
+  refused_ = type == LauncherMessage::refused;
   const auto client = clients_.find(request.client);
   if (client == clients_.end()) return;
   try {

@@ -66,6 +66,7 @@ class Clients {
   std::deque<std::uint64_t> departed_;
   Turns turns_;
   Deadline turn_began_{};  // of the application that was heard last; zero: its turn has ended
+  bool refused_ = false;   // what it asked for in this turn
 };
 
 }  // namespace understudy::compositor

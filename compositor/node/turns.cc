@@ -5,13 +5,19 @@
 
 namespace understudy::compositor {
 
-void Turns::served(std::uint64_t client, Deadline begun, Deadline done) {
-  const auto others = std::ranges::count_if(clients_, [&](const auto& entry) {
-    return entry.first != client && entry.second.served + limits::active_within >= begun;
-  });
-  const auto took = done - begun;
-  const Deadline::duration rest = took < limits::short_request ? Deadline::duration(0) : took * others;
-  clients_[client] = {done, done + std::min<Deadline::duration>(rest, limits::longest_rest)};
+void Turns::served(std::uint64_t client, Deadline begun, Deadline done, bool refused) {
+  using Duration = Deadline::duration;
+  const Duration took = done - begun;
+  const Duration counted = refused ? std::max<Duration>(took, limits::short_request) : took;
+  Duration rest{};
+  for (const auto& [number, other] : clients_) {
+    if (counted < limits::short_request || number == client || other.heard + limits::active_within < begun)
+      continue;
+    const Duration its_rest = std::max(other.rests_until - done, Duration());
+    rest += std::min(std::max(counted - its_rest, Duration()), other.time_for_it);
+  }
+  clients_[client] = {done, done + std::min<Duration>(rest, limits::longest_rest),
+                      refused ? took : Duration::max()};
 }
 
 Deadline Turns::rests_until(std::uint64_t client) const {

@@ -13,17 +13,20 @@ namespace understudy::compositor {
 
 class Turns {
  public:
-  /// A request of `client` was in hand from `begun` to `done`. It rests for that time once for each other
-  /// client that has asked for something since limits::active_within before it.
-  void served(std::uint64_t client, Deadline begun, Deadline done);
+  /// A request of `client` was in hand from `begun` to `done`; to be refused counts as limits::short_request at
+  /// least. It rests for that time once for each other client that has asked for something since
+  /// limits::active_within before it. It rests for none that must rest itself meanwhile, and for one that was
+  /// refused no longer than that took.
+  void served(std::uint64_t client, Deadline begun, Deadline done, bool refused);
   /// When `client` may be heard again.
   Deadline rests_until(std::uint64_t client) const;
   void forget(std::uint64_t client) { clients_.erase(client); }
 
  private:
   struct Client {
-    Deadline served{};
+    Deadline heard{};  ///< last
     Deadline rests_until{};
+    Deadline::duration time_for_it{};  ///< others rest for it no longer
   };
 
   std::map<std::uint64_t, Client> clients_;

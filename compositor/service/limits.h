@@ -50,7 +50,7 @@ constexpr int max_unwanted_ms = 60'000;            ///< what rank 0 tells of tha
 constexpr milliseconds reply_patience{30'000};     ///< an answer to anything but a request for an image
 constexpr milliseconds render_patience{20'000};    ///< an image
 constexpr milliseconds image_time{4'000};     ///< of nodes that pending clients share: what one may take of it
-constexpr milliseconds short_request{20};     ///< after which a client need not rest
+constexpr milliseconds short_request{20};     ///< after which a client need not rest, unless it was refused
 constexpr milliseconds active_within{2'000};  ///< others whose requests are so recent have a share of the nodes
 constexpr milliseconds longest_rest{10'000};  ///< below render_patience
 

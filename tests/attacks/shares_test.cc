@@ -26,30 +26,59 @@ using ::testing::Not;
 TEST(TurnsOfClients, WhoAskedForMuchRestsAsLongAsItTookForEachOfTheOthers) {
   Turns turns;
   const Deadline start = Clock::now();
-  turns.served(1, start, start + 5ms);
-  turns.served(2, start + 5ms, start + 10ms);
+  turns.served(1, start, start + 5ms, false);
+  turns.served(2, start + 5ms, start + 10ms, false);
   EXPECT_EQ(turns.rests_until(3), Deadline());
-  turns.served(3, start + 10ms, start + 3010ms);
+  turns.served(3, start + 10ms, start + 3010ms, false);
   EXPECT_EQ(turns.rests_until(3), start + 9010ms);
   EXPECT_LE(turns.rests_until(1), start + 3010ms);
   turns.forget(3);
   EXPECT_EQ(turns.rests_until(3), Deadline());
 }
 
+TEST(TurnsOfClients, NobodyRestsForWhoRestsItself) {
+  Turns turns;
+  const Deadline start = Clock::now();
+  turns.served(1, start, start + 5ms, false);
+  turns.served(2, start + 5ms, start + 1005ms, true);
+  ASSERT_EQ(turns.rests_until(2), start + 2005ms);
+  // The nodes would be idle meanwhile.
+  turns.served(1, start + 1005ms, start + 1105ms, false);
+  EXPECT_LE(turns.rests_until(1), start + 1105ms);
+  // The other one may ask again in the midst of this rest.
+  turns.served(1, start + 1900ms, start + 1980ms, false);
+  EXPECT_EQ(turns.rests_until(1), start + 1980ms + 55ms);
+}
+
+TEST(TurnsOfClients, WhoIsRefusedRestsLongerThanOthersRestForIt) {
+  Turns turns;
+  const Deadline start = Clock::now();
+  turns.served(1, start - 1ms, start, true);
+  turns.served(2, start, start + 100ms, false);
+  EXPECT_EQ(turns.rests_until(2), start + 101ms);
+  turns.served(1, start + 101ms, start + 102ms, true);
+  EXPECT_EQ(turns.rests_until(1), start + 102ms + limits::short_request);
+  // One that is given up after a while has had its turn.
+  turns.served(1, start + 200ms, start + 1200ms, true);
+  EXPECT_EQ(turns.rests_until(1), start + 2200ms);
+  turns.served(2, start + 2200ms, start + 2300ms, false);
+  EXPECT_EQ(turns.rests_until(2), start + 2400ms);
+}
+
 TEST(TurnsOfClients, WhoIsAloneNeverRests) {
   Turns turns;
   const Deadline start = Clock::now();
-  turns.served(1, start, start + 5ms);
+  turns.served(1, start, start + 5ms, false);
   // The other one has said nothing for long.
-  turns.served(2, start + 60s, start + 63s);
+  turns.served(2, start + 60s, start + 63s, false);
   EXPECT_LE(turns.rests_until(2), start + 63s);
 }
 
 TEST(TurnsOfClients, NobodyRestsForLongerThanAClientWaits) {
   Turns turns;
   const Deadline start = Clock::now();
-  for (std::uint64_t client = 1; client < 60; ++client) turns.served(client, start, start + 1ms);
-  turns.served(60, start + 1ms, start + 6001ms);
+  for (std::uint64_t client = 1; client < 60; ++client) turns.served(client, start, start + 1ms, false);
+  turns.served(60, start + 1ms, start + 6001ms, false);
   EXPECT_EQ(turns.rests_until(60), start + 6001ms + limits::longest_rest);
   EXPECT_LT(limits::longest_rest, limits::render_patience);
 }

@@ -223,7 +223,10 @@ TEST_F(NodeGroupTest, ChangedTexelsGiveTheImageOfAFreshVolumeBitForBit) {
 TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   struct Counts {
     std::atomic<std::uint64_t> received = 0, broadcast = 0;
-  } counts;
+  };
+  // The ranks end after this function does.
+  const auto shared_counts = std::make_shared<Counts>();
+  Counts& counts = *shared_counts;
   class Counting : public ForwardingCommunicator {
    public:
     Counting(Communicator& communicator, Counts& counts)
@@ -242,8 +245,8 @@ TEST_F(NodeGroupTest, TexelsTravelOnlyToTheRanksThatShowThem) {
   };
   constexpr int ranks = 4;
   start(ranks, limits::stall_patience,
-        [&](Communicator& communicator, const std::function<void(Communicator&)>& run) {
-          Counting counting(communicator, counts);
+        [shared_counts](Communicator& communicator, const std::function<void(Communicator&)>& run) {
+          Counting counting(communicator, *shared_counts);
           run(counting);
         });
   const auto linked = connect();
@@ -306,7 +309,8 @@ volume::RenderRequest some_slice_segments(const Texture& texture, int seed) {
 
 // Counted where it arrives: on two ranks of three.
 TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
-  std::atomic<std::uint64_t> broadcast = 0;
+  // The ranks end after this function does.
+  const auto counter = std::make_shared<std::atomic<std::uint64_t>>(0);
   class Counting : public ForwardingCommunicator {
    public:
     Counting(Communicator& communicator, std::atomic<std::uint64_t>& bytes)
@@ -320,10 +324,11 @@ TEST_F(NodeGroupTest, APreIntegrationTableTravelsOnce) {
     std::atomic<std::uint64_t>& bytes_;
   };
   start(3, limits::stall_patience,
-        [&](Communicator& communicator, const std::function<void(Communicator&)>& run) {
-          Counting counting(communicator, broadcast);
+        [counter](Communicator& communicator, const std::function<void(Communicator&)>& run) {
+          Counting counting(communicator, *counter);
           run(counting);
         });
+  std::atomic<std::uint64_t>& broadcast = *counter;
   Texture texture = some_texture();
   texture.description.ghost_layer = 8;
   const auto linked = connect(), other = connect(), embedded = embedded_service();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <random>
 #include <thread>
@@ -58,7 +59,9 @@ class RelayTest : public NodeGroupTest {
           service_protocols);
       TcpConnection tcp(connect_tcp(address, secret_, connection_request, soon()), service_protocols,
                         limits::max_image_message_bytes, connection_patience_);
-      why_ = ApplicationRelay(here, tcp).run();
+      std::string why = ApplicationRelay(here, tcp).run();
+      const std::scoped_lock lock(why_mutex_);
+      why_ = std::move(why);
     });
     service_ = remote_render_service(path, 20'000);
     ::unlink(path.c_str());
@@ -83,7 +86,8 @@ class RelayTest : public NodeGroupTest {
       },
       [](const std::string& line) { std::printf("%s\n", line.c_str()); });
   std::jthread listener_thread_;
-  std::string why_;
+  std::mutex why_mutex_;  // an application that is gone may end beside the next one
+  std::string why_;       ///< the last one has ended; to be read once all have
   std::vector<std::jthread> application_;
   std::unique_ptr<RenderService> service_;
 };

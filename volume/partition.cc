@@ -126,7 +126,8 @@ std::vector<TexelBox> boxes(const Partition& partition, const VolumeDescription&
     for (const bool high : {false, true}) {
       const int child = high ? split.high : split.low;
       if (child >= 0) continue;
-      TexelBox& part = result[std::size_t(~child)];
+      const int number = ~child;
+      TexelBox& part = result[std::size_t(number)];
       part = cut[i];
       (high ? part.low : part.high)[split.axis] = split.cut;
     }

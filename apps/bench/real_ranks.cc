@@ -107,7 +107,7 @@ struct Way {
   int ranks = 1;
   Algorithm algorithm{};
   Gather gather{};
-  auto operator<=>(const Way&) const = default;
+  auto operator<=>(const Way&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 };
 
 const char* name_of(Gather gather) {

@@ -21,7 +21,6 @@ using namespace understudy::compositor;
 using namespace understudy;
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(TurnsOfClients, WhoAskedForMuchRestsAsLongAsItTookForEachOfTheOthers) {
   Turns turns;

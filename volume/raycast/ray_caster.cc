@@ -115,9 +115,9 @@ void render_tile(const Scene& scene, Kernel kernel, const RenderRequest& request
     for (std::size_t r = 0; r < packet_rays; ++r)
       if (packet.first[r] <= packet.last[r]) {
         ++mine.rays;
-        const auto samples = std::uint64_t(packet.last[r] - packet.first[r] + 1);
-        mine.samples += samples;
-        if (hidden) mine.samples_hidden += samples;
+        const int samples = packet.last[r] - packet.first[r] + 1;
+        mine.samples += std::uint64_t(samples);
+        if (hidden) mine.samples_hidden += std::uint64_t(samples);
       }
     if (hidden) continue;
     KernelCounts done;

@@ -30,7 +30,6 @@ using compositor::Clock;
 using compositor::Connection;
 using compositor::ConnectionRequest;
 using compositor::Destination;
-using compositor::FileDescriptor;
 using compositor::Listener;
 using compositor::TcpConnection;
 namespace limits = compositor::limits;

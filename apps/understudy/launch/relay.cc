@@ -32,7 +32,6 @@ namespace {
 
 using compositor::Clock;
 using compositor::Connection;
-using compositor::ConnectionRequest;
 using compositor::Destination;
 using compositor::FileDescriptor;
 using compositor::TcpConnection;

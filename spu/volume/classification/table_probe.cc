@@ -49,10 +49,9 @@ bool sees_neighbours(ProbeBench& bench, const GlContext& context, const TextureD
                            slope[1] * ((y + 0.5) / probe_edge * 2 - 0.5) + slope[2] * 0.5;
       const int entry = int(std::lround(place * (probed_entries - 1)));
       const volume::Rgba& colour = image[std::size_t(y) * probe_edge + std::size_t(x)];
-      const auto around =
-          std::span(table).subspan(std::size_t(std::max(entry - weight_error, 0)),
-                                   std::size_t(std::min(entry + weight_error, probed_entries - 1) -
-                                               std::max(entry - weight_error, 0) + 1));
+      const auto first = std::size_t(std::max(entry - weight_error, 0));
+      const auto last = std::size_t(std::min(entry + weight_error, probed_entries - 1));
+      const auto around = std::span(table).subspan(first, last - first + 1);
       for (std::size_t c = 0; c < 4; ++c)
         if (!is_among(colour[c], around, c)) return true;
     }

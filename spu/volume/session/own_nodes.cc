@@ -48,6 +48,7 @@ bool is_for_the_viewer_alone(std::string_view variable) {
 int spawn_apart(std::vector<std::string> words) {
   words.insert(words.begin(), {"/bin/sh", "-c", "\"$0\" \"$@\" &"});
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::vector<char*> environment;

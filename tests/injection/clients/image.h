@@ -63,7 +63,7 @@ inline void draw_image(GLuint texture, int seed) {
   glBegin(GL_TRIANGLE_STRIP);
   for (int i = 0; i < 4; ++i) {
     glTexCoord2i(i % 2, i / 2);
-    glVertex3f(0.8F * float(2 * (i % 2) - 1), 0.7F * float(2 * (i / 2) - 1), 0.2F);
+    glVertex3f(0.8F * (i % 2 != 0 ? 1.0F : -1.0F), 0.7F * (i >= 2 ? 1.0F : -1.0F), 0.2F);
   }
   glEnd();
   glDisable(GL_TEXTURE_2D);
@@ -101,7 +101,7 @@ inline GLuint ball_texture() {
   std::vector<unsigned char> texels;
   for (int i = 0; i < n * n * n; ++i) {
     const double x = (i % n + 0.5) / n - 0.5;
-    const double y = (i / n % n + 0.5) / n - 0.5;
+    const double y = (double(i / n % n) + 0.5) / n - 0.5;
     const double z = (double(i / n / n) + 0.5) / n - 0.5;
     const double radius = std::sqrt(x * x + y * y + z * z);
     const double density = radius < 0.15 || radius > 0.45 ? 0 : std::sin((radius - 0.15) / 0.3 * 3.14159265);
@@ -143,7 +143,7 @@ inline void draw_volume(GLuint texture, double angle) {
     glBegin(GL_QUADS);
     for (int corner = 0; corner < 4; ++corner) {
       const double x = corner == 1 || corner == 2 ? 1 : 0;
-      const double y = corner / 2;
+      const double y = corner >= 2 ? 1 : 0;
       glTexCoord3d(x, y, z);
       glVertex3d(x, y, z);
     }

@@ -156,7 +156,9 @@ std::optional<double> density_of(const std::vector<RayEnds>& ends, const volume:
   const double finest = 0.02 / longest;
   double best = 0;
   double most = whole_enough;
-  for (double density = 0.6 / *widest; density < 1.4 / *widest; density += finest) {
+  const auto tried = std::size_t(0.8 / *widest / finest);
+  for (std::size_t i = 0; i < tried; ++i) {
+    const double density = 0.6 / *widest + double(i) * finest;
     const double whole = wholeness(ends, unit, density);
     if (whole <= most) continue;
     most = whole;
@@ -216,7 +218,7 @@ std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, Fiel
   for (std::size_t i = 0; i < all.size(); i += every) ends.push_back(all[i]);
   const auto& size = measured.texture.size;
   const volume::Vec3 texels{double(size[0]), double(size[1]), double(size[2])};
-  if (const auto steps = steps_in(ends, size, texels)) return steps;
+  if (auto steps = steps_in(ends, size, texels)) return steps;
   return steps_in(ends, size, {1, 1, 1});
 }
 

@@ -251,6 +251,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
                            const ProxyBox& box) {
   if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
   std::vector<std::optional<ProxyBox>> boxes;
+  boxes.reserve(spaces.size());
   for (const CoordinateSpace& space : spaces) boxes.push_back(proxy_box(measured, space));
   MarchMeasurement measurement(measured, box);
   if (auto refusal = measurement.measure()) return *std::move(refusal);

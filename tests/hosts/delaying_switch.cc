@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // delaying_switch MICROSECONDS INTERFACE…: an Ethernet switch between these interfaces that hands every frame
-// on only after that time, as a network of machines would; the kernel's own bridge knows no delay. Runs until
-// it is killed. Frames keep their virtio header, so that neither checksums nor segmentation are done here.
+// on only after that time, as a network of machines would; the kernel's own bridge knows no delay. Prints
+// "ready" when it hands frames on, and runs until it is killed. Frames keep their virtio header, so that neither checksums nor segmentation are done here.
 #include <arpa/inet.h>
 #include <linux/if_ether.h>
 #include <linux/if_packet.h>
@@ -44,7 +44,8 @@ void check(int result, const std::string& what) {
 }
 
 int port_at(const std::string& interface) {
-  const int port = socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, htons(ETH_P_ALL));
+  // With a protocol, it would get the frames of all interfaces until it is bound to its own.
+  const int port = socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   check(port, "a packet socket");
   const int on = 1;
   check(setsockopt(port, SOL_PACKET, PACKET_VNET_HDR, &on, sizeof on), "PACKET_VNET_HDR");
@@ -123,6 +124,8 @@ int main(int argc, char** argv) try {
   if (argc < 3) throw std::invalid_argument("usage: delaying_switch MICROSECONDS INTERFACE…");
   std::vector<int> ports;
   for (int argument = 2; argument < argc; ++argument) ports.push_back(port_at(argv[argument]));
+  std::puts("ready");
+  std::fflush(stdout);
   Switch(std::chrono::microseconds(std::stol(argv[1])), std::move(ports)).run();
 } catch (const std::exception& error) {
   std::fprintf(stderr, "delaying_switch: %s\n", error.what());

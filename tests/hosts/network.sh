@@ -25,3 +25,8 @@ done
 mount --bind "$folder/names" /etc/hosts
 # shellcheck disable=SC2086 # one word a port
 setsid "$switch" "$delay" $ports >"$folder/switch.log" 2>&1 </dev/null &
+# Whoever started this script may kill its process group once it has ended: by then the switch is out of it.
+until grep -q "^ready" "$folder/switch.log"; do
+  kill -0 $! || { cat "$folder/switch.log" >&2; exit 1; }
+  sleep 0.01
+done

@@ -2,6 +2,7 @@
 #include "interceptor/address_space.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -32,7 +33,10 @@ unsigned long address_space_left() {
 }
 
 unsigned long address_space_needed() {
-  const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+  cpu_set_t allowed;
+  // There may be more of them than fit into the set: then it fails, and all count.
+  const long processors =
+      sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : sysconf(_SC_NPROCESSORS_ONLN);
   return 256 + 160 * static_cast<unsigned long>(processors > 0 ? processors : 1);
 }
 

@@ -4,8 +4,8 @@
 #include "compositor/service.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/depth/deferred_depth_write.h"
-#include "spu/volume/observation/conditional_render.h"
 #include "spu/volume/observation/draw_slots.h"
+#include "spu/volume/observation/enclosing_calls.h"
 #include "spu/volume/observation/program_binaries.h"
 #include "spu/volume/request/explanation.h"
 #include "spu/volume/stages.h"
@@ -49,7 +49,7 @@ Stages& VolumeUnit::stages() {
 
 void VolumeUnit::fill(Phase phase, DispatchTable& table) {
   if (phase == Phase::plain) {
-    fill_conditional_render_slots(table);
+    fill_enclosing_call_slots(table);
     fill_program_binary_slots(table);
     fill_stack_detection_slots(table);
   }

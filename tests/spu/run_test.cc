@@ -55,7 +55,7 @@ TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
   std::vector<std::uint8_t> colours = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 51};
   ArraySources sources;
   sources.client_memory = true;
-  using Role = ClientArray::Role;
+  using Role = MemoryArray::Role;
   const auto bytes = [](auto& v) { return reinterpret_cast<const std::byte*>(v.data()); };
   sources.arrays = {
       {.role = Role::texture_coordinate,

@@ -20,11 +20,11 @@ std::vector<std::string> extensions_of(const DispatchTable& gl) {
   return extensions;
 }
 
+}  // namespace
+
 bool has_extension(const GlContext& context, std::string_view name) {
   return std::ranges::find(context.extensions, name) != context.extensions.end();
 }
-
-}  // namespace
 
 GlContext describe_context(const DispatchTable& gl) {
   GlContext context;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dispatch/table.h"
@@ -24,6 +25,9 @@ struct GlContext {
   /// Float framebuffers, GLSL 1.30 and vertex array objects are what probing and presenting need.
   bool sufficient() const { return version >= 300; }
 };
+
+/// Whether the driver of an OpenGL 3.0 or later names it.
+bool has_extension(const GlContext& context, std::string_view name);
 
 /// Asks the current context.
 GlContext describe_context(const DispatchTable& gl);

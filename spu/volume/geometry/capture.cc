@@ -7,6 +7,7 @@
 
 #include "spu/volume/context/context.h"
 #include "spu/volume/geometry/transform_feedback.h"
+#include "spu/volume/refusal/refusal.h"
 
 namespace understudy::spu {
 namespace {
@@ -81,7 +82,7 @@ InputRange range_of(const Capture& capture, const ProgramStages& stages) {
 /// too much.
 std::vector<float> captured_data(const GlContext& context, const Run& run, const ProgramStages& stages,
                                  std::size_t stride) {
-  TransformFeedback feedback(*context.gl, stages.observer);
+  TransformFeedback feedback(context, stages.observer);
   copy_uniforms(context, run.pipeline().program, stages.observer);
   context.gl->UseProgram(stages.observer);
   return feedback.triangles(run, stride);
@@ -150,6 +151,8 @@ bool InputRange::covers(const InputRange& inner) const {
 
 Capture capture_vertices(const GlContext& context, const Run& run, const ProgramStages& stages,
                          const std::string& coordinate) {
+  // Transform feedback of triangles raises an error where others are drawn, which the application would find.
+  if (!run.only_polygons) throw Refusal{"points or lines are drawn among the slices"};
   Capture capture;
   capture.stride = 4;
   for (const StageInput& input : stages.inputs) {

@@ -36,6 +36,31 @@ class FeedbackState {
   void* buffer_ = nullptr;
 };
 
+/// In scope, OpenGL writes what is drawn into `buffer` instead of the framebuffer.
+class FeedbackMode {
+ public:
+  FeedbackMode(const DispatchTable& gl, std::vector<float>& buffer) : gl_(gl), application_(gl) {
+    gl_.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
+    gl_.RenderMode(GL_FEEDBACK);
+  }
+  ~FeedbackMode() {
+    if (!ended_) gl_.RenderMode(GL_RENDER);
+  }
+  FeedbackMode(const FeedbackMode&) = delete;
+  FeedbackMode& operator=(const FeedbackMode&) = delete;
+
+  /// Ends it. How many values were written; negative where the buffer is too small.
+  GLint end() {
+    ended_ = true;
+    return gl_.RenderMode(GL_RENDER);
+  }
+
+ private:
+  const DispatchTable& gl_;
+  const FeedbackState application_;
+  bool ended_ = false;
+};
+
 ObservedVertex vertex_from(const float* f, const Window& window) {
   ObservedVertex v;
   const double w = f[3];
@@ -97,15 +122,13 @@ ObservedPolygons observe_by_feedback(const GlContext& context, const Run& run, G
   std::vector<float> buffer(first_buffer);
   GLint values = -1;
   while (true) {
-    const FeedbackState application(gl);
-    gl.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
-    gl.RenderMode(GL_FEEDBACK);
+    FeedbackMode feedback(gl, buffer);
     if (vertices.empty()) {
       run.replay(gl);
     } else {
       given.draw(run, vertices);
     }
-    values = gl.RenderMode(GL_RENDER);
+    values = feedback.end();
     if (values >= 0 || buffer.size() >= largest_buffer) break;
     buffer.resize(buffer.size() * 4);
   }

@@ -91,7 +91,7 @@ bool GivenVertices::can_tell(const Run& run) const {
 }
 
 bool GivenVertices::prepare() {
-  if (program_ != 0) return true;
+  if (program_ != 0 || has_failed_) return program_ != 0;
   const DispatchTable& gl = *context_.gl;
   const GLuint shader = gl.CreateShader(GL_VERTEX_SHADER);
   gl.ShaderSource(shader, 1, &attribute_shader, nullptr);
@@ -108,6 +108,7 @@ bool GivenVertices::prepare() {
     program_ = program;
   } else {
     gl.DeleteProgram(program);
+    has_failed_ = true;
   }
   return linked;
 }
@@ -115,8 +116,7 @@ bool GivenVertices::prepare() {
 std::vector<float> GivenVertices::read(const Run& run) {
   const std::size_t slices = run.pipeline().stack ? run.slices_drawn_alike() : 1;
   if (slices == 0 || !can_tell(run) || !prepare()) return {};
-  std::vector<float> vertices =
-      TransformFeedback(*context_.gl, program_).triangles(run, floats_per_given_vertex);
+  std::vector<float> vertices = TransformFeedback(context_, program_).triangles(run, floats_per_given_vertex);
   if (vertices.size() % (3 * slices * floats_per_given_vertex) != 0) return {};
   return vertices;
 }

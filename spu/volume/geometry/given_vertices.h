@@ -31,6 +31,7 @@ class GivenVertices {
 
   const GlContext& context_;
   GLuint program_ = 0;
+  bool has_failed_ = false;  ///< to be made
 };
 
 }  // namespace understudy::spu

@@ -7,14 +7,34 @@ namespace {
 constexpr GLsizeiptr usual_capture = GLsizeiptr(1) << 20;  // bytes
 constexpr GLsizeiptr largest_capture = GLsizeiptr(1) << 26;
 
+/// In scope, what is drawn is captured and counted by `queries`; afterwards, however the scope is left, it is
+/// not.
+class Capturing {
+ public:
+  Capturing(const DispatchTable& gl, const std::array<GLuint, 2>& queries) : gl_(gl) {
+    gl_.BeginQuery(GL_PRIMITIVES_GENERATED, queries[0]);
+    gl_.BeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, queries[1]);
+    gl_.BeginTransformFeedback(GL_TRIANGLES);
+  }
+  ~Capturing() {
+    gl_.EndTransformFeedback();
+    gl_.EndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+    gl_.EndQuery(GL_PRIMITIVES_GENERATED);
+  }
+  Capturing(const Capturing&) = delete;
+  Capturing& operator=(const Capturing&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+};
+
 }  // namespace
 
-TransformFeedback::TransformFeedback(const DispatchTable& gl, GLuint program) : gl_(gl) {
+TransformFeedback::TransformFeedback(const GlContext& context, GLuint program)
+    : gl_(*context.gl), has_objects_(context.version >= 400) {
   gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
   gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
-  gl_.GetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &indexed_);
-  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &start_);
-  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
+  replace_binding();
   discard_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
   gl_.GenBuffers(1, &buffer_);
   gl_.GenQueries(2, queries_.data());
@@ -25,26 +45,43 @@ TransformFeedback::TransformFeedback(const DispatchTable& gl, GLuint program) : 
 TransformFeedback::~TransformFeedback() {
   if (!discard_) gl_.Disable(GL_RASTERIZER_DISCARD);
   gl_.UseProgram(GLuint(program_));
-  if (size_ > 0) {
-    gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_), GLsizeiptr(size_));
-  } else {
-    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_));
-  }
+  restore_binding();
   gl_.BindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, GLuint(generic_));
   gl_.DeleteBuffers(1, &buffer_);
   gl_.DeleteQueries(2, queries_.data());
 }
 
+void TransformFeedback::replace_binding() {
+  if (has_objects_) {
+    // The application's own keeps the number of vertices that glDrawTransformFeedback draws.
+    gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BINDING, &application_object_);
+    gl_.GenTransformFeedbacks(1, &object_);
+    gl_.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, object_);
+    return;
+  }
+  gl_.GetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &indexed_);
+  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &start_);
+  gl_.GetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size_);
+}
+
+void TransformFeedback::restore_binding() {
+  if (has_objects_) {
+    gl_.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, GLuint(application_object_));
+    gl_.DeleteTransformFeedbacks(1, &object_);
+  } else if (size_ > 0) {
+    gl_.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_), GLintptr(start_), GLsizeiptr(size_));
+  } else {
+    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLuint(indexed_));
+  }
+}
+
 std::array<GLuint, 2> TransformFeedback::draw(const Run& run, GLsizeiptr bytes) {
   gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
   gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
-  gl_.BeginQuery(GL_PRIMITIVES_GENERATED, queries_[0]);
-  gl_.BeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, queries_[1]);
-  gl_.BeginTransformFeedback(GL_TRIANGLES);
-  run.replay(gl_);
-  gl_.EndTransformFeedback();
-  gl_.EndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
-  gl_.EndQuery(GL_PRIMITIVES_GENERATED);
+  {
+    const Capturing capturing(gl_, queries_);
+    run.replay(gl_);
+  }
   std::array<GLuint, 2> counts{};
   gl_.GetQueryObjectuiv(queries_[0], GL_QUERY_RESULT, &counts[0]);
   gl_.GetQueryObjectuiv(queries_[1], GL_QUERY_RESULT, &counts[1]);

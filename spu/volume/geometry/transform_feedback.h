@@ -14,7 +14,7 @@ namespace understudy::spu {
 /// In scope, `program` is the current one and nothing is rasterised; afterwards both are as before.
 class TransformFeedback {
  public:
-  TransformFeedback(const DispatchTable& gl, GLuint program);
+  TransformFeedback(const GlContext& context, GLuint program);
   ~TransformFeedback();
   TransformFeedback(const TransformFeedback&) = delete;
   TransformFeedback& operator=(const TransformFeedback&) = delete;
@@ -24,12 +24,18 @@ class TransformFeedback {
   std::vector<float> triangles(const Run& run, std::size_t stride);
 
  private:
+  void replace_binding();
+  void restore_binding();
   /// Triangles that the run generates, and those that fitted into a buffer of `bytes`.
   std::array<GLuint, 2> draw(const Run& run, GLsizeiptr bytes);
 
   const DispatchTable& gl_;
+  const bool has_objects_;  ///< transform feedback objects, of OpenGL 4.0
   GLint program_ = 0;
   GLint generic_ = 0;
+  GLint application_object_ = 0;
+  GLuint object_ = 0;
+  // Where there are no objects:
   GLint indexed_ = 0;
   GLint64 start_ = 0;
   GLint64 size_ = 0;

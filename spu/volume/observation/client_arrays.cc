@@ -65,7 +65,7 @@ struct FixedArrayNames {
   GLenum enable, size, type, stride, buffer, pointer;
 };
 
-bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, ClientArray array,
+bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, MemoryArray array,
                const FixedArrayNames& names) {
   if (!gl.IsEnabled(names.enable)) return true;
   GLint value = 0;
@@ -89,9 +89,23 @@ bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, 
   return size != 0 && array.components >= 1 && array.components <= 4;
 }
 
+/// Whether the attribute is no float, or is not read once a vertex.
+bool is_uncommon(const GlContext& context, GLuint index) {
+  const auto asked = [&](GLenum name) {
+    GLint value = 0;
+    context.gl->GetVertexAttribiv(index, name, &value);
+    return value != 0;
+  };
+  return asked(GL_VERTEX_ATTRIB_ARRAY_INTEGER) ||
+         ((context.version >= 330 || has_extension(context, "GL_ARB_instanced_arrays")) &&
+          asked(GL_VERTEX_ATTRIB_ARRAY_DIVISOR)) ||
+         (context.version >= 410 && asked(GL_VERTEX_ATTRIB_ARRAY_LONG));
+}
+
 /// The generic attribute `index`, which is enabled. False where it is not understood.
-bool add_generic(const DispatchTable& gl, ArraySources& sources, int& in_buffers, GLuint index) {
-  ClientArray array{.role = ClientArray::Role::generic, .index = GLint(index)};
+bool add_generic(const GlContext& context, ArraySources& sources, int& in_buffers, GLuint index) {
+  const DispatchTable& gl = *context.gl;
+  MemoryArray array{.role = MemoryArray::Role::generic, .index = GLint(index)};
   GLint buffer = 0;
   GLint value = 0;
   gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &buffer);
@@ -99,6 +113,7 @@ bool add_generic(const DispatchTable& gl, ArraySources& sources, int& in_buffers
     ++in_buffers;
     return true;
   }
+  if (is_uncommon(context, index)) return false;
   gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_SIZE, &array.components);
   gl.GetVertexAttribiv(index, GL_VERTEX_ATTRIB_ARRAY_TYPE, &value);
   array.type = GLenum(value);
@@ -121,7 +136,7 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   const DispatchTable& gl = *context.gl;
   int in_buffers = 0;
   bool understood = true;
-  using Role = ClientArray::Role;
+  using Role = MemoryArray::Role;
   if (!context.core) {
     GLint client_active = GL_TEXTURE0;
     gl.GetIntegerv(GL_CLIENT_ACTIVE_TEXTURE, &client_active);
@@ -151,7 +166,7 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   for (GLint i = attributes - 1; i >= 0; --i) {
     GLint enabled = 0;
     gl.GetVertexAttribiv(GLuint(i), GL_VERTEX_ATTRIB_ARRAY_ENABLED, &enabled);
-    if (enabled) understood &= add_generic(gl, sources, in_buffers, GLuint(i));
+    if (enabled) understood &= add_generic(context, sources, in_buffers, GLuint(i));
   }
   if (!context.core) {
     understood &= add_fixed(gl, sources, in_buffers, {.role = Role::vertex},
@@ -163,17 +178,24 @@ std::optional<std::string> read_array_sources(const GlContext& context, ArraySou
   return std::nullopt;
 }
 
+bool restarts_primitives(const GlContext& context) {
+  const DispatchTable& gl = *context.gl;
+  return (context.version >= 430 && gl.IsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX)) ||
+         (context.version >= 310 && gl.IsEnabled(GL_PRIMITIVE_RESTART)) ||
+         (has_extension(context, "GL_NV_primitive_restart") && gl.IsEnabled(GL_PRIMITIVE_RESTART_NV));
+}
+
 void append_elements(Records& calls, const ArraySources& sources, GLenum mode,
                      const std::vector<std::uint32_t>& indices) {
-  using Role = ClientArray::Role;
+  using Role = MemoryArray::Role;
   // Generic attributes alone draw too, but only attribute 0 or the position makes an immediate vertex.
   const bool positioned =
-      std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const ClientArray& array) {
+      std::any_of(sources.arrays.begin(), sources.arrays.end(), [](const MemoryArray& array) {
         return array.role == Role::vertex || (array.role == Role::generic && array.index == 0);
       });
   append_call(calls, &DispatchTable::Begin, mode);
   for (const std::uint32_t element : indices) {
-    for (const ClientArray& array : sources.arrays) {
+    for (const MemoryArray& array : sources.arrays) {
       if (array.first == nullptr) continue;
       std::array<float, 4> v{0, 0, 0, 1};
       const std::byte* from = array.first + array.stride * element;

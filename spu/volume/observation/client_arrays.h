@@ -18,8 +18,8 @@ namespace understudy::spu {
 
 struct GlContext;
 
-/// One enabled vertex array of the application.
-struct ClientArray {
+/// One enabled vertex array in the application's memory.
+struct MemoryArray {
   enum class Role { vertex, normal, colour, texture_coordinate, generic } role = Role::vertex;
   int index = 0;  ///< texture unit or generic attribute
   int components = 4;
@@ -31,11 +31,14 @@ struct ClientArray {
 
 struct ArraySources {
   bool client_memory = false;  ///< at least one array is read from the application's memory
-  std::vector<ClientArray> arrays;
+  std::vector<MemoryArray> arrays;
 };
 
 /// Where the next array draw would read its vertices. A reason where the mixture is not one we capture.
 std::optional<std::string> read_array_sources(const GlContext& context, ArraySources& sources);
+
+/// Whether one of the indices begins a new primitive instead of naming a vertex.
+bool restarts_primitives(const GlContext& context);
 
 /// Appends the elements `indices` of the arrays as one glBegin/glEnd.
 void append_elements(Records& calls, const ArraySources& sources, GLenum mode,

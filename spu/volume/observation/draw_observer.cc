@@ -23,6 +23,7 @@ bool DrawObserver::opens_run() {
 std::optional<Refusal> DrawObserver::refusal_of(const Pipeline& pipeline) {
   const GLuint texture = pipeline.volume.texture;
   if (conditional_render) return Refusal{"the slices are rendered conditionally"};
+  if (transform_feedback && context_->version < 400) return Refusal{"transform feedback is active"};
   if (auto refusal = standing_refusal(texture, pipeline.program)) return refusal;
   if (chain_.group().is_rendered_to(texture))
     return Refusal{"the volume texture is rendered into, or another texture shares its texels"};
@@ -39,7 +40,7 @@ bool DrawObserver::begins_run() {
   auto* const pipeline = std::get_if<Pipeline>(&finding);
   if (pipeline == nullptr) return false;
   if (pipeline->stack) {
-    if (conditional_render) return false;
+    if (conditional_render || (transform_feedback && context().version < 400)) return false;
   } else if (const auto refusal = refusal_of(*pipeline)) {
     refuse_in_this_frame(pipeline->volume.texture, *refusal);
     return false;

@@ -47,6 +47,9 @@ class DrawObserver : public Unit {
   bool inside_begin = false;
   /// Between glBeginConditionalRender and glEndConditionalRender, where our own drawing may do nothing.
   bool conditional_render = false;
+  /// Between glBeginTransformFeedback and glEndTransformFeedback. From OpenGL 4.0 on a query tells, which knows
+  /// of feedback that pauses.
+  bool transform_feedback = false;
   StackWatch stacks;
   /// Many 2-D textures of one size: what is drawn with them may be a stack of slices.
   void stack_defined();

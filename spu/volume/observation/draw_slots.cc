@@ -15,8 +15,8 @@
 #include "spu/track/share_group.h"
 #include "spu/volume/observation/array_calls.h"
 #include "spu/volume/observation/client_arrays.h"
-#include "spu/volume/observation/conditional_render.h"
 #include "spu/volume/observation/draw_observer.h"
+#include "spu/volume/observation/enclosing_calls.h"
 #include "spu/volume/observation/passing_calls.h"
 #include "spu/volume/observation/texture_changes.h"
 
@@ -53,7 +53,7 @@ struct IntoRun {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
     DrawObserver& observer = here();
     if (observer.run_open()) {
-      append_plain_call(observer.run().calls(), call, words);
+      observer.run().set_attribute(call, words);
     } else {
       Records one;
       append_plain_call(one, call, words);
@@ -102,7 +102,7 @@ void APIENTRY call_list(GLuint list) {
     observer.settle();
     return observer.next().CallList(list);
   }
-  append_call(observer.run().calls(), &DispatchTable::CallList, list);
+  observer.run().call_list(list);
   observer.run().only_polygons &= record->only_polygons;
   ++observer.run().draws;
 }
@@ -139,15 +139,12 @@ bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> fi
   Run& run = observer.run();
   const WholeDraw whole(run);
   if (sources.client_memory) {
+    std::vector<std::vector<std::uint32_t>> parts;
     for (std::size_t i = 0; i < count.size(); ++i) {
-      std::vector<std::uint32_t> indices(static_cast<std::size_t>(count[i]));
-      std::iota(indices.begin(), indices.end(), std::uint32_t(first[i]));
-      append_elements(run.calls(), sources, mode, indices);
+      std::vector<std::uint32_t>& elements = parts.emplace_back(static_cast<std::size_t>(count[i]));
+      std::iota(elements.begin(), elements.end(), std::uint32_t(first[i]));
     }
-    run.expanded_arrays = true;
-  } else if (count.size() == 1) {
-    append_call(run.calls(), &DispatchTable::DrawArrays, mode, first[0], count[0]);
-    run.reads_arrays = true;
+    run.draw_memory(sources, mode, parts);
   } else {
     run.draw_arrays(mode, first, count);
   }
@@ -204,10 +201,11 @@ bool defer_elements(DrawObserver& observer, GLenum mode, std::span<const Element
                                      [](const ElementPart& range) { return range.offset != nullptr; });
   if (element_buffer != 0 && !sources.client_memory) {
     run.draw_elements(mode, ranges, type);
-  } else if (element_buffer == 0 && sources.client_memory && somewhere) {
-    for (const ElementPart& range : ranges)
-      append_elements(run.calls(), sources, mode, elements_in_memory(range, size));
-    run.expanded_arrays = true;
+  } else if (element_buffer == 0 && sources.client_memory && somewhere &&
+             !restarts_primitives(observer.context())) {
+    std::vector<std::vector<std::uint32_t>> parts;
+    for (const ElementPart& range : ranges) parts.push_back(elements_in_memory(range, size));
+    run.draw_memory(sources, mode, parts);
   } else {
     return false;
   }
@@ -426,7 +424,7 @@ void fill_draws(DispatchTable& table) {
 void fill_watching_slots(DispatchTable& table) {
   fill_draws(table);
   fill_texture_change_slots(table);
-  fill_conditional_render_slots(table);
+  fill_enclosing_call_slots(table);
   table.End = end_while_watching;
 }
 

@@ -2,52 +2,10 @@
 #include "spu/volume/observation/run.h"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
 #include "spu/stream/plain_calls.h"
 
 namespace understudy::spu {
-namespace {
-
-/// The current colour, normal, texture coordinates and generic attributes, as they were.
-class CurrentAttributes {
- public:
-  explicit CurrentAttributes(const DispatchTable& gl) : gl_(gl) {
-    gl_.GetFloatv(GL_CURRENT_COLOR, colour_.data());
-    gl_.GetFloatv(GL_CURRENT_NORMAL, normal_.data());
-    GLint active = GL_TEXTURE0;
-    gl_.GetIntegerv(GL_ACTIVE_TEXTURE, &active);
-    for (std::size_t unit = 0; unit < coordinates_.size(); ++unit) {
-      gl_.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
-      gl_.GetFloatv(GL_CURRENT_TEXTURE_COORDS, coordinates_[unit].data());
-    }
-    gl_.ActiveTexture(GLenum(active));
-    for (std::size_t i = 0; i < generic_.size(); ++i) {
-      gl_.GetVertexAttribfv(GLuint(i + 1), GL_CURRENT_VERTEX_ATTRIB, generic_[i].data());
-    }
-  }
-  ~CurrentAttributes() {
-    gl_.Color4fv(colour_.data());
-    gl_.Normal3fv(normal_.data());
-    for (std::size_t unit = 0; unit < coordinates_.size(); ++unit) {
-      gl_.MultiTexCoord4fv(GLenum(GL_TEXTURE0 + unit), coordinates_[unit].data());
-    }
-    for (std::size_t i = 0; i < generic_.size(); ++i) gl_.VertexAttrib4fv(GLuint(i + 1), generic_[i].data());
-  }
-  CurrentAttributes(const CurrentAttributes&) = delete;
-  CurrentAttributes& operator=(const CurrentAttributes&) = delete;
-
- private:
-  using Four = std::array<GLfloat, 4>;
-  const DispatchTable& gl_;
-  Four colour_{};
-  Four normal_{};
-  std::array<Four, 8> coordinates_{};  ///< OpenGL's least number of fixed-function units that carry coordinates
-  std::array<Four, 15> generic_{};     ///< attribute 0 is the vertex
-};
-
-}  // namespace
 
 void Run::bind_slice(GLuint texture) {
   append_call(calls_, &DispatchTable::BindTexture, GL_TEXTURE_2D, texture);
@@ -57,15 +15,22 @@ void Run::bind_slice(GLuint texture) {
 }
 
 void Run::draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count) {
+  reads_arrays = true;
+  if (count.size() == 1) {
+    append_call(calls_, &DispatchTable::DrawArrays, mode, first[0], count[0]);
+    attributes_read_ = calls_.words().size();
+    return;
+  }
+  attributes_read_ = calls_.words().size();
   buffer_draws_.push_back({calls_.words().size(), mode, 0, counts_.size(), count.size()});
   counts_.insert(counts_.end(), count.begin(), count.end());
   first_.insert(first_.end(), first.begin(), first.end());
   base_vertex_.resize(counts_.size());
   offsets_.resize(counts_.size());
-  reads_arrays = true;
 }
 
 void Run::draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type) {
+  attributes_read_ = calls_.words().size();
   buffer_draws_.push_back({calls_.words().size(), mode, type, counts_.size(), ranges.size()});
   for (const ElementPart& range : ranges) {
     counts_.push_back(range.count);
@@ -120,17 +85,65 @@ GLuint Run::volume_texture() const {
   return textures.empty() ? pipeline_.volume.texture : std::min(textures.front(), textures.back());
 }
 
-void Run::replay(const DispatchTable& gl) const {
-  std::optional<CurrentAttributes> current;
-  if (expanded_arrays) current.emplace(gl);
+void Run::set_attribute(CallId call, const std::uint64_t* words) {
+  append_plain_call(calls_, call, words);
+  set_.add(call, words);
+  attributes_read_ = calls_.words().size();
+}
+
+void Run::call_list(GLuint list) {
+  append_call(calls_, &DispatchTable::CallList, list);
+  set_.add_list();
+  attributes_read_ = calls_.words().size();
+}
+
+void Run::draw_memory(const ArraySources& sources, GLenum mode,
+                      std::span<const std::vector<std::uint32_t>> parts) {
+  const std::size_t begin = calls_.words().size();
+  for (const auto& elements : parts) append_elements(calls_, sources, mode, elements);
+  // Draws between which no attribute is set need their values looked after once.
+  if (memory_draws_.empty() || memory_draws_.back().end <= attributes_read_)
+    memory_draws_.push_back({.begin = begin, .end = begin, .set = {}});
+  memory_draws_.back().end = calls_.words().size();
+  memory_draws_.back().set.add(sources.arrays);
+}
+
+void Run::make_calls(const DispatchTable& gl, Place& place, std::size_t end) const {
   const auto words = calls_.words();
-  std::size_t done = 0;
-  for (const BufferDraw& draw : buffer_draws_) {
-    make_plain_calls(words.subspan(done, draw.position - done), gl);
-    done = draw.position;
+  for (; place.buffer_draw < buffer_draws_.size(); ++place.buffer_draw) {
+    const BufferDraw& draw = buffer_draws_[place.buffer_draw];
+    if (draw.position >= end) break;
+    make_plain_calls(words.subspan(place.word, draw.position - place.word), gl);
+    place.word = draw.position;
     draw_kept(gl, draw);
   }
-  make_plain_calls(words.subspan(done), gl);
+  make_plain_calls(words.subspan(place.word, end - place.word), gl);
+  place.word = end;
+}
+
+void Run::make_all_calls(const DispatchTable& gl) const {
+  Place place;
+  for (const MemoryDraws& draws : memory_draws_) {
+    make_calls(gl, place, draws.begin);
+    const CurrentAttributes before(gl, draws.set);
+    make_calls(gl, place, draws.end);
+    before.make_current(gl);
+  }
+  make_calls(gl, place, calls_.words().size());
+  for (; place.buffer_draw < buffer_draws_.size(); ++place.buffer_draw)
+    draw_kept(gl, buffer_draws_[place.buffer_draw]);
+}
+
+void Run::replay(const DispatchTable& gl) const {
+  if (set_.empty()) return make_all_calls(gl);
+  if (!initial_) {
+    initial_.emplace(gl, set_);
+    return make_all_calls(gl);
+  }
+  const CurrentAttributes now(gl, set_);
+  initial_->make_current(gl);
+  make_all_calls(gl);
+  now.make_current(gl);
 }
 
 }  // namespace understudy::spu

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "spu/stream/record.h"
+#include "spu/volume/observation/client_arrays.h"
+#include "spu/volume/observation/current_attributes.h"
 #include "spu/volume/pipeline/pipeline.h"
 
 namespace understudy::spu {
@@ -38,14 +41,18 @@ class Run {
   /// The texture that the volume is known by: of a stack one of its ends, whichever is drawn first.
   GLuint volume_texture() const;
 
-  /// Where deferred calls go; all of them are plain.
+  /// Where deferred calls go; all of them are plain, and none but those of the next four sets an attribute.
   Records& calls() { return calls_; }
-  /// Draws from buffers that are more than one plain call: one glMultiDrawArrays, or one draw of elements whose
-  /// indices lie in the bound element buffer.
+  /// A call of kind `vertex`, with its arguments as AsWords makes them.
+  void set_attribute(CallId call, const std::uint64_t* words);
+  /// A display list of nothing but vertices.
+  void call_list(GLuint list);
+  /// Draws elements of arrays in the application's memory, one glBegin and glEnd for each of `parts`. They do
+  /// not set the current attributes, for the arrays would not have.
+  void draw_memory(const ArraySources& sources, GLenum mode, std::span<const std::vector<std::uint32_t>> parts);
+  /// Draws from buffers. Elements have their indices in the bound element buffer.
   void draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count);
   void draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type);
-  /// Array draws were kept as immediate calls, which move the current attributes; the arrays would not have.
-  bool expanded_arrays = false;
   /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
   bool reads_arrays = false;
   /// No draw is of points or lines, or of what nobody knows.
@@ -66,7 +73,8 @@ class Run {
     buffer_draws_.erase(buffer_draws_.begin() + std::ptrdiff_t(mark.buffer_draws), buffer_draws_.end());
   }
 
-  /// Makes the calls on `gl`, in order.
+  /// Makes the calls on `gl`, in order. The first time the current attributes become what the run makes of
+  /// them. Later times begin with the attributes that the first one began with, and leave what they found.
   void replay(const DispatchTable& gl) const;
 
  private:
@@ -79,6 +87,20 @@ class Run {
     std::size_t parts;
   };
   void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
+  struct Place {
+    std::size_t word = 0;         ///< of the deferred calls
+    std::size_t buffer_draw = 0;  ///< the next one
+  };
+  /// Makes the calls from `place` to word `end`, and the draws from buffers that stand before it.
+  void make_calls(const DispatchTable& gl, Place& place, std::size_t end) const;
+  void make_all_calls(const DispatchTable& gl) const;
+
+  /// Calls that are to leave the current attributes as they are.
+  struct MemoryDraws {
+    std::size_t begin;  ///< word of deferred calls
+    std::size_t end;
+    AttributeSet set;
+  };
 
   struct StackSlice {
     GLuint texture;
@@ -89,6 +111,11 @@ class Run {
   Records& calls_;
   std::vector<StackSlice> slices_;
   std::vector<BufferDraw> buffer_draws_;
+  std::vector<MemoryDraws> memory_draws_;
+  AttributeSet set_;                 ///< by calls that leave them so
+  std::size_t attributes_read_ = 0;  ///< word behind the last call that sets them, or draws from buffers
+  /// Before the first replay, of `set_`.
+  mutable std::optional<CurrentAttributes> initial_;
   std::vector<GLsizei> counts_;
   std::vector<GLint> first_;  ///< vertices, where there are no indices
   std::vector<GLint> base_vertex_;

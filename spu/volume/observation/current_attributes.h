@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The current vertex attributes: what vertices get that no array and no call of their own gives anything else
+// (OpenGL 4.6 compatibility, 10.2). Calls between draws set them, and so do draws of single vertices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dispatch/call_id.h"
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+
+struct MemoryArray;
+
+/// Attributes that calls have set.
+struct AttributeSet {
+  /// Colours, normal, texture coordinates, fog coordinate and edge flag.
+  bool fixed_function = false;
+  /// Generic attributes, a bit each, by the type of their values. Attribute 0 is the vertex.
+  std::uint32_t floats = 0;
+  std::uint32_t integers = 0;
+  std::uint32_t doubles = 0;
+
+  /// Adds what a call of kind `vertex` sets; `words` are its arguments as AsWords makes them.
+  void add(CallId call, const std::uint64_t* words);
+  /// Adds what the elements of these arrays set where they are drawn one by one.
+  void add(std::span<const MemoryArray> arrays);
+  /// Adds what a display list of vertices may set.
+  void add_list();
+  void add(const AttributeSet& others);
+  bool empty() const { return !fixed_function && (floats | integers | doubles) == 0; }
+};
+
+/// Their values at one moment.
+class CurrentAttributes {
+ public:
+  /// Those of the current context, of the attributes in `set`.
+  CurrentAttributes(const DispatchTable& gl, const AttributeSet& set);
+  void make_current(const DispatchTable& gl) const;
+
+ private:
+  using Four = std::array<GLfloat, 4>;
+  struct FixedFunction {
+    Four colour{};
+    Four secondary_colour{};
+    Four normal{};
+    /// OpenGL's least number of fixed-function units that carry coordinates.
+    std::array<Four, 8> coordinates{};
+    GLfloat fog_coordinate = 0;
+    GLboolean edge_flag = GL_TRUE;
+  };
+  template <class T>
+  struct Generic {
+    GLuint index = 0;
+    std::array<T, 4> value{};
+  };
+
+  std::optional<FixedFunction> fixed_function_;
+  std::vector<Generic<GLfloat>> floats_;
+  std::vector<Generic<GLint>> integers_;
+  std::vector<Generic<GLdouble>> doubles_;
+};
+
+}  // namespace understudy::spu

@@ -166,8 +166,8 @@ Finding look_at_sandbox() {
   if (!state.obstacle.empty())
     return {false, state.obstacle + "; run --remote and serve --gl-server have none"};
   if (const auto found = escapes(); !found.empty()) return {false, fmt::format("{}", fmt::join(found, ", "))};
-  const std::string landlock = state.landlock > 0 ? fmt::format("and Landlock {}", state.landlock)
-                                                  : "alone; this kernel has no Landlock";
+  const std::string landlock =
+      state.landlock > 0 ? fmt::format("and Landlock {}", state.landlock) : "alone; " + state.no_landlock;
   return {true,
           fmt::format("seccomp {}: processes of GL servers open no files, start no programs, make no sockets",
                       landlock)};

@@ -2,6 +2,8 @@
 #include "apps/understudy/gl_server/client_environment.h"
 
 #include <array>
+#include <sstream>
+#include <string>
 
 #include "spu/options.h"
 
@@ -37,6 +39,11 @@ constexpr auto of_libraries = std::to_array<const char*>({
     "UBSAN_OPTIONS",
 });
 
+/// Lists of paths with colons between them.
+constexpr auto places_of_libraries =
+    std::to_array<const char*>({"LD_LIBRARY_PATH", "GBM_BACKENDS_PATH", "LIBGL_DRIVERS_PATH",
+                                "__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES"});
+
 }  // namespace
 
 Environment client_environment(const Environment& whole) {
@@ -49,6 +56,18 @@ Environment client_environment(const Environment& whole) {
   kept["MESA_SHADER_CACHE_DISABLE"] = "true";
   kept["__GL_SHADER_DISK_CACHE"] = "0";
   return kept;
+}
+
+std::vector<std::filesystem::path> folders_of_libraries(const Environment& environment) {
+  std::vector<std::filesystem::path> folders;
+  for (const char* name : places_of_libraries) {
+    const auto found = environment.find(name);
+    if (found == environment.end()) continue;
+    std::istringstream list(found->second);
+    for (std::string path; std::getline(list, path, ':');)
+      if (path.starts_with('/')) folders.emplace_back(path);
+  }
+  return folders;
 }
 
 }  // namespace understudy::launcher

@@ -22,6 +22,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "apps/understudy/gl_server/client_environment.h"
 #include "apps/understudy/gl_server/client_process.h"
 #include "apps/understudy/gl_server/frame_changes.h"
 #include "apps/understudy/offscreen/offscreen_contexts.h"
@@ -89,12 +90,15 @@ spu::Options options_of_tile_worker(const spu::TilePlace& place) {
   return options;
 }
 
-/// Folders that what the options ask for is written into.
-std::vector<std::filesystem::path> folders_written(const spu::Options& options) {
-  std::vector<std::filesystem::path> folders;
-  if (!options.save_frames.empty()) folders.emplace_back(options.save_frames);
+/// What the options ask for is written into folders; libraries are in those of the installation and of the
+/// environment.
+SandboxFolders folders_used(const spu::Options& options) {
+  SandboxFolders folders;
+  if (!options.save_frames.empty()) folders.written.emplace_back(options.save_frames);
   for (const std::filesystem::path& file : spu::files_of_units(options.chain))
-    folders.push_back(file.parent_path());
+    folders.written.push_back(file.parent_path());
+  folders.libraries = folders_of_libraries(current_environment());
+  folders.libraries.push_back(this_installation().libraries);
   return folders;
 }
 
@@ -169,6 +173,11 @@ class Performance {
     const SandboxState state = sandbox_->close(renderer);
     if (!state.obstacle.empty())
       logging::log(logging::Level::warn, "GL server: calls are made without a sandbox: {}", state.obstacle);
+    else if (!state.no_landlock.empty() && (renderer == Renderer::graphics_card || sandbox_->writes()))
+      logging::log(logging::Level::warn,
+                   "GL server: no file is written, nor opened by a graphics card's driver: {}; --sandbox off "
+                   "does without the sandbox",
+                   state.no_landlock);
   }
 
   /// An application may be silent for as long as nobody touches it, but not within a message.
@@ -284,7 +293,7 @@ int perform(FileDescriptor socket, const std::string& address) {
                                           : options_of_application(address);
       spu::process_counters();  // makes a file, where there is a folder for it
       std::optional<Sandbox> sandbox;
-      if (options.sandbox) sandbox.emplace(folders_written(options));
+      if (options.sandbox) sandbox.emplace(folders_used(options));
       Performance(connection, options, paints, sandbox ? &*sandbox : nullptr).run();
     } catch (const compositor::ConnectionLost&) {
       throw;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <linux/landlock.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -26,8 +27,11 @@ constexpr std::uint64_t truncate_right = 1ULL << 14;  // version 3
 constexpr std::uint64_t tcp_rights = 3;               // version 4: bind and connect
 constexpr std::uint64_t other_processes = 3;          // version 6: abstract sockets and signals
 
-constexpr std::uint64_t reading =
-    LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+constexpr std::uint64_t listing = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+constexpr std::uint64_t reading = listing | LANDLOCK_ACCESS_FS_EXECUTE;
+/// The kernel takes no others for what is no folder.
+constexpr std::uint64_t of_single_files =
+    LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE | truncate_right;
 
 struct RulesetAttributes {
   std::uint64_t files = 0;
@@ -59,15 +63,9 @@ class Ruleset {
     if (!rules_) trouble_ = fmt::format("Landlock makes no rules: {}", std::strerror(errno));
   }
 
-  /// A folder that is not there needs no rule.
-  void allow(const std::filesystem::path& folder, std::uint64_t rights) {
-    const FileDescriptor opened(::open(folder.c_str(), O_PATH | O_CLOEXEC | O_DIRECTORY));
-    if (!opened || !rules_) return;
-    landlock_path_beneath_attr rule{};
-    rule.allowed_access = rights;
-    rule.parent_fd = opened.get();
-    if (::syscall(SYS_landlock_add_rule, rules_.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
-      trouble_ = fmt::format("Landlock takes no rule for {}: {}", folder.string(), std::strerror(errno));
+  /// What is not there needs no rule.
+  void allow(const std::vector<std::filesystem::path>& files, std::uint64_t rights) {
+    for (const std::filesystem::path& file : files) allow(file, rights);
   }
 
   std::string enforce() {
@@ -79,6 +77,17 @@ class Ruleset {
   }
 
  private:
+  void allow(const std::filesystem::path& file, std::uint64_t rights) {
+    const FileDescriptor opened(::open(file.c_str(), O_PATH | O_CLOEXEC));
+    struct stat about {};
+    if (!opened || !rules_ || ::fstat(opened.get(), &about) != 0) return;
+    landlock_path_beneath_attr rule{};
+    rule.allowed_access = S_ISDIR(about.st_mode) ? rights : rights & of_single_files;
+    rule.parent_fd = opened.get();
+    if (::syscall(SYS_landlock_add_rule, rules_.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
+      trouble_ = fmt::format("Landlock takes no rule for {}: {}", file.string(), std::strerror(errno));
+  }
+
   FileDescriptor rules_;
   std::string trouble_;
 };
@@ -92,21 +101,14 @@ int landlock_version() {
   return version > 0 ? int(version) : 0;
 }
 
-std::string restrict_writing(std::span<const std::filesystem::path> folders) {
+std::string restrict_files(const UsableFiles& files) {
   const int version = landlock_version();
   if (version == 0) return no_landlock;
-  const std::uint64_t rights = writing_rights(version);
-  Ruleset rules(version, {.files = rights, .network = tcp_rights, .scope = other_processes});
-  for (const std::filesystem::path& folder : folders) rules.allow(folder, rights);
-  rules.allow("/dev", LANDLOCK_ACCESS_FS_WRITE_FILE);
-  return rules.enforce();
-}
-
-std::string restrict_reading(std::span<const std::filesystem::path> folders) {
-  const int version = landlock_version();
-  if (version == 0) return no_landlock;
-  Ruleset rules(version, {.files = reading, .network = 0, .scope = 0});
-  for (const std::filesystem::path& folder : folders) rules.allow(folder, reading);
+  const std::uint64_t all = reading | writing_rights(version);
+  Ruleset rules(version, {.files = all, .network = tcp_rights, .scope = other_processes});
+  rules.allow(files.read, reading);
+  rules.allow(files.written, all);
+  rules.allow(files.devices, listing | LANDLOCK_ACCESS_FS_WRITE_FILE);
   return rules.enforce();
 }
 

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
-#include <utility>
+#include <system_error>
 
 #include "apps/understudy/sandbox/file_restriction.h"
 #include "compositor/service/client_limits.h"
@@ -19,9 +18,22 @@ namespace {
 /// Connections, image buffers, and what a driver holds.
 constexpr rlim_t most_descriptors = 256;
 
-/// What drivers of graphics cards open when they draw. Homes and data are elsewhere.
-constexpr auto read_by_cards =
-    std::to_array<const char*>({"/dev", "/etc", "/lib", "/lib64", "/opt", "/proc", "/sys", "/usr"});
+/// What drivers and their libraries open. Homes and data are elsewhere.
+constexpr auto of_systems = std::to_array<const char*>({"/etc", "/gnu/store", "/lib", "/lib64", "/nix/store",
+                                                        "/opt", "/proc", "/run/opengl-driver", "/sys", "/usr"});
+
+/// Not all of /dev: a terminal is not for drivers.
+constexpr auto devices_of_drivers =
+    std::to_array<const char*>({"/dev/dri", "/dev/dxg", "/dev/kfd", "/dev/null", "/dev/random", "/dev/udmabuf",
+                                "/dev/urandom", "/dev/zero"});
+
+std::vector<std::filesystem::path> devices() {
+  std::vector<std::filesystem::path> found(devices_of_drivers.begin(), devices_of_drivers.end());
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", unreadable))
+    if (entry.path().filename().string().starts_with("nvidia")) found.push_back(entry.path());
+  return found;
+}
 
 void bound(__rlimit_resource resource, rlim_t most) {
   rlimit limit{};
@@ -42,19 +54,24 @@ void bound_resources() {
 
 }  // namespace
 
-Sandbox::Sandbox(std::vector<std::filesystem::path> written) : written_(std::move(written)) {
+Sandbox::Sandbox(const SandboxFolders& folders) : writes_(!folders.written.empty()) {
   bound_resources();
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  if (restrict_writing(written_).empty()) landlock_ = landlock_version();
+  std::vector<std::filesystem::path> read(of_systems.begin(), of_systems.end());
+  read.insert(read.end(), folders.libraries.begin(), folders.libraries.end());
+  no_landlock_ = restrict_files({.read = read, .written = folders.written, .devices = devices()});
 }
 
 SandboxState Sandbox::close(Renderer renderer) const {
-  const std::vector<std::filesystem::path> cards(read_by_cards.begin(), read_by_cards.end());
-  const bool card = renderer == Renderer::graphics_card;
   SandboxState state;
-  if (restrict_reading(card ? cards : std::vector<std::filesystem::path>()).empty()) state.landlock = landlock_;
-  state.obstacle = restrict_system_calls(
-      {.renderer = renderer, .opens_files = !written_.empty() || (card && state.landlock > 0)});
+  state.no_landlock = no_landlock_;
+  if (no_landlock_.empty()) state.landlock = landlock_version();
+  Opening opening = Opening::nothing;
+  if (state.landlock > 0 && renderer == Renderer::graphics_card)
+    opening = Opening::all;
+  else if (state.landlock > 0 && writes_)
+    opening = Opening::to_write;
+  state.obstacle = restrict_system_calls({.renderer = renderer, .opening = opening});
   return state;
 }
 

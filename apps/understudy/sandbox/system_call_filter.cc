@@ -15,6 +15,7 @@
 #include <initializer_list>
 #include <memory>
 #include <span>
+#include <utility>
 
 #ifndef PR_SET_VMA
 #define PR_SET_VMA 0x53564d41
@@ -134,18 +135,17 @@ constexpr auto always = std::to_array<const char*>({
     "uname",
 });
 
-/// Of files by name, to read and to write them.
+/// Of files by name, but for opening those that are there.
 constexpr auto of_files = std::to_array<const char*>(
-    {"access",   "creat",      "faccessat", "faccessat2", "fchmod",   "fstatat64",  "getdents64",
-     "lstat",    "newfstatat", "open",      "openat",     "readlink", "readlinkat", "rename",
-     "renameat", "renameat2",  "stat",      "statx",      "unlink",   "unlinkat"});
+    {"access", "creat", "faccessat", "faccessat2", "fchmod", "fstatat64", "getdents64", "lstat", "newfstatat",
+     "readlink", "readlinkat", "rename", "renameat", "renameat2", "stat", "statx", "unlink", "unlinkat"});
 
 /// Of drivers of graphics cards.
 constexpr auto of_cards = std::to_array<const char*>({"ioctl", "kcmp", "mlock", "munlock", "sched_setscheduler",
                                                       "setpriority", "timerfd_create", "timerfd_settime"});
 
 /// Fail with EACCES, as files do that one may not open: libraries go on without them.
-constexpr auto opening =
+constexpr auto opening_calls =
     std::to_array<const char*>({"creat", "open", "openat", "openat2", "open_by_handle_at"});
 
 class Filter {
@@ -175,9 +175,11 @@ class Filter {
   std::string load() {
     if (!trouble_.empty()) return trouble_;
     // All threads that there are, such as a driver's. A tree of comparisons takes less time than a list.
-    seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_TSYNC, 1);
+    int result = seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_TSYNC, 1);
+    if (result != 0)
+      return fmt::format("libseccomp does not restrict threads that are there: {}", std::strerror(-result));
     seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_OPTIMIZE, 2);
-    const int result = seccomp_load(context_.get());
+    result = seccomp_load(context_.get());
     return result == 0 ? std::string()
                        : fmt::format("the kernel takes no seccomp filter: {}", std::strerror(-result));
   }
@@ -191,14 +193,15 @@ scmp_arg_cmp is(unsigned argument, std::uint64_t value) {
   return {argument, SCMP_CMP_EQ, value, 0};
 }
 
-scmp_arg_cmp has(unsigned argument, std::uint64_t bits) {
-  return {argument, SCMP_CMP_MASKED_EQ, bits, bits};
+/// Of the bits of `mask` these are set.
+scmp_arg_cmp is_in(unsigned argument, std::uint64_t mask, std::uint64_t bits) {
+  return {argument, SCMP_CMP_MASKED_EQ, mask, bits};
 }
 
 /// What depends on arguments, since part of what the call does would be too much.
 void allow_by_arguments(Filter& filter) {
   // Threads, and no processes. clone3 hides its flags; glibc uses clone where it is missing.
-  filter.allow("clone", {has(0, CLONE_THREAD)});
+  filter.allow("clone", {is_in(0, CLONE_THREAD, CLONE_THREAD)});
   filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3", {});
   for (const int command :
        {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_ADD_SEALS, F_GET_SEALS}) {
@@ -216,6 +219,22 @@ void allow_by_arguments(Filter& filter) {
   filter.allow("prlimit64", {is(0, own), is(2, 0)});
 }
 
+void allow_opening(Filter& filter, Opening opening) {
+  if (opening == Opening::nothing) {
+    filter.add(SCMP_ACT_ERRNO(EACCES), opening_calls);
+    // glibc's fstat() of a descriptor.
+    filter.allow("newfstatat", {is_in(3, AT_EMPTY_PATH, AT_EMPTY_PATH)});
+    return;
+  }
+  filter.add(SCMP_ACT_ALLOW, of_files);
+  constexpr std::array<std::pair<const char*, unsigned>, 2> with_flags = {{{"open", 1}, {"openat", 2}}};
+  for (const auto& [name, flags] : with_flags) {
+    const bool reads = opening == Opening::all;
+    filter.add(reads ? SCMP_ACT_ALLOW : SCMP_ACT_ERRNO(EACCES), name, {is_in(flags, O_ACCMODE, O_RDONLY)});
+    for (const std::uint64_t how : {O_WRONLY, O_RDWR}) filter.allow(name, {is_in(flags, O_ACCMODE, how)});
+  }
+}
+
 }  // namespace
 
 std::string restrict_system_calls(const SystemCalls& calls) {
@@ -225,13 +244,7 @@ std::string restrict_system_calls(const SystemCalls& calls) {
   filter.add(SCMP_ACT_ALLOW, always);
   allow_by_arguments(filter);
   if (calls.renderer == Renderer::graphics_card) filter.add(SCMP_ACT_ALLOW, of_cards);
-  if (calls.opens_files) {
-    filter.add(SCMP_ACT_ALLOW, of_files);
-  } else {
-    filter.add(SCMP_ACT_ERRNO(EACCES), opening);
-    // glibc's fstat() of a descriptor.
-    filter.allow("newfstatat", {has(3, AT_EMPTY_PATH)});
-  }
+  allow_opening(filter, calls.opening);
   return filter.load();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which system calls a process that executes OpenGL calls for others may make once its driver is open. All
-// others fail with EPERM (open and its kin with EACCES); nothing ends the process.
+// others fail with EPERM (open and its kin with EACCES); only a call by the numbers of another architecture
+// ends the process.
 #pragma once
 
 #include <string>
@@ -11,9 +12,16 @@ namespace understudy::launcher {
 /// graphics cards ask their kernel module for everything, and open devices later.
 enum class Renderer { cpu, graphics_card };
 
+/// More than nothing is for where something else says which files (see file_restriction.h).
+enum class Opening {
+  nothing,
+  to_write,  ///< files that are opened cannot be read alone
+  all
+};
+
 struct SystemCalls {
   Renderer renderer = Renderer::cpu;
-  bool opens_files = false;  ///< where something else says which (see file_restriction.h)
+  Opening opening = Opening::nothing;
 };
 
 /// Holds for all threads of this process and those that they start, and cannot be taken back. Returns what is

@@ -65,5 +65,12 @@ TEST(Environment, AProcessOfTheGlServerHasWhatIsListedAndNothingElse) {
                                  {"__GL_SHADER_DISK_CACHE", "0"}}));
 }
 
+TEST(Environment, SaysWhereLibrariesOfOpenGlAre) {
+  const Environment environment{
+      {"LD_LIBRARY_PATH", "/mine/lib::lib:/yours"}, {"LIBGL_DRIVERS_PATH", "/drivers"}, {"PATH", "/mine/bin"}};
+  EXPECT_EQ(folders_of_libraries(environment),
+            (std::vector<std::filesystem::path>{"/mine/lib", "/yours", "/drivers"}));
+}
+
 }  // namespace
 }  // namespace understudy::launcher

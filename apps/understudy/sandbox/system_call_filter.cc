@@ -7,6 +7,7 @@
 #include <sched.h>
 #include <seccomp.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -90,7 +91,6 @@ constexpr auto always = std::to_array<const char*>({
     "futex",
     "futex_time64",
     "futex_waitv",
-    "get_robust_list",
     "getcpu",
     "getpid",
     "getppid",
@@ -108,7 +108,6 @@ constexpr auto always = std::to_array<const char*>({
     "sched_getaffinity",
     "sched_getparam",
     "sched_getscheduler",
-    "sched_setaffinity",
     "sched_yield",
     "set_robust_list",
     "set_tid_address",
@@ -141,8 +140,12 @@ constexpr auto of_files = std::to_array<const char*>(
      "readlink", "readlinkat", "rename", "renameat", "renameat2", "stat", "statx", "unlink", "unlinkat"});
 
 /// Of drivers of graphics cards.
-constexpr auto of_cards = std::to_array<const char*>({"ioctl", "kcmp", "mlock", "munlock", "sched_setscheduler",
-                                                      "setpriority", "timerfd_create", "timerfd_settime"});
+constexpr auto of_cards =
+    std::to_array<const char*>({"kcmp", "mlock", "munlock", "timerfd_create", "timerfd_settime"});
+
+/// The second byte of their ioctls: DRM, NVIDIA's modules for cards and for their outputs, buffers that devices
+/// share, fences, and AMD's module for computing. A terminal's is 'T', by which one could type into it.
+constexpr auto types_of_card_ioctls = std::to_array<char>({'d', 'F', 'm', 'b', '>', 'K'});
 
 /// Fail with EACCES, as files do that one may not open: libraries go on without them.
 constexpr auto opening_calls =
@@ -214,9 +217,21 @@ void allow_by_arguments(Filter& filter) {
   const auto own = std::uint64_t(::getpid());
   filter.allow("kill", {is(0, own)});
   filter.allow("tgkill", {is(0, own)});
+  // Of the calling thread: other numbers may be those of other processes.
+  filter.allow("get_robust_list", {is(0, 0)});
+  filter.allow("sched_setaffinity", {is(0, 0)});
   // Limits are read, not set.
   filter.allow("prlimit64", {is(0, 0), is(2, 0)});
   filter.allow("prlimit64", {is(0, own), is(2, 0)});
+}
+
+void allow_for_a_card(Filter& filter) {
+  filter.add(SCMP_ACT_ALLOW, of_cards);
+  // The kernel takes the lower half of the number, which is compared here.
+  for (const char type : types_of_card_ioctls)
+    filter.allow("ioctl", {is_in(1, 0xff00, std::uint64_t(type) << 8)});
+  filter.allow("sched_setscheduler", {is(0, 0)});
+  filter.allow("setpriority", {is(0, PRIO_PROCESS), is(1, 0)});
 }
 
 void allow_opening(Filter& filter, Opening opening) {
@@ -243,7 +258,7 @@ std::string restrict_system_calls(const SystemCalls& calls) {
   Filter filter;
   filter.add(SCMP_ACT_ALLOW, always);
   allow_by_arguments(filter);
-  if (calls.renderer == Renderer::graphics_card) filter.add(SCMP_ACT_ALLOW, of_cards);
+  if (calls.renderer == Renderer::graphics_card) allow_for_a_card(filter);
   allow_opening(filter, calls.opening);
   return filter.load();
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
@@ -224,6 +225,43 @@ TEST(Sandbox, ReadsForAGraphicsCardWhatLandlockBounds) {
               return said;
             }),
             "");
+}
+
+/// A terminal takes what is to be typed into it by an ioctl.
+TEST(Sandbox, MakesNoIoctlsButThoseOfGraphicsCards) {
+  EXPECT_EQ(in_a_process([] {
+              const int device = ::open("/dev/null", O_RDWR);
+              std::string said = closed(Sandbox({}), Renderer::graphics_card);
+              char typed = 'x';
+              said += refused("TIOCSTI", ::ioctl(device, TIOCSTI, &typed), EPERM);
+              said += refused("TIOCLINUX", ::ioctl(device, TIOCLINUX, &typed), EPERM);
+              // By the kernel, and not before it.
+              said += refused("DRM", ::ioctl(device, _IO('d', 0), 0), ENOTTY);
+              said += refused("NVIDIA", ::ioctl(device, _IO('F', 0), 0), ENOTTY);
+              return said;
+            }),
+            "");
+}
+
+TEST(Sandbox, ChangesNoOtherProcess) {
+  for (const Renderer renderer : {Renderer::cpu, Renderer::graphics_card}) {
+    EXPECT_EQ(in_a_process([renderer] {
+                cpu_set_t processors;
+                ::sched_getaffinity(0, sizeof processors, &processors);
+                std::string said = closed(Sandbox({}), renderer);
+                const sched_param parameters{};
+                const pid_t other = ::getppid();
+                said +=
+                    refused("processors", ::sched_setaffinity(other, sizeof processors, &processors), EPERM);
+                said += refused("policy", ::sched_setscheduler(other, SCHED_OTHER, &parameters), EPERM);
+                said += refused("priority", ::setpriority(PRIO_PROCESS, id_t(other), 19), EPERM);
+                said += refused("those of a user", ::setpriority(PRIO_USER, 0, 19), EPERM);
+                said += refused("locks", ::syscall(SYS_get_robust_list, other, nullptr, nullptr), EPERM);
+                if (::sched_setaffinity(0, sizeof processors, &processors) != 0) said += "its own processors; ";
+                return said;
+              }),
+              "");
+  }
 }
 
 TEST(Sandbox, LeavesNoCoreAndBoundsDescriptors) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
 #include <system_error>
 
 #include "apps/understudy/sandbox/file_restriction.h"
@@ -43,7 +44,14 @@ void bound(__rlimit_resource resource, rlim_t most) {
   ::setrlimit(resource, &limit);
 }
 
+/// Memory behind descriptors counts for no limit of a process. So where memory ends, it is this process that
+/// the kernel ends.
+void be_ended_first() {
+  std::ofstream("/proc/self/oom_score_adj") << 1000;
+}
+
 void bound_resources() {
+  be_ended_first();
   bound(RLIMIT_CORE, 0);
   bound(RLIMIT_NOFILE, most_descriptors);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

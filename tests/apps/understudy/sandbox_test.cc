@@ -26,6 +26,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
@@ -262,6 +263,16 @@ TEST(Sandbox, ChangesNoOtherProcess) {
               }),
               "");
   }
+}
+
+TEST(Sandbox, IsEndedFirstWhereMemoryEnds) {
+  EXPECT_EQ(in_a_process([] {
+              const Sandbox sandbox({});
+              std::string score;
+              std::ifstream("/proc/self/oom_score_adj") >> score;
+              return score == "1000" ? std::string() : score;
+            }),
+            "");
 }
 
 TEST(Sandbox, LeavesNoCoreAndBoundsDescriptors) {

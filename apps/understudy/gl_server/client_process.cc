@@ -48,11 +48,13 @@ bool asked_to_end(SignalInbox& inbox, ClientProcesses& clients) {
   return false;
 }
 
-/// Clients that have just gone: their processes have figures to write.
-void wait_for_ends(ClientProcesses& clients) {
+/// Processes of clients that have just gone have figures to write. The others end together, and whatever they
+/// do with signals.
+void end_all(ClientProcesses& clients) {
   const auto until = Clock::now() + patience_with_ends;
   for (reap(clients); !clients.empty() && Clock::now() < until; reap(clients))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (const ClientProcess& client : clients) client.kill();
 }
 
 }  // namespace
@@ -66,7 +68,8 @@ ClientProcess::ClientProcess(const Installation& installation, const std::string
               .environment = environment,
               .output = {},
               .own_group = false,
-              .descriptors = {client.get(), its.get()}});
+              .descriptors = {client.get(), its.get()},
+              .confined = true});
   channel_ = std::move(ours);
 }
 
@@ -107,7 +110,7 @@ void serve_clients(const std::string& socket) {
       logging::log(logging::Level::warn, "gl-server: no process for one more application: {}", error.what());
     }
   }
-  wait_for_ends(clients);
+  end_all(clients);
 }
 
 }  // namespace understudy::launcher

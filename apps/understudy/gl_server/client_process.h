@@ -3,6 +3,7 @@
 // its addresses differ from those of other clients' processes, and makes no connections of its own.
 #pragma once
 
+#include <csignal>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,7 @@ class ClientProcess {
   void connect_for_it(std::span<const std::string> allowed);
   /// Empty while it runs.
   std::optional<Ending> poll_ending() { return process_->poll_ending(); }
+  void kill() const { process_->signal(SIGKILL); }
 
  private:
   compositor::FileDescriptor channel_;

@@ -3,8 +3,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/close_range.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,22 +31,39 @@ std::vector<char*> pointers_to(std::vector<std::string>& strings) {
   return pointers;
 }
 
+/// The descriptors behind the outputs are closed by exec.
+void close_others_at_exec() {
+  if (close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
+  // Before Linux 5.11.
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  for (int descriptor = STDERR_FILENO + 1; rlim_t(descriptor) < limit.rlim_cur; ++descriptor)
+    fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+}
+
+bool take_input_from_nowhere() {
+  const int input = open("/dev/null", O_RDONLY);
+  return input >= 0 && dup2(input, STDIN_FILENO) >= 0;
+}
+
 /// Between fork and exec: only what is safe there. Returns when something failed, with errno set.
 void become(const Command& command, char* const* arguments, char* const* environment, pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  if (command.own_group && setpgid(0, 0) != 0) return;
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent) raise(SIGTERM);
+  if (command.own_group && !command.confined && setpgid(0, 0) != 0) return;
+  if (command.confined && setsid() < 0) return;
+  const int signal_of_death = command.confined ? SIGKILL : SIGTERM;
+  prctl(PR_SET_PDEATHSIG, signal_of_death);
+  if (getppid() != parent) raise(signal_of_death);
+  if ((command.confined || !command.output.empty()) && !take_input_from_nowhere()) return;
   if (!command.output.empty()) {
-    const int input = open("/dev/null", O_RDONLY);
     const int output = open(command.output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-    if (input < 0 || output < 0) return;
-    dup2(input, STDIN_FILENO);
+    if (output < 0) return;
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
   }
+  if (command.confined) close_others_at_exec();
   for (const int descriptor : command.descriptors) {
     if (fcntl(descriptor, F_SETFD, 0) != 0) return;
   }

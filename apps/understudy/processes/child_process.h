@@ -19,6 +19,9 @@ struct Command {
   std::filesystem::path output;  ///< file for both outputs, with no input; empty: those of this process
   bool own_group = false;        ///< apart from the terminal's Ctrl-C, and signalled as a group
   std::vector<int> descriptors;  ///< that it has, too, under their numbers
+  /// Does what others ask for, who may have taken it over: it has no input, no terminal, and no descriptors but
+  /// its outputs and `descriptors`, and is killed when this process dies.
+  bool confined = false;
 };
 
 /// How a process ended.
@@ -33,8 +36,8 @@ struct Ending {
 
 class ChildProcess {
  public:
-  /// Throws std::system_error naming the program when it cannot be executed. The child gets SIGTERM should this
-  /// process die without ending it.
+  /// Throws std::system_error naming the program when it cannot be executed. The child gets SIGTERM, or SIGKILL
+  /// if it is confined, should this process die without ending it.
   explicit ChildProcess(const Command& command);
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;

@@ -93,6 +93,15 @@ std::optional<ConnectionAttempt> received_answer(int channel, std::uint64_t ques
   return attempt;
 }
 
+/// A question may be for a path that names no socket, and descriptors may be used up: neither ends who answers.
+ConnectionAttempt attempt_for_another(const std::string& path) {
+  try {
+    return attempt_to_connect(path);
+  } catch (const std::runtime_error&) {
+    return ConnectionAttempt{{}, EINVAL};
+  }
+}
+
 }  // namespace
 
 std::pair<FileDescriptor, FileDescriptor> connector_channel() {
@@ -141,7 +150,8 @@ bool answer_connector(const FileDescriptor& channel, std::span<const std::string
   const std::string path(text.data(), std::size_t(got) - sizeof question);
   const bool known =
       (message.msg_flags & MSG_TRUNC) == 0 && std::find(allowed.begin(), allowed.end(), path) != allowed.end();
-  return send_answer(channel.get(), question, known ? attempt_to_connect(path) : ConnectionAttempt{{}, EACCES});
+  return send_answer(channel.get(), question,
+                     known ? attempt_for_another(path) : ConnectionAttempt{{}, EACCES});
 }
 
 }  // namespace understudy::compositor

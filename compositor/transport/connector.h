@@ -24,7 +24,8 @@ void connect_through(FileDescriptor channel);
 std::optional<ConnectionAttempt> ask_for_connection(const std::string& path, Deadline deadline);
 
 /// Answers one question that waits in `channel`, if any does: an attempt, without waiting, to connect to a path
-/// in `allowed`; EACCES for others. False when nobody is at the other end any more.
+/// in `allowed`; EACCES for others, EINVAL where no attempt can be made. False when nobody is at the other end
+/// any more.
 bool answer_connector(const FileDescriptor& channel, std::span<const std::string> allowed);
 
 }  // namespace understudy::compositor

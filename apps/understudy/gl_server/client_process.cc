@@ -81,7 +81,8 @@ void serve_clients(const std::string& socket) {
   const Installation installation = this_installation();
   const spu::Options options = spu::options_from_environment();
   // Tile workers are clients of this GL server, too.
-  const std::vector<std::string> reachable = {socket, options.connect};
+  std::vector<std::string> reachable = {socket};
+  if (!options.connect.empty()) reachable.push_back(options.connect);
   const Environment environment =
       options.sandbox ? client_environment(current_environment()) : current_environment();
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});

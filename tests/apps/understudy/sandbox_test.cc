@@ -294,7 +294,7 @@ TEST(Sandbox, GetsItsConnectionsFromAnotherProcess) {
   const compositor::SocketFile file(path);
   auto [ours, its] = compositor::connector_channel();
   std::thread connector([&ours = ours, &path] {
-    const std::vector<std::string> allowed = {path};
+    const std::vector<std::string> allowed = {path, ""};
     while (compositor::wait_until_ready(ours.get(), POLLIN, Clock::now() + std::chrono::minutes(1)) &&
            compositor::answer_connector(ours, allowed)) {
     }
@@ -303,6 +303,12 @@ TEST(Sandbox, GetsItsConnectionsFromAnotherProcess) {
     compositor::connect_through(std::move(its));
     std::string found = closed(Sandbox({}));
     const auto until = Clock::now() + std::chrono::minutes(1);
+    try {
+      compositor::connect_to("", until);
+      found += "connects to nothing; ";
+    } catch (const std::exception& error) {
+      if (std::string(error.what()).find(std::strerror(EINVAL)) == std::string::npos) found += error.what();
+    }
     try {
       const FileDescriptor connection = compositor::connect_to(path, until);
       if (::write(connection.get(), "hello", 5) != 5) found += "cannot write; ";

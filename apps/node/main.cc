@@ -68,7 +68,7 @@ void add_exchange_options(CLI::App& app, compositor::ExchangeSettings& exchange)
 }
 
 void add_options(CLI::App& app, NodeOptions& options) {
-  app.add_option("--control", options.control, "The launcher's Unix socket")->required();
+  app.add_option("--control", options.control, "The launcher's Unix socket for nodes")->required();
   add_exchange_options(app, options.exchange);
   app.add_option("--backend", options.backend, "Who casts the rays")
       ->check([](const std::string& name) -> std::string {

@@ -30,13 +30,16 @@ bool stirs(const Connection& connection) {
 
 }  // namespace
 
-Broker::Broker(std::string path, Say say, const BrokerPatience& patience)
-    : say_(std::move(say)), patience_(patience), listener_(listen_at(path)), file_(std::move(path)) {
+Broker::Broker(const BrokerSockets& sockets, Say say, const BrokerPatience& patience)
+    : say_(std::move(say)), patience_(patience), applications_(sockets.applications), group_(sockets.nodes) {
   if (!say_) say_ = [](const std::string& line) { logging::log(logging::Level::info, "{}", line); };
 }
 
 void Broker::poll_fds(std::vector<pollfd>& fds) const {
-  if (Clock::now() >= accept_again_) fds.push_back({listener_.get(), POLLIN, 0});
+  if (Clock::now() >= accept_again_) {
+    for (const Entrance* entrance : {&group_, &applications_})
+      fds.push_back({entrance->listener.get(), POLLIN, 0});
+  }
   for (const Peer& peer : newcomers_) fds.push_back({peer.connection.fd(), POLLIN, 0});
   for (const Connection& client : waiting_) fds.push_back({client.fd(), POLLIN | POLLRDHUP, 0});
   for (const Connection& nodes : nodes_) fds.push_back({nodes.fd(), POLLIN | POLLRDHUP, 0});
@@ -48,56 +51,62 @@ void Broker::step(std::chrono::milliseconds timeout) {
   // Errors and signals: the handlers below find out by themselves what there is to do.
   ::poll(fds.data(), fds.size(), int(timeout.count()));
   hear_nodes();  // first: a group that died must not stand in the way of its successor
-  accept_all();
+  accept_all(group_);
+  accept_all(applications_);
   hear_newcomers();
   hear_waiting();
   hand_over();
 }
 
-void Broker::accept_all() {
+void Broker::accept_all(const Entrance& entrance) {
   while (Clock::now() >= accept_again_) {
-    FileDescriptor peer = accept_from(listener_);
+    FileDescriptor peer = accept_from(entrance.listener);
     if (!peer) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
       // Out of descriptors or memory: the caller of connect() stays in the queue, and asking again at once
       // would spin.
-      say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", path(),
+      say_(fmt::format("cannot accept a connection at '{}': {}; trying again in a second", entrance.path(),
                        std::strerror(errno)));
       accept_again_ = Clock::now() + std::chrono::seconds(1);
       return;
     }
     Connection connection(std::move(peer), service_protocols, limits::max_hello_bytes);
-    if (newcomers_.size() + waiting_.size() >= limits::max_clients) {
+    // However many applications there are, nodes come in.
+    if (&entrance == &applications_ && newcomers_.size() + waiting_.size() >= limits::max_clients) {
       send_away(connection, fmt::format("{} applications already wait for a node group", limits::max_clients));
       continue;
     }
-    newcomers_.push_back({std::move(connection), Clock::now() + patience_.hello});
+    newcomers_.push_back({std::move(connection), Clock::now() + patience_.hello, &entrance});
   }
 }
 
 void Broker::hear_newcomers() {
   std::vector<Peer> still_new;
   for (Peer& peer : newcomers_) {
+    const std::string& entrance = peer.entrance->path();
     try {
       if (const std::optional<Message> hello = peer.connection.receive_some())
         accepted(std::move(peer), *hello);
       else if (Clock::now() < peer.hello_until)
         still_new.push_back(std::move(peer));
       else
-        say_(fmt::format("dropped a connection at '{}' that did not say what it is", path()));
+        say_(fmt::format("dropped a connection at '{}' that did not say what it is", entrance));
     } catch (const ConnectionLost& error) {
       // Who connects and leaves without a word only wanted to know whether somebody is here.
       if (peer.connection.unfinished())
-        say_(fmt::format("dropped a connection at '{}': {}", path(), error.what()));
+        say_(fmt::format("dropped a connection at '{}': {}", entrance, error.what()));
     } catch (const std::runtime_error& error) {
-      say_(fmt::format("dropped a connection at '{}': {}", path(), error.what()));
+      say_(fmt::format("dropped a connection at '{}': {}", entrance, error.what()));
     }
   }
   newcomers_ = std::move(still_new);
 }
 
 void Broker::accepted(Peer peer, const Message& hello) {
-  if (hello.type == LauncherMessage::hello_nodes) {
+  const bool is_group = hello.type == LauncherMessage::hello_nodes;
+  if (is_group != (peer.entrance == &group_))
+    throw MalformedMessage(is_group ? "wants to be the nodes" : "its first message is no hello of nodes");
+  if (is_group) {
     const int ranks = decode_hello(hello.payload).ranks;
     if (!nodes_.empty()) return say_(fmt::format("sent a second node group of {} ranks away", ranks));
     nodes_.push_back(std::move(peer.connection));

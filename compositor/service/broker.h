@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The launcher's side of the render service: the one socket at which a node group and the applications meet.
+// The launcher's side of the render service, where a node group and the applications meet. Each has a socket of
+// its own: an application's connection may be in the hands of a process that must not pose as the nodes.
 //
 // It outlives node groups, because MPI ends a whole job when one rank dies. Applications that come while no
 // group is there are held; when rank 0 of a group has said hello, their connections are handed to it
@@ -27,17 +28,20 @@ struct BrokerPatience {
   std::chrono::milliseconds unwanted = limits::unwanted_patience;
 };
 
+struct BrokerSockets {
+  std::string applications;
+  std::string nodes;
+};
+
 class Broker {
  public:
   using Say = std::function<void(const std::string&)>;
 
-  /// Listens at `path` (mode 0600). `say` gets one line about everything that goes wrong later; by default it
-  /// is written to stderr. Throws std::runtime_error when the path is taken or cannot be.
-  explicit Broker(std::string path, Say say = {}, const BrokerPatience& patience = {});
+  /// Listens at both paths (mode 0600). `say` gets one line about everything that goes wrong later; by default
+  /// it is written to stderr. Throws std::runtime_error when a path is taken or cannot be.
+  explicit Broker(const BrokerSockets& sockets, Say say = {}, const BrokerPatience& patience = {});
   Broker(const Broker&) = delete;
   Broker& operator=(const Broker&) = delete;
-
-  const std::string& path() const { return file_.path(); }
 
   /// Adds the descriptors to wait for, for a caller with a poll loop of its own, which then calls step(0).
   void poll_fds(std::vector<pollfd>& fds) const;
@@ -60,12 +64,20 @@ class Broker {
   std::size_t clients_handed_over() const { return handed_over_; }
 
  private:
+  struct Entrance {
+    explicit Entrance(const std::string& path) : listener(listen_at(path)), file(path) {}
+    const std::string& path() const { return file.path(); }
+
+    FileDescriptor listener;
+    SocketFile file;
+  };
   struct Peer {
     Connection connection;
     Deadline hello_until;
+    const Entrance* entrance;  ///< that it came by
   };
 
-  void accept_all();
+  void accept_all(const Entrance& entrance);
   void hear_newcomers();
   void hear_waiting();
   void hear_nodes();
@@ -75,8 +87,8 @@ class Broker {
 
   Say say_;
   BrokerPatience patience_;
-  FileDescriptor listener_;
-  SocketFile file_;
+  Entrance applications_;
+  Entrance group_;
   Deadline accept_again_{};
   std::vector<Peer> newcomers_;      // have not said hello
   std::vector<Connection> waiting_;  // applications

@@ -89,7 +89,7 @@ TEST_F(OtherUsers, WhoListensWhereNodesAreExpectedGetsNothingAndTheSummarySaysSo
 
 TEST_F(OtherUsers, WhoConnectsIsNotServed) {
   if (!can_be_another_user()) GTEST_SKIP() << "needs root, to be another user";
-  Broker broker(socket(), [](const std::string&) {});
+  Broker broker({socket(), file("nodes.sock")}, [](const std::string&) {});
   ::chmod(socket().c_str(), 0777);
   OtherUser client([this] {
     const FileDescriptor connection(::socket(AF_UNIX, SOCK_STREAM, 0));

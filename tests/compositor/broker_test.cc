@@ -28,8 +28,9 @@ Deadline soon() {
 // A broker whose steps the test takes itself, and peers in the same thread.
 class BrokerTest : public ::testing::Test {
  protected:
-  std::unique_ptr<Connection> connect() {
-    return std::make_unique<Connection>(connect_to(path_, soon()), service_protocols);
+  std::unique_ptr<Connection> connect() { return connect(path_); }
+  static std::unique_ptr<Connection> connect(const std::string& path) {
+    return std::make_unique<Connection>(connect_to(path, soon()), service_protocols);
   }
   std::unique_ptr<Connection> client() {
     auto result = connect();
@@ -37,7 +38,7 @@ class BrokerTest : public ::testing::Test {
     return result;
   }
   std::unique_ptr<Connection> nodes(int ranks = 4) {
-    auto result = connect();
+    auto result = connect(sockets_.nodes);
     result->send(LauncherMessage::hello_nodes, 1, encode(Hello{ranks}), soon());
     return result;
   }
@@ -53,25 +54,44 @@ class BrokerTest : public ::testing::Test {
   }
 
   ScratchFolder folder_;
-  std::string path_ = folder_ / "control";
+  BrokerSockets sockets_{folder_ / "control", folder_ / "nodes"};
+  const std::string& path_ = sockets_.applications;
   std::vector<std::string> said_;
   std::unique_ptr<Broker> broker_ = std::make_unique<Broker>(
-      path_, [this](const std::string& line) { said_.push_back(line); },
+      sockets_, [this](const std::string& line) { said_.push_back(line); },
       BrokerPatience{std::chrono::milliseconds(300)});
 };
 
-TEST_F(BrokerTest, ItsSocketIsPrivateAndGoesWithIt) {
+TEST_F(BrokerTest, ItsSocketsArePrivateAndGoWithIt) {
   struct stat file {};
-  ASSERT_EQ(::stat(path_.c_str(), &file), 0);
-  EXPECT_EQ(file.st_mode & 07777, 0600U);
-  EXPECT_TRUE(S_ISSOCK(file.st_mode));
+  for (const std::string& path : {sockets_.applications, sockets_.nodes}) {
+    ASSERT_EQ(::stat(path.c_str(), &file), 0);
+    EXPECT_EQ(file.st_mode & 07777, 0600U);
+    EXPECT_TRUE(S_ISSOCK(file.st_mode));
+  }
   broker_.reset();
-  EXPECT_NE(::stat(path_.c_str(), &file), 0);
+  EXPECT_NE(::stat(sockets_.applications.c_str(), &file), 0);
+  EXPECT_NE(::stat(sockets_.nodes.c_str(), &file), 0);
+}
+
+TEST_F(BrokerTest, AnApplicationCannotPoseAsTheNodes) {
+  const auto application = client();
+  const auto impostor = connect();
+  impostor->send(LauncherMessage::hello_nodes, 1, encode(Hello{4}), soon());
+  step();
+  EXPECT_FALSE(broker_->node_group_ready());
+  EXPECT_EQ(broker_->clients_waiting(), 1U);
+  EXPECT_THROW(impostor->receive(soon()), ConnectionLost);
+  ASSERT_EQ(said_.size(), 1U);
+  EXPECT_THAT(said_.front(), HasSubstr("wants to be the nodes"));
+  const auto group = nodes(7);
+  step();
+  EXPECT_EQ(broker_->ranks(), 7);
 }
 
 TEST_F(BrokerTest, ASecondLauncherAtTheSamePathIsRefusedAndDoesNoHarm) {
   try {
-    Broker second(path_);
+    Broker second(sockets_);
     ADD_FAILURE() << "both listen";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("in use by another launcher"));
@@ -84,21 +104,21 @@ TEST_F(BrokerTest, ASocketFileLeftByADeadLauncherIsReplaced) {
   const std::string copy = folder_ / "left";
   { const FileDescriptor dead = listen_at(copy); }  // closed, but the file stays
   ASSERT_TRUE(std::filesystem::exists(copy));
-  EXPECT_NO_THROW(Broker{copy});
+  EXPECT_NO_THROW((Broker{{copy, sockets_.nodes}}));
 }
 
 TEST_F(BrokerTest, AFileThatIsNoSocketIsLeftAlone) {
   const std::string file = folder_ / "file";
   std::ofstream(file) << "precious";
-  EXPECT_THROW(Broker{file}, std::runtime_error);
+  EXPECT_THROW((Broker{{file, folder_ / "others"}}), std::runtime_error);
   EXPECT_EQ(std::filesystem::file_size(file), 8U);
 }
 
 TEST_F(BrokerTest, ImpossiblePathsAreNamed) {
-  EXPECT_THROW(Broker(std::string(200, 'x')), std::runtime_error);
-  EXPECT_THROW(Broker(""), std::runtime_error);
+  EXPECT_THROW((Broker{{std::string(200, 'x'), folder_ / "others"}}), std::runtime_error);
+  EXPECT_THROW((Broker{{"", folder_ / "others"}}), std::runtime_error);
   try {
-    Broker nowhere("/nowhere/at/all");
+    Broker nowhere({"/nowhere/at/all", folder_ / "others"});
     ADD_FAILURE();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/nowhere/at/all"));
@@ -266,8 +286,9 @@ TEST(Broker, LeavesNoDescriptorBehind) {
   {
     const ScratchFolder folder;
     const std::string path = folder / "control";
-    Broker broker(path, [](const std::string&) {});
-    Connection nodes(connect_to(path, soon()), service_protocols);
+    const std::string path_of_nodes = folder / "nodes";
+    Broker broker({path, path_of_nodes}, [](const std::string&) {});
+    Connection nodes(connect_to(path_of_nodes, soon()), service_protocols);
     nodes.send(LauncherMessage::hello_nodes, 1, encode(Hello{1}), soon());
     std::vector<Connection> clients;
     for (int i = 0; i < 5; ++i) {

@@ -51,7 +51,7 @@ class Faults : public ::testing::Test {
 
   void start(int ranks, const BrokerPatience& patience = {}) {
     launcher_ = std::make_unique<Launcher>(path_, patience);
-    group_ = std::make_unique<MpiGroup>(ranks, path_);
+    group_ = std::make_unique<MpiGroup>(ranks, socket_of_nodes(path_));
     ASSERT_TRUE(launcher_->wait_for_group());
   }
   std::unique_ptr<RenderService> connect(const Patience& patience = {}) {

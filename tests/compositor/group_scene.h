@@ -73,12 +73,18 @@ inline double largest_difference(const volume::Image& a, const volume::Image& b)
   return a.rect == b.rect ? volume::testing::difference(a, b).max : 1e300;
 }
 
+/// Beside that of applications.
+inline std::string socket_of_nodes(const std::string& path) {
+  return path + ".nodes";
+}
+
 /// The launcher's part, on a thread of its own.
 class Launcher {
  public:
   explicit Launcher(const std::string& path, const BrokerPatience& patience = {})
       : broker_(
-            path, [this](const std::string& line) { said_.push_back(line); }, patience),
+            {path, socket_of_nodes(path)}, [this](const std::string& line) { said_.push_back(line); },
+            patience),
         thread_([this](const std::stop_token& stop) {
           while (!stop.stop_requested()) {
             const std::lock_guard lock(mutex_);

@@ -40,7 +40,7 @@ class LoadTest : public ::testing::Test {
   std::unique_ptr<LoadingService> service(int ranks) {
     if (ranks == 0) return embedded_loading_service();
     group_ = std::jthread([this, ranks] {
-      run_ranks(ranks, [&](Communicator& communicator) { run_node(communicator, path_); });
+      run_ranks(ranks, [&](Communicator& communicator) { run_node(communicator, socket_of_nodes(path_)); });
     });
     EXPECT_TRUE(launcher_->wait_for_group());
     return remote_loading_service(path_, {});

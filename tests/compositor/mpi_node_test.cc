@@ -36,7 +36,7 @@ TEST(MpiNode, ImagesEqualTheEmbeddedOnesForAnyNumberOfRanks) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     auto launcher = std::make_unique<Launcher>(path);
-    MpiGroup group(ranks, path);
+    MpiGroup group(ranks, socket_of_nodes(path));
     const auto linked = remote_render_service(path, 60'000);
     EXPECT_EQ(linked->nodes(), ranks);
     upload(*linked, texture);
@@ -71,7 +71,7 @@ TEST(MpiNode, ImagesStayTheSameWhileRanksAreBalanced) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     Launcher launcher(path);
-    MpiGroup group(4, path, {"--balance", balance});
+    MpiGroup group(4, socket_of_nodes(path), {"--balance", balance});
     const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
     double worst = 0;
@@ -105,7 +105,7 @@ TEST(MpiNode, EveryExchangeAndLayoutGivesTheEmbeddedImage) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     Launcher launcher(path);
-    MpiGroup group(3, path, options);
+    MpiGroup group(3, socket_of_nodes(path), options);
     const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
     const Rendered rendered = linked->render(request);
@@ -136,7 +136,8 @@ TEST(MpiNode, SendsTheBytesAndMessagesThatAreCountedFromThePartsOfAnImage) {
       const ScratchFolder folder;
       const std::string path = folder / "control";
       Launcher launcher(path);
-      MpiGroup group(ranks, path, {"--exchange", name, "--gather", way, "--overlap", "off", "--packed", "off"});
+      MpiGroup group(ranks, socket_of_nodes(path),
+                     {"--exchange", name, "--gather", way, "--overlap", "off", "--packed", "off"});
       const auto linked = remote_render_service(path, 60'000);
       upload(*linked, texture);
       for (const volume::Operator op : {volume::Operator::over, volume::Operator::max, volume::Operator::min}) {
@@ -164,7 +165,7 @@ TEST(MpiNode, AGroupWithoutWorkLeavesTheProcessorsToOthers) {
   const ScratchFolder folder;
   const std::string path = folder / "control";
   Launcher launcher(path);
-  MpiGroup group(4, path);
+  MpiGroup group(4, socket_of_nodes(path));
   const auto linked = remote_render_service(path, 60'000);
   const Texture texture = some_texture();
   upload(*linked, texture);
@@ -188,7 +189,7 @@ TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {
   const volume::RenderRequest request = some_request(texture);
   volume::Image before;
   {
-    MpiGroup group(3, path);
+    MpiGroup group(3, socket_of_nodes(path));
     const auto linked = remote_render_service(path, 60'000);
     upload(*linked, texture);
     before = image_of(*linked, request);
@@ -200,7 +201,7 @@ TEST(MpiNode, AKilledRankEndsInServiceLostAndANewGroupTakesOver) {
     EXPECT_TRUE(launcher.wait_for_loss());
     EXPECT_NE(group.wait(), 0);
   }
-  MpiGroup next(2, path);
+  MpiGroup next(2, socket_of_nodes(path));
   const auto linked = remote_render_service(path, 60'000);
   upload(*linked, texture);
   EXPECT_LE(largest_difference(image_of(*linked, request), before), 1e-5);
@@ -211,7 +212,7 @@ TEST(MpiNode, AHangingRankEndsInServiceLostWithinTheTimeLimit) {
   const std::string path = folder / "control";
   Launcher launcher(path);
   const Texture texture = some_texture();
-  MpiGroup group(2, path);
+  MpiGroup group(2, socket_of_nodes(path));
   const auto linked = remote_render_service(path, Patience{.render = std::chrono::milliseconds(2000)});
   upload(*linked, texture);
   linked->render(some_request(texture));

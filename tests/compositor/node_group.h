@@ -66,7 +66,7 @@ class NodeGroupTest : public ::testing::Test {
 
   Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {},
                const ExchangeSettings& exchange = drawn_first) {
-    groups_.push_back(std::make_unique<Group>(ranks, path_, stall_patience, wrap, exchange));
+    groups_.push_back(std::make_unique<Group>(ranks, socket_of_nodes(path_), stall_patience, wrap, exchange));
     EXPECT_TRUE(launcher_->wait_for_group());
     return *groups_.back();
   }

@@ -669,7 +669,7 @@ class BadGroup {
 };
 
 TEST_F(NodeGroupTest, AGroupThatNeverAnswersIsGivenUp) {
-  BadGroup group(path_, *launcher_);
+  BadGroup group(socket_of_nodes(path_), *launcher_);
   std::unique_ptr<RenderService> linked;
   std::jthread application([&] { linked = remote_render_service(path_, {.reply = milliseconds(50)}); });
   const Connection taken = group.take_in();
@@ -683,7 +683,7 @@ TEST_F(NodeGroupTest, AGroupThatNeverAnswersIsGivenUp) {
 }
 
 TEST_F(NodeGroupTest, AGroupThatDoesNotReadIsGivenUp) {
-  BadGroup group(path_, *launcher_);
+  BadGroup group(socket_of_nodes(path_), *launcher_);
   std::unique_ptr<RenderService> linked;
   std::jthread application([&] { linked = remote_render_service(path_, {.send = milliseconds(50)}); });
   const Connection taken = group.take_in();
@@ -694,7 +694,7 @@ TEST_F(NodeGroupTest, AGroupThatDoesNotReadIsGivenUp) {
 }
 
 TEST_F(NodeGroupTest, AnswersThatCannotBeTrueEndTheConnection) {
-  BadGroup group(path_, *launcher_);
+  BadGroup group(socket_of_nodes(path_), *launcher_);
   const volume::RenderRequest request = some_request(some_texture());
   const std::vector<std::function<void(Connection&, const Message&)>> lies{
       // An image outside the window.
@@ -748,7 +748,7 @@ TEST(NodeGroup, LeavesNoDescriptorBehind) {
     const ScratchFolder folder;
     const std::string path = folder / "control";
     auto launcher = std::make_unique<Launcher>(path);
-    Group group(2, path);
+    Group group(2, socket_of_nodes(path));
     ASSERT_TRUE(launcher->wait_for_group());
     for (int i = 0; i < 3; ++i) {
       const auto linked = remote_render_service(path, 20'000);

@@ -295,7 +295,7 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
       run_ranks(4, [&](Communicator& communicator) {
         const int times = communicator.rank() == 1 ? 16 : 1;
         run_node(
-            communicator, path, limits::stall_patience, {},
+            communicator, socket_of_nodes(path), limits::stall_patience, {},
             [times](const volume::BrickStore& store) { return std::make_unique<Laborious>(store, times); },
             figures.settings(balance));
       });

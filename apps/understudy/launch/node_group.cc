@@ -27,6 +27,8 @@ constexpr int patience_with_mpirun_ms = 5000;
 constexpr std::chrono::seconds patience_with_lost_group{5};
 constexpr std::uintmax_t max_log_read = 65536;
 constexpr const char* nodes_log = "nodes.log";
+/// In the private folder, and told to nobody but the nodes.
+constexpr const char* ranks_socket = "ranks.sock";
 constexpr std::size_t max_backend_choices = 1024;
 
 void say(const std::string& line) {
@@ -72,7 +74,8 @@ Command mpirun_command(const Installation& installation, const NodeGroupPlan& pl
                        const std::filesystem::path& folder) {
   Command command;
   command.arguments = mpirun_words(placement, folder);
-  for (const std::string& word : {installation.node().string(), std::string("--control"), plan.socket.string()})
+  for (const std::string& word :
+       {installation.node().string(), std::string("--control"), (plan.folder / ranks_socket).string()})
     command.arguments.push_back(word);
   for (const std::string& word : plan.choices.words()) command.arguments.push_back(word);
   command.environment =
@@ -122,7 +125,7 @@ NodeGroup::NodeGroup(const Installation& installation, const NodeGroupPlan& plan
     : installation_(installation),
       plan_(plan),
       broker_(
-          plan.socket,
+          {.applications = plan.socket, .nodes = plan.folder / ranks_socket},
           [this](const std::string& line) {
             // The loss of the group is told once, with its reason, when mpirun has ended.
             if (broker_.lost())

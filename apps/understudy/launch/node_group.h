@@ -31,7 +31,7 @@ constexpr std::chrono::seconds patience_with_start{60};
 struct NodeGroupPlan {
   Placement placement{Launch::this_machine, 1, {}};
   std::filesystem::path socket;
-  std::filesystem::path folder;  ///< for the nodes' log and mpirun's own files; must exist
+  std::filesystem::path folder;  ///< private, for the nodes' socket and log, and mpirun's own files; must exist
   NodeChoices choices;
 };
 
@@ -43,7 +43,7 @@ std::vector<std::string> backend_choices(const std::filesystem::path& folder);
 
 class NodeGroup {
  public:
-  /// Takes the socket and starts mpirun, or first asks the other hosts whether they answer; returns without
+  /// Takes the sockets and starts mpirun, or first asks the other hosts whether they answer; returns without
   /// waiting for either. Throws std::runtime_error (socket taken, mpirun or the launch agent cannot be
   /// executed).
   NodeGroup(const Installation& installation, const NodeGroupPlan& plan);

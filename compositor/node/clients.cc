@@ -85,8 +85,9 @@ Clients::Event Clients::next() {
 
 void Clients::end_turn() {
   if (turn_began_ == Deadline()) return;
-  if (clients_.contains(last_heard_)) turns_.served(last_heard_, turn_began_, Clock::now(), refused_);
+  turns_.served(last_heard_, turn_began_, Clock::now(), refused_);
   turn_began_ = {};
+  if (!clients_.contains(last_heard_)) turns_.forget(last_heard_);
 }
 
 // In milliseconds, for poll(): until somebody has rested, or may have stalled; -1: until something happens.
@@ -174,7 +175,8 @@ void Clients::drop(std::uint64_t number, const std::string& why) {
   if (!why.empty()) logging::log(logging::Level::warn, "dropped application {}: {}", number, why);
   heartbeat_->end();
   clients_.erase(number);
-  turns_.forget(number);
+  // What it has in hand counts, too.
+  if (turn_began_ == Deadline() || number != last_heard_) turns_.forget(number);
   departed_.push_back(number);
 }
 

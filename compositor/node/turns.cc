@@ -22,7 +22,18 @@ void Turns::served(std::uint64_t client, Deadline begun, Deadline done, bool ref
 
 Deadline Turns::rests_until(std::uint64_t client) const {
   const auto found = clients_.find(client);
-  return found == clients_.end() ? Deadline() : found->second.rests_until;
+  if (found != clients_.end()) return found->second.rests_until;
+  if (clients_.empty()) return {};
+  Deadline heard{};
+  for (const auto& [number, other] : clients_) heard = std::max(heard, other.heard);
+  return std::min(left_behind_, heard + limits::active_within);
+}
+
+void Turns::forget(std::uint64_t client) {
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  left_behind_ = std::max(left_behind_, found->second.rests_until);
+  clients_.erase(found);
 }
 
 }  // namespace understudy::compositor

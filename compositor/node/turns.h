@@ -18,9 +18,10 @@ class Turns {
   /// limits::active_within before it. It rests for none that must rest itself meanwhile, and for one that was
   /// refused no longer than that took.
   void served(std::uint64_t client, Deadline begun, Deadline done, bool refused);
-  /// When `client` may be heard again.
+  /// When `client` may be heard again. One that was not served yet could be one that has gone and has come
+  /// again: it rests as long as any that has gone would, while others ask for something.
   Deadline rests_until(std::uint64_t client) const;
-  void forget(std::uint64_t client) { clients_.erase(client); }
+  void forget(std::uint64_t client);
 
  private:
   struct Client {
@@ -30,6 +31,7 @@ class Turns {
   };
 
   std::map<std::uint64_t, Client> clients_;
+  Deadline left_behind_{};  ///< the longest rest of those that have gone
 };
 
 }  // namespace understudy::compositor

@@ -25,13 +25,37 @@ using ::testing::HasSubstr;
 TEST(TurnsOfClients, WhoAskedForMuchRestsAsLongAsItTookForEachOfTheOthers) {
   Turns turns;
   const Deadline start = Clock::now();
-  turns.served(1, start, start + 5ms, false);
-  turns.served(2, start + 5ms, start + 10ms, false);
+  turns.served(1, start, start + 1000ms, false);
+  turns.served(2, start + 1000ms, start + 2000ms, false);
   EXPECT_EQ(turns.rests_until(3), Deadline());
-  turns.served(3, start + 10ms, start + 3010ms, false);
-  EXPECT_EQ(turns.rests_until(3), start + 9010ms);
-  EXPECT_LE(turns.rests_until(1), start + 3010ms);
-  turns.forget(3);
+  turns.served(3, start + 2000ms, start + 4000ms, false);
+  EXPECT_EQ(turns.rests_until(3), start + 8000ms);
+  EXPECT_LE(turns.rests_until(1), start + 4000ms);
+}
+
+TEST(TurnsOfClients, WhoLeavesAndComesAgainStillRestsWhileOthersAreThere) {
+  Turns turns;
+  const Deadline start = Clock::now();
+  turns.served(1, start, start + 5ms, false);
+  turns.served(2, start + 5ms, start + 3005ms, false);
+  const Deadline rested = turns.rests_until(2);
+  ASSERT_EQ(rested, start + 6005ms);
+  turns.forget(2);
+  turns.served(1, start + 5000ms, start + 5005ms, false);
+  EXPECT_EQ(turns.rests_until(3), rested);
+  EXPECT_EQ(turns.rests_until(4), rested);
+  turns.served(3, rested, rested + 5ms, false);
+  EXPECT_LE(turns.rests_until(3), rested + 5ms);
+}
+
+TEST(TurnsOfClients, WhoComesWhereNobodyAsksNeedNotRest) {
+  Turns turns;
+  const Deadline start = Clock::now();
+  turns.served(1, start, start + 5ms, false);
+  turns.served(2, start + 5ms, start + 3005ms, false);
+  turns.forget(2);
+  EXPECT_EQ(turns.rests_until(3), start + 5ms + limits::active_within);
+  turns.forget(1);
   EXPECT_EQ(turns.rests_until(3), Deadline());
 }
 
@@ -76,9 +100,9 @@ TEST(TurnsOfClients, WhoIsAloneNeverRests) {
 TEST(TurnsOfClients, NobodyRestsForLongerThanAClientWaits) {
   Turns turns;
   const Deadline start = Clock::now();
-  for (std::uint64_t client = 1; client < 60; ++client) turns.served(client, start, start + 1ms, false);
-  turns.served(60, start + 1ms, start + 6001ms, false);
-  EXPECT_EQ(turns.rests_until(60), start + 6001ms + limits::longest_rest);
+  for (std::uint64_t client = 1; client < 60; ++client) turns.served(client, start, start + 100ms, false);
+  turns.served(60, start + 100ms, start + 6100ms, false);
+  EXPECT_EQ(turns.rests_until(60), start + 6100ms + limits::longest_rest);
   EXPECT_LT(limits::longest_rest, limits::render_patience);
 }
 

@@ -68,7 +68,8 @@ Clients::Event Clients::next() {
         if (std::optional<Event> event = hear(numbers[i], connection)) {
           last_heard_ = numbers[i];
           turn_began_ = Clock::now();
-          refused_ = false;
+          const auto* memory = std::get_if<MemoryGiven>(&*event);
+          refused_ = memory != nullptr && memory->memory.bytes() == 0;
           // A step of a load takes what it takes.
           const auto* request = std::get_if<Request>(&*event);
           if (request == nullptr || (request->message.type != LoadMessage::load_volume &&

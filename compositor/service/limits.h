@@ -52,6 +52,7 @@ constexpr milliseconds render_patience{20'000};    ///< an image
 constexpr milliseconds image_time{4'000};     ///< of nodes that pending clients share: what one may take of it
 constexpr milliseconds short_request{20};     ///< after which a client need not rest, unless it was refused
 constexpr milliseconds active_within{2'000};  ///< others whose requests are so recent have a share of the nodes
+constexpr int rest_for_use = 2;               ///< times what others have used a client may rest for them
 constexpr milliseconds longest_rest{10'000};  ///< below render_patience
 
 }  // namespace understudy::compositor::limits

@@ -59,6 +59,25 @@ TEST(TurnsOfClients, WhoComesWhereNobodyAsksNeedNotRest) {
   EXPECT_EQ(turns.rests_until(3), Deadline());
 }
 
+TEST(TurnsOfClients, ManyThatAskForNextToNothingCostNoMoreThanOneThatAsksForMuch) {
+  Turns turns;
+  Deadline now = Clock::now();
+  const auto serve = [&](std::uint64_t client, std::chrono::milliseconds took) {
+    turns.served(client, now, now + took, false);
+    now += took;
+  };
+  const auto rest_after_an_image_beside = [&](std::chrono::milliseconds of_each) {
+    serve(100, 500ms);
+    now = turns.rests_until(100);
+    for (std::uint64_t client = 0; client < 10; ++client) serve(client, of_each);
+    serve(100, 500ms);
+    return turns.rests_until(100) - now;
+  };
+  EXPECT_EQ(rest_after_an_image_beside(1ms), 500ms);
+  EXPECT_EQ(rest_after_an_image_beside(10ms), 500ms);
+  EXPECT_EQ(rest_after_an_image_beside(100ms), 2000ms) << "they use a second of the nodes";
+}
+
 TEST(TurnsOfClients, NobodyRestsForWhoRestsItself) {
   Turns turns;
   const Deadline start = Clock::now();

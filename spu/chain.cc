@@ -48,9 +48,12 @@ Chain::Chain(const DispatchTable& driver, std::shared_ptr<ShareGroup> group,
     : driver_(driver), group_(std::move(group)), surroundings_(surroundings), switch_table_(switch_table) {}
 
 Chain::~Chain() {
-  if (current_ != this) return;
-  switch_table_(nullptr);
-  current_ = nullptr;
+  if (current_ == this) {
+    switch_table_(nullptr);
+    current_ = nullptr;
+  }
+  return_to_driver();
+  units_.clear();
 }
 
 void Chain::make_current() {
@@ -75,9 +78,16 @@ void Chain::add(std::unique_ptr<Unit> unit) {
 
 void Chain::remove_units() {
   replacements_.clear();
+  return_to_driver();
   while (!units_.empty()) units_.pop_back();
   for (auto& tables : tables_) tables.clear();
   for (auto& table : guarded_tables_) table.reset();
+}
+
+void Chain::return_to_driver() {
+  for (auto& tables : tables_) {
+    for (auto& table : tables) *table = driver_;
+  }
 }
 
 void Chain::build(Phase phase) const {

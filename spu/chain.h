@@ -213,6 +213,9 @@ class Chain {
     return CallId((slot - reinterpret_cast<const char*>(&driver_)) / std::ptrdiff_t{sizeof(AnyFunction)});
   }
 
+  /// Makes every table the driver's. Units that go delete what they made in OpenGL, and the functions of the
+  /// units below them would look for a chain that is current, or for a unit that has gone.
+  void return_to_driver();
   /// Where calls go when the chain is given up.
   const DispatchTable& without_units() const;
   void build_guarded(Phase phase) const;

@@ -26,9 +26,7 @@ constexpr std::size_t most_read_bytes = std::size_t(32) << 20;
 
 struct Divided {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
-    // Units of a context that has ended delete what they made, and there is none then.
-    const Chain* const chain = Chain::current();
-    return chain == nullptr ? 0 : chain->find<Tiles>()->call(call, words);
+    return Chain::current()->find<Tiles>()->call(call, words);
   }
 };
 

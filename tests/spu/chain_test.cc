@@ -52,6 +52,21 @@ class OverridesFinish final : public Unit {
   static void APIENTRY finish() {}
 };
 
+/// Makes a call when it goes.
+class CallsWhenItGoes final : public Unit {
+ public:
+  explicit CallsWhenItGoes(Chain& chain) : chain_(chain) {}
+  ~CallsWhenItGoes() override { below_->Clear(GL_DEPTH_BUFFER_BIT); }
+  static constexpr char tag = 'g';
+  const char* tag_address() const override { return &tag; }
+  void fill(Phase, DispatchTable&) override {}
+  void made_current() override { below_ = &chain_.below(*this, Phase::watching); }
+
+ private:
+  Chain& chain_;
+  const DispatchTable* below_ = nullptr;
+};
+
 /// glClear and glCreateShader throw; what it holds back is a glFlush.
 class Fails final : public Unit {
  public:
@@ -106,6 +121,17 @@ TEST_F(ChainTest, WhatTheApplicationCallsIsTheDriversPointerWhereNobodyOverrides
       ASSERT_EQ(guarded, slot(mock_.table(), CallId(i))) << call_name(CallId(i));
     }
   }
+}
+
+TEST_F(ChainTest, UnitsThatGoCallTheDriverAndNoOtherUnit) {
+  {
+    Chain chain(mock_.table(), std::make_shared<ShareGroup>(), install);
+    chain.add<CallsWhenItGoes>();
+    add<CountsClears>(chain);
+    chain.make_current();
+    Chain::release_current();
+  }
+  EXPECT_THAT(mock_.called(), ElementsAre(CallId::Clear));
 }
 
 TEST_F(ChainTest, IsGivenUpWhereAUnitThrowsAndTheCallIsMadeByTheDriver) {

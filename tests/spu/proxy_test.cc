@@ -104,6 +104,30 @@ TEST(Proxies, AStepThatIsAnotherInEveryFrameIsFollowed) {
   EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
 }
 
+TEST(Proxies, AnotherStepBehindAnExtremeIsSeen) {
+  constexpr double alike = 50;  // dB
+  for (const auto composition : {Composition::maximum, Composition::minimum}) {
+    ProxyScene scene(MarchStyle{.composition = composition});
+    if (!scene.app) GTEST_SKIP() << "no EGL context here";
+    double angle = 30;
+    double least = 100;
+    for (const float step : {0.02F, 0.07F, 0.03F, 0.06F}) {
+      const auto with_former_step = scene.frame(false, angle);
+      scene.caster().style.step = step;
+      const auto under = scene.frame(true, angle);
+      const auto bare = scene.frame(false, angle);
+      const double likeness = psnr(under, bare);
+      std::printf("composition %d, step %g: %.1f dB\n", int(composition), double(step), likeness);
+      EXPECT_GE(likeness, alike) << "step " << step;
+      least = std::min(least, psnr(with_former_step, bare));
+      angle += 7;
+    }
+    EXPECT_LT(least, alike) << "the step changes nothing: the test tests nothing";
+    EXPECT_EQ(scene.app->substituted(), 4U) << scene.app->last_reason();
+    EXPECT_EQ(GlApplication::last_volume().verify_lost, 0U);
+  }
+}
+
 TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   for (const bool reads_depth : {false, true}) {
     ProxyScene scene(MarchStyle{.noisy = true, .reads_depth = reads_depth, .step = 0.08F});

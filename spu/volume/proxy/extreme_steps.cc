@@ -183,10 +183,10 @@ bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps
   return double(elsewhere) <= most_elsewhere * double(ends.size());
 }
 
-/// Steps of which about so many as the ways tell make up a `unit`: exactly, by the number that each ray then
-/// has.
-std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const std::array<int, 3>& texels,
-                                         const volume::Vec3& unit) {
+/// Steps of which about so many as the ways tell make up a unit, of which there are so many `per_axis`:
+/// exactly, by the number that each ray then has.
+std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const std::array<int, 3>& per_axis) {
+  const volume::Vec3 unit{double(per_axis[0]), double(per_axis[1]), double(per_axis[2])};
   const auto density = density_of(ends, unit);
   if (!density) return std::nullopt;
   std::vector<CountedRay> counted;
@@ -194,32 +194,46 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
     const double steps = *density * (ray.last - ray.first) * length_of(ray.way, unit);
     counted.push_back({ray.way, std::round(steps) + 1});
   }
-  for (const StepFit& fit : fit_steps(counted, texels)) {
+  for (const StepFit& fit : fit_steps(counted, per_axis)) {
     const volume::RaySteps steps = rules_of(fit).front();
     if (fit.unexplained <= most_unexplained && lie_as_said(ends, steps)) return steps;
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
-                                              const volume::TransferFunction& table, const ProxyBox& box) {
+/// Of some rays all over the box; none where colours do not tell enough of them.
+std::vector<RayEnds> seen_ends(const MarchContext& measured, FieldProbe& probe,
+                               const volume::TransferFunction& table, const ProxyBox& box) {
   constexpr std::size_t most_rays = 512;
   const auto stretch = TellingStretch::of(table);
-  if (!stretch || !box.cuts.empty()) return std::nullopt;
+  if (!stretch || !box.cuts.empty()) return {};
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   std::vector<RayEnds> all;
   for (const std::size_t axis : {0U, 1U, 2U})
     add_ends(probe, *stretch, rays, axis, measured.run.pipeline().blending.premultiplied, all);
-  if (all.size() < fewest_rays) return std::nullopt;
+  if (all.size() < fewest_rays) return {};
   std::vector<RayEnds> ends;
   const std::size_t every = (all.size() + most_rays - 1) / most_rays;
   for (std::size_t i = 0; i < all.size(); i += every) ends.push_back(all[i]);
-  const auto& size = measured.texture.size;
-  const volume::Vec3 texels{double(size[0]), double(size[1]), double(size[2])};
-  if (auto steps = steps_in(ends, size, texels)) return steps;
-  return steps_in(ends, size, {1, 1, 1});
+  return ends;
+}
+
+}  // namespace
+
+std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
+                                              const volume::TransferFunction& table, const ProxyBox& box) {
+  const std::vector<RayEnds> ends = seen_ends(measured, probe, table, box);
+  if (ends.empty()) return std::nullopt;
+  if (auto steps = steps_in(ends, measured.texture.size)) return steps;
+  return steps_in(ends, {1, 1, 1});
+}
+
+std::optional<bool> extremes_lie_on(const volume::RaySteps& steps, const MarchContext& measured,
+                                    FieldProbe& probe, const volume::TransferFunction& table,
+                                    const ProxyBox& box) {
+  const std::vector<RayEnds> ends = seen_ends(measured, probe, table, box);
+  if (ends.empty()) return std::nullopt;
+  return lie_as_said(ends, steps);
 }
 
 }  // namespace understudy::spu

@@ -17,4 +17,9 @@ namespace understudy::spu {
 std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
                                               const volume::TransferFunction& table, const ProxyBox& box);
 
+/// Whether the samples of nearly all rays lie on `steps`; empty where colours do not tell values apart.
+std::optional<bool> extremes_lie_on(const volume::RaySteps& steps, const MarchContext& measured,
+                                    FieldProbe& probe, const volume::TransferFunction& table,
+                                    const ProxyBox& box);
+
 }  // namespace understudy::spu

@@ -21,6 +21,14 @@ using volume::Rgba;
 
 namespace {
 
+/// Whether the samples of an extreme lie where `march` says; empty where no field tells.
+std::optional<bool> extreme_lies_as_said(const MarchContext& measured, const March& march,
+                                         const ProxyBox& box) {
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete()) return std::nullopt;
+  return extremes_lie_on(march.steps, measured, probe, march.table, box);
+}
+
 /// For an extreme value, which does not tell how many samples it was taken of: one or two a texel, or one for
 /// each length of the shortest ray that has any.
 std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size, double shortest) {
@@ -71,7 +79,7 @@ class MarchMeasurement {
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
-  void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule,
+  void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                    std::vector<March>& marches) const;
 
   const MarchContext& measured_;
@@ -83,6 +91,7 @@ class MarchMeasurement {
   std::vector<Rgba> through_;  ///< their colours on a ray through the middle
   March march_;
   std::vector<volume::RaySteps> rules_;
+  bool extreme_seen_ = false;  ///< whether the first of `rules_` was seen of an extreme, in the first space
   std::vector<SplitRays> split_;
 };
 
@@ -195,6 +204,7 @@ std::optional<Refusal> MarchMeasurement::measure() {
 std::optional<Refusal> MarchMeasurement::find_places() {
   if (march_.extreme) {
     const auto steps = extreme_steps(measured_, probe_, march_.table, box_);
+    extreme_seen_ = steps.has_value();
     if (steps) rules_.insert(rules_.begin(), *steps);
     return std::nullopt;
   }
@@ -212,11 +222,12 @@ std::optional<Refusal> MarchMeasurement::find_places() {
   return take_offsets();
 }
 
-void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::RaySteps& rule,
+void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                                    std::vector<March>& marches) const {
   March march = march_;
   march.space = space;
   march.steps = rule;
+  march.steps_seen = seen;
   // The step that reaches the opaque geometry is usually taken before it is noticed.
   march.steps.past_depth = samples_depth(measured_.context, measured_.run.pipeline()) ? 1 : 0;
   // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
@@ -237,8 +248,10 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     if (!boxes[i]) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
-    for (const volume::RaySteps& rule : rules_) {
-      if (misplaced_part(split_, rays, rule) <= most_misplaced) add_marches(spaces[i], rule, marches);
+    for (std::size_t r = 0; r < rules_.size(); ++r) {
+      const bool seen = !march_.extreme || (extreme_seen_ && i == 0 && r == 0);
+      if (misplaced_part(split_, rays, rules_[r]) <= most_misplaced)
+        add_marches(spaces[i], rules_[r], seen, marches);
     }
   }
   if (marches.empty()) return samples_lie_elsewhere;
@@ -292,7 +305,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
                                             const ProxyBox& box) {
   March changed = march;
   changed.from_inside = true;
-  if (march.extreme) return changed;  // taken at one step or another, it is the same
+  if (march.extreme) return changed;  // whose steps only rays from outside tell
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
@@ -312,9 +325,15 @@ std::optional<March> with_longer_steps(const MarchContext& measured, const March
                                        double factor) {
   // The table is not measured otherwise.
   constexpr RaysLookedAt looked_at{.values = 64};
-  if (march.extreme || march.sum || march.steps.divided) return std::nullopt;
+  if (march.sum || march.steps.divided) return std::nullopt;
   March longer = march;
   for (double& number : longer.steps.metric) number /= factor;
+  if (march.extreme) {
+    // Its rays look alike whatever the number of their samples.
+    longer.steps_seen = extreme_lies_as_said(measured, longer, box).value_or(false);
+    if (!longer.steps_seen || !still_marches(measured, longer, box, looked_at)) return std::nullopt;
+    return longer;
+  }
   March corrected = longer;
   for (Rgba& entry : corrected.table.entries) entry = ray_of(march, entry, factor);
   for (const March& candidate : {corrected, longer}) {
@@ -372,7 +391,8 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr int tried = 32;
-  if (march.extreme || !box.cuts.empty()) return true;
+  if (!box.cuts.empty()) return true;
+  if (march.extreme) return !march.steps_seen || extreme_lies_as_said(measured, march, box).value_or(true);
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);

@@ -38,6 +38,8 @@ struct March {
   /// Operator::max or Operator::min: samples are not composed, the largest (least) value of the ray is
   /// classified by `table`.
   std::optional<volume::Operator> extreme;
+  /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
+  bool steps_seen = true;
   std::optional<PlainSum> sum;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
@@ -56,7 +58,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
 /// The march with steps that are `factor` times as long, whose samples are corrected for their length, as is
-/// usual, or are what they were; null when neither is what the program shows.
+/// usual, or are what they were; null when neither is what the program shows, as far as fields tell.
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
                                        double factor);
 

@@ -105,6 +105,12 @@ bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {
   return true;
 }
 
+bool steps_differ(const MarchInputs& before, const MarchInputs& now) {
+  return before.fixed.size() != now.fixed.size() || std::ranges::any_of(now.steps, [&](std::size_t step) {
+           return before.fixed[step] != now.fixed[step];
+         });
+}
+
 std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now) {
   constexpr double largest = 64;
   if (before.fixed.size() != now.fixed.size()) return {};

@@ -30,6 +30,9 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);
 
+/// Whether a uniform differs that moves samples.
+bool steps_differ(const MarchInputs& before, const MarchInputs& now);
+
 /// Where nothing of `fixed` differs but what the step of rays and the tables depend on: the factors by which
 /// the step may have grown. Empty: something else differs, or nothing does.
 std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now);

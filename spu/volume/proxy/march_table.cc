@@ -51,12 +51,16 @@ class TableRays {
 
   /// The ray in view whose number of samples comes closest; `within` a step, where in the step it ends.
   std::variant<RayOfTable, Refusal> of_samples(double samples, double within = 0.5) {
-    const double wanted = march_.extreme ? 3.0 : samples - 1 + within + (rule_.divided ? 0.5 : rule_.first);
-    const Ray ray = ray_of_length(rays_, rule_, wanted);
+    const double wanted = samples - 1 + within + (rule_.divided ? 0.5 : rule_.first);
+    // An extreme is the same on every ray that has a sample, and a short one may have none: its step is
+    // unknown.
+    const auto middle = rays_.middle();
+    const Ray ray = march_.extreme ? Ray{middle[0], middle[1]} : ray_of_length(rays_, rule_, wanted);
     RayOfTable seen{march_.extreme ? 1 : samples_of_length(rule_, ray.length), {}};
     if (seen.samples < 1) return no_short_ray;
     const auto fragments = probe_.at(ray.x, ray.y, values_);
     if (!finite(fragments)) return Refusal{"the fragment stage gives colours that are not finite"};
+    if (march_.extreme && !std::ranges::all_of(fragments, reached)) return no_short_ray;
     for (const Rgba& fragment : fragments) seen.colours.push_back(premultiplied(fragment, premultiplied_));
     return seen;
   }

@@ -65,13 +65,14 @@ std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
 }
 
 /// Vectors and matrices move with the camera where it has `turned`; one that changes alone may cut the volume.
-VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, bool turned) {
+VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march, bool turned) {
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs all;
   for (const float value : inputs.fixed) all.push_back({value});
-  for (const auto* predicted : {&inputs.steps, &inputs.tables}) {
-    for (const std::size_t input : *predicted) all[input].effect = Effect::predicted;
-  }
+  for (const std::size_t table : inputs.tables) all[table].effect = Effect::predicted;
+  // Steps that were only likely are likely to be others now.
+  for (const std::size_t step : inputs.steps)
+    all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
   for (const float value : inputs.varying) {
     // Not a number: the depth of opaque geometry, which is drawn in every frame.
     all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
@@ -165,7 +166,9 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
       again = with_longer_steps(draw.measured(), *march, box, factor);
   }
   known.tables = std::move(tables);
-  if (march && !again) again = with_new_table(draw.measured(), *march, box);
+  // Fields of one value, by which a table is measured, do not see the step of an extreme.
+  const bool step_unknown = march && march->extreme && steps_differ(known.inputs, inputs);
+  if (march && !again && !step_unknown) again = with_new_table(draw.measured(), *march, box);
   // What counts samples does not see noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) && !still_placed(draw.measured(), *again, box))
     again.reset();
@@ -202,12 +205,12 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
 
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;
-  VerificationSchedule::Inputs depends_on = inputs_of(inputs, turned);
   known.march.camera = box.camera.texture_to_clip;
   follow_inside(draw, box, inputs);
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
+  VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, turned);
   known.march.inputs = std::move(inputs);
   RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, box)), box.camera};
   asked.image.inputs = std::move(depends_on);

@@ -8,6 +8,7 @@
 
 #include "box_ray_caster.h"
 #include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "spu/volume/proxy/table_contents.h"
 #include "volume/sampling.h"
@@ -271,6 +272,26 @@ TEST(StepFit, RaysOfNearlyOneDirectionTellTheStepInTexels) {
   ASSERT_GE(fits.size(), 1U);
   const auto rule = rules_of(fits.front()).front();
   EXPECT_NEAR(steps_of_way(rule, {0, 1, 0}), 96, 0.5);
+}
+
+TEST(SplitFields, AreSplitWithinTheTextureWhereverTheBoxLies) {
+  const volume::Vec3 along{0.01, 0.02, -0.1};
+  const auto fields_of = [&](double low, double high) {
+    return split_fields({{0.4, 0.4, low}, {0.6, 0.6, high}}, along, 0.25F, 0.75F);
+  };
+  for (const auto& [low, high] : {std::pair{0.0, 1.0}, {0.95, 1.05}, {-0.05, 0.05}, {-0.1, 1.1}}) {
+    const auto fields = fields_of(low, high);
+    EXPECT_EQ(fields.size(), 2U) << low << " to " << high;
+    for (const FieldProbe::SplitField& field : fields) {
+      EXPECT_EQ(field.axis, 2U);
+      EXPECT_GT(field.plane, std::max(low, 0.0)) << low << " to " << high;
+      EXPECT_LT(field.plane, std::min(high, 1.0)) << low << " to " << high;
+      EXPECT_EQ(field.before, 0.25F);
+      EXPECT_EQ(field.behind, 0.75F);
+    }
+  }
+  EXPECT_TRUE(fields_of(1.0, 1.05).empty());
+  EXPECT_TRUE(fields_of(-0.05, -0.01).empty());
 }
 
 TEST(ProxyBox, IsWholeOrNone) {

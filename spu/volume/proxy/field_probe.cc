@@ -193,7 +193,8 @@ std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const SplitF
   std::array<int, 3> size{1, 1, 1};
   size[field.axis] = field_texels;
   std::vector<float> texels(field_texels, field.behind);
-  std::fill_n(texels.begin(), std::lround(field.plane / split_unit), field.before);
+  const auto plane = std::clamp(std::lround(field.plane / split_unit), 0L, long{field_texels});
+  std::fill_n(texels.begin(), plane, field.before);
   show(texels, size, GL_NEAREST);
   return in_place(0, first_row, viewport_[2], rows);
 }

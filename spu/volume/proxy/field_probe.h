@@ -43,7 +43,7 @@ class FieldProbe {
   /// `behind` beyond.
   struct SplitField {
     std::size_t axis = 0;
-    double plane = 0.5;  ///< a multiple of split_unit
+    double plane = 0.5;  ///< a multiple of split_unit; beyond 0 and 1 the field has one value
     float before = 0;
     float behind = 0;
   };

@@ -75,28 +75,14 @@ bool lies_as_said(double front, double samples, double to_plane) {
   return false;
 }
 
-/// Fields whose planes most rays cross, in the box's inside.
-std::vector<SplitRays> fields_through(const ProxyBox& box, const volume::Vec3& way, float before,
-                                      float behind) {
-  std::size_t axis = 0;
-  for (std::size_t k = 1; k < 3; ++k) {
-    if (std::abs(way[k]) > std::abs(way[axis])) axis = k;
-  }
-  std::vector<SplitRays> all;
-  for (const double part : {0.37, 0.61}) {
-    const double place = box.region.low[axis] + part * (box.region.high[axis] - box.region.low[axis]);
-    const double plane = std::round(place / FieldProbe::split_unit) * FieldProbe::split_unit;
-    all.push_back({{axis, plane, before, behind}, {}});
-  }
-  return all;
-}
-
-/// Counts samples before the planes of some fields.
+/// Counts samples before the planes of fields; needs one at least.
 class SplitCounting {
  public:
   SplitCounting(FieldProbe& probe, const Additive& amount, bool premultiplied_already,
-                std::vector<SplitRays> fields)
-      : probe_(probe), amount_(amount), already_(premultiplied_already), all_(std::move(fields)) {}
+                const std::vector<FieldProbe::SplitField>& fields)
+      : probe_(probe), amount_(amount), already_(premultiplied_already) {
+    for (const FieldProbe::SplitField& field : fields) all_.push_back({field, {}});
+  }
 
   /// The rays of two rows.
   void add_rows(int first_row);
@@ -171,6 +157,24 @@ std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::
   return seen;
 }
 
+std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const volume::Vec3& way, float before,
+                                                 float behind) {
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    if (std::abs(way[k]) > std::abs(way[axis])) axis = k;
+  }
+  // A box may reach beyond the texture by a texel, and a thin one lie there with most of its inside.
+  const double low = std::max(box.low[axis], 0.0);
+  const double high = std::min(box.high[axis], 1.0);
+  std::vector<FieldProbe::SplitField> fields;
+  for (const double part : {0.37, 0.61}) {
+    const double place = low + part * (high - low);
+    const double plane = std::round(place / FieldProbe::split_unit) * FieldProbe::split_unit;
+    if (low < high && plane > 0 && plane < 1) fields.push_back({axis, plane, before, behind});
+  }
+  return fields;
+}
+
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
                                   const ProxyBox& box, const std::vector<SeenValue>& values) {
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -180,8 +184,9 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   if (!way || translucent == values.end()) return {};
   const auto contrast = contrast_to(translucent->ray, march, values);
   if (!contrast) return {};
-  SplitCounting counting(probe, contrast->amount, measured.run.pipeline().blending.premultiplied,
-                         fields_through(box, *way, contrast->value, march.translucent));
+  const auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
+  if (fields.empty()) return {};
+  SplitCounting counting(probe, contrast->amount, measured.run.pipeline().blending.premultiplied, fields);
   for (int band = 0; band < split_bands; ++band)
     counting.add_rows(
         std::clamp((2 * band + 1) * probe.height() / (2 * split_bands), 0, std::max(0, probe.height() - 2)));

@@ -36,6 +36,11 @@ struct SeenValue {
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<volume::Rgba>& rays);
 
+/// Fields whose planes most rays cross, in the box's inside and the texture's; none where these do not meet.
+/// `way`: of a ray through the box's middle.
+std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const volume::Vec3& way, float before,
+                                                 float behind);
+
 /// Under fields of march.translucent and another of `values`. None where no other value tells, or too few rays.
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
                                   const ProxyBox& box, const std::vector<SeenValue>& values);

@@ -341,6 +341,14 @@ void BoxRayCaster::set_up(GlApplication& app) {
   texture(GL_TEXTURE3, GL_TEXTURE_2D, GL_NEAREST);
   for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     gl.TexParameteri(GL_TEXTURE_2D, axis, GL_REPEAT);
+  if (style.noise_sampler) {
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    GLuint sampler = 0;
+    gl.GenSamplers(1, &sampler);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      gl.SamplerParameteri(sampler, filter, GL_NEAREST);
+    gl.BindSampler(3, sampler);
+  }
   set_noise(app, 1);
   texture(GL_TEXTURE0, GL_TEXTURE_3D, GL_LINEAR);
   const Blob blob;

@@ -20,8 +20,10 @@ struct MarchStyle {
   bool parallel = false;      ///< the projection
   bool lit = false;           ///< brightness by the gradient
   bool jittered = false;      ///< every ray starts at a place of its own
-  bool noisy = false;        ///< every ray starts later by the number of a texture that repeats over the window
-  bool reads_depth = false;  ///< rays end at the depth of a texture
+  bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window
+  /// The noise is filtered by a sampler object: the texture's own filter asks for levels that it does not have.
+  bool noise_sampler = false;
+  bool reads_depth = false;              ///< rays end at the depth of a texture
   std::array<float, 3> extent{1, 1, 1};  ///< of the box, in the unit of `step`
   float step = 0.02F;
   double distance = 3;  ///< of the eye from the middle of the box

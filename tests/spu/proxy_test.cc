@@ -150,6 +150,19 @@ TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   }
 }
 
+TEST(Proxies, NoiseIsReadThroughItsSamplerObject) {
+  ProxyScene scene(MarchStyle{.noisy = true, .noise_sampler = true, .step = 0.08F});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  const auto under = scene.frame(true, 30);
+  const auto bare = scene.frame(false, 30);
+  EXPECT_GE(psnr(under, bare), 58);
+  EXPECT_EQ(scene.app->substituted(), 1U) << scene.app->last_reason();
+  EXPECT_EQ(scene.app->error(), GLenum(GL_NO_ERROR));
+  scene.app->use_chain(false);
+  scene.app->driver().BindSampler(3, 0);
+  EXPECT_NE(scene.frame(false, 30), bare) << "the sampler changes nothing: the test tests nothing";
+}
+
 TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
   ProxyScene scene(MarchStyle{.reads_depth = true});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";

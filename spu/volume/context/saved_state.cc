@@ -87,12 +87,23 @@ void SavedState::borrow_texture(GLenum target, int unit) {
   borrowed_.push_back(borrowed);
 }
 
+void SavedState::give_back_texture(GLenum target, int unit) {
+  const auto borrowed = std::find_if(borrowed_.begin(), borrowed_.end(), [&](const BorrowedTexture& texture) {
+    return texture.target == target && texture.unit == unit;
+  });
+  if (borrowed == borrowed_.end()) return;
+  bind_again(*borrowed);
+  borrowed_.erase(borrowed);
+}
+
+void SavedState::bind_again(const BorrowedTexture& borrowed) const {
+  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + borrowed.unit));
+  gl_.BindTexture(borrowed.target, GLuint(borrowed.texture));
+  if (version_ >= 330) gl_.BindSampler(GLuint(borrowed.unit), GLuint(borrowed.sampler));
+}
+
 SavedState::~SavedState() {
-  for (auto it = borrowed_.rbegin(); it != borrowed_.rend(); ++it) {
-    gl_.ActiveTexture(GLenum(GL_TEXTURE0 + it->unit));
-    gl_.BindTexture(it->target, GLuint(it->texture));
-    if (version_ >= 330) gl_.BindSampler(GLuint(it->unit), GLuint(it->sampler));
-  }
+  for (auto it = borrowed_.rbegin(); it != borrowed_.rend(); ++it) bind_again(*it);
   gl_.ActiveTexture(GLenum(active_texture_));
   gl_.UseProgram(GLuint(program_));
   gl_.BindVertexArray(GLuint(vertex_array_));

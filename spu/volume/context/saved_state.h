@@ -26,6 +26,8 @@ class SavedState {
   /// Remembers the texture and sampler object bound to a unit's target, so that the caller may bind its own.
   /// The active unit stays the caller's choice until the SavedState goes.
   void borrow_texture(GLenum target, int unit);
+  /// Binds both again now; nothing where they were not borrowed.
+  void give_back_texture(GLenum target, int unit);
 
   /// Of the capabilities that are switched off meanwhile.
   bool was_enabled(GLenum capability) const;
@@ -43,6 +45,8 @@ class SavedState {
     GLenum name;
     GLboolean enabled;
   };
+
+  void bind_again(const BorrowedTexture& borrowed) const;
 
   const DispatchTable& gl_;
   bool core_;

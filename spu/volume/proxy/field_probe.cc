@@ -174,9 +174,9 @@ void FieldProbe::show_instead(const SampledTexture& texture, int width, int heig
 }
 
 void FieldProbe::show_own(const SampledTexture& texture) {
-  if (std::find(tiled_units_.begin(), tiled_units_.end(), texture.unit) == tiled_units_.end()) return;
-  gl_.ActiveTexture(GLenum(GL_TEXTURE0 + texture.unit));
-  gl_.BindTexture(GL_TEXTURE_2D, texture.texture);
+  if (std::erase(tiled_units_, texture.unit) == 0) return;
+  // With its sampler object: the texture's own filter may be one that it has no levels for.
+  saved_.give_back_texture(GL_TEXTURE_2D, texture.unit);
 }
 
 void FieldProbe::clear() {

@@ -9,6 +9,7 @@
 #include "box_ray_caster.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/sample_places.h"
+#include "spu/volume/proxy/step_density.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "spu/volume/proxy/table_contents.h"
 #include "volume/sampling.h"
@@ -285,6 +286,38 @@ TEST(StepFit, RaysOfNearlyOneDirectionTellTheStepInTexels) {
   ASSERT_GE(fits.size(), 1U);
   const auto rule = rules_of(fits.front()).front();
   EXPECT_NEAR(steps_of_way(rule, {0, 1, 0}), 96, 0.5);
+}
+
+std::vector<SampledWay> ways_in_steps(double density, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<SampledWay> ways;
+  for (int i = 0; i < 512; ++i) {
+    const double whole = 0.2 + 0.8 * uniform(random);
+    const double seen = (std::floor(whole * density) + 0.1 * (uniform(random) - 0.5)) / density;
+    ways.push_back({whole, seen, whole - seen});
+  }
+  return ways;
+}
+
+TEST(StepDensity, IsFoundHoweverShortTheStepsAre) {
+  std::mt19937 random(5);
+  for (const double density : {5.3, 48.0, 331.7, 1500.0}) {
+    const auto found = step_density(ways_in_steps(density, random));
+    ASSERT_TRUE(found) << density;
+    EXPECT_NEAR(*found, density, 0.05) << "of a step on the longest way";
+  }
+  EXPECT_FALSE(step_density(ways_in_steps(4000, random))) << "too short to be told";
+}
+
+TEST(StepDensity, IsNoneWhereSamplesLieAnywhere) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<SampledWay> ways = ways_in_steps(331.7, random);
+  for (SampledWay& way : ways) way.sampled -= uniform(random) / 331.7;
+  EXPECT_FALSE(step_density(ways));
+  for (SampledWay& way : ways) way = {way.whole, way.whole, 0};
+  EXPECT_FALSE(step_density(ways)) << "rays that end at their last sample";
+  EXPECT_FALSE(step_density({}));
 }
 
 TEST(SplitFields, AreSplitWithinTheTextureWhereverTheBoxLies) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/step_density.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/matrix.h"
 
@@ -129,44 +130,6 @@ double length_of(const volume::Vec3& way, const volume::Vec3& unit) {
   return volume::length({way[0] * unit[0], way[1] * unit[1], way[2] * unit[2]});
 }
 
-/// How well the ways from first to last sample are whole numbers of steps, `density` of them in one `unit`: 1
-/// is exactly, 0 not at all.
-double wholeness(const std::vector<RayEnds>& ends, const volume::Vec3& unit, double density) {
-  double sum = 0;
-  for (const RayEnds& ray : ends)
-    sum += std::cos(2 * M_PI * density * (ray.last - ray.first) * length_of(ray.way, unit));
-  return sum / double(ends.size());
-}
-
-/// Steps in a `unit`, of those that leave so much way behind the last sample as it was seen.
-std::optional<double> density_of(const std::vector<RayEnds>& ends, const volume::Vec3& unit) {
-  constexpr double whole_enough = 0.7;
-  constexpr double most_steps = 2000;  // more are not told apart by colours, and take long to try
-  std::vector<double> behind;
-  double longest = 0;
-  for (const RayEnds& ray : ends) {
-    const double length = length_of(ray.way, unit);
-    behind.push_back((1 - ray.last) * length);
-    longest = std::max(longest, length);
-  }
-  // Rays end anywhere within their last step: the way behind it is a step at most.
-  const auto widest = behind.begin() + std::ptrdiff_t(0.95 * double(behind.size()));
-  std::nth_element(behind.begin(), widest, behind.end());
-  if (!(*widest * most_steps > longest)) return std::nullopt;
-  const double finest = 0.02 / longest;
-  double best = 0;
-  double most = whole_enough;
-  const auto tried = std::size_t(0.8 / *widest / finest);
-  for (std::size_t i = 0; i < tried; ++i) {
-    const double density = 0.6 / *widest + double(i) * finest;
-    const double whole = wholeness(ends, unit, density);
-    if (whole <= most) continue;
-    most = whole;
-    best = density;
-  }
-  return best > 0 ? std::optional(best) : std::nullopt;
-}
-
 /// Whether the samples of nearly all rays lie where `steps` says.
 bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps) {
   constexpr double colours_of_8_bits = 0.3;  // of a step
@@ -187,13 +150,16 @@ bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps
 /// exactly, by the number that each ray then has.
 std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const std::array<int, 3>& per_axis) {
   const volume::Vec3 unit{double(per_axis[0]), double(per_axis[1]), double(per_axis[2])};
-  const auto density = density_of(ends, unit);
+  std::vector<SampledWay> ways;
+  for (const RayEnds& ray : ends) {
+    const double length = length_of(ray.way, unit);
+    ways.push_back({length, (ray.last - ray.first) * length, (1 - ray.last) * length});
+  }
+  const auto density = step_density(ways);
   if (!density) return std::nullopt;
   std::vector<CountedRay> counted;
-  for (const RayEnds& ray : ends) {
-    const double steps = *density * (ray.last - ray.first) * length_of(ray.way, unit);
-    counted.push_back({ray.way, std::round(steps) + 1});
-  }
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    counted.push_back({ends[i].way, std::round(*density * ways[i].sampled) + 1});
   for (const StepFit& fit : fit_steps(counted, per_axis)) {
     const volume::RaySteps steps = rules_of(fit).front();
     if (fit.unexplained <= most_unexplained && lie_as_said(ends, steps)) return steps;

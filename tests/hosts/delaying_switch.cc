@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // delaying_switch MICROSECONDS INTERFACE…: an Ethernet switch between these interfaces that hands every frame
 // on only after that time, as a network of machines would; the kernel's own bridge knows no delay. Prints
-// "ready" when it hands frames on, and runs until it is killed. Frames keep their virtio header, so that neither checksums nor segmentation are done here.
+// "ready" when it hands frames on, and runs until it is killed. Frames keep their virtio header, so that
+// neither checksums nor segmentation are done here.
 #include <arpa/inet.h>
 #include <linux/if_ether.h>
 #include <linux/if_packet.h>

@@ -268,12 +268,12 @@ TEST_F(UnderstudyRun, RunsTheViewerByItselfWhereMpiIsMissing) {
   EXPECT_TRUE(nothing_is_left());
 }
 
-/// The ranks whose command line names `socket`, by process id.
-std::set<pid_t> ranks_behind(const std::string& socket) {
+/// The ranks of the run with this private folder, in which their socket lies, by process id.
+std::set<pid_t> ranks_of(const std::string& folder) {
   std::set<pid_t> ranks;
   for (const auto& process : fs::directory_iterator("/proc")) {
     const std::string command = contents(process.path() / "cmdline");
-    if (contents(process.path() / "comm") == "understudy-node\n" && command.find(socket) != std::string::npos) {
+    if (contents(process.path() / "comm") == "understudy-node\n" && command.find(folder) != std::string::npos) {
       ranks.insert(std::stoi(process.path().filename()));
     }
   }
@@ -296,13 +296,12 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
     _exit(99);
   }
   ASSERT_TRUE(comes_true([&] { return fs::exists(socket_file); }));
-  std::string socket = contents(socket_file);
-  socket.pop_back();
+  const std::string folder = fs::path(contents(socket_file)).parent_path();
   std::set<pid_t> first;
-  ASSERT_TRUE(comes_true([&] { return (first = ranks_behind(socket)).size() == 3; }));
+  ASSERT_TRUE(comes_true([&] { return (first = ranks_of(folder)).size() == 3; }));
   kill(*first.begin(), SIGKILL);
   EXPECT_TRUE(comes_true([&] {
-    const std::set<pid_t> now = ranks_behind(socket);
+    const std::set<pid_t> now = ranks_of(folder);
     return now.size() == 3 &&
            std::none_of(now.begin(), now.end(), [&](pid_t rank) { return first.contains(rank); });
   }));
@@ -313,7 +312,7 @@ TEST_F(UnderstudyRun, StartsAnotherNodeGroupWhenARankIsKilledAndSaysSoInOneLine)
   const std::string text = contents(said);
   EXPECT_THAT(text, HasSubstr("starting 3 again (1 of 5), the viewer draws by itself meanwhile\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << "one line on the loss, one at the end:\n" << text;
-  EXPECT_TRUE(comes_true([&] { return ranks_behind(socket).empty(); }));
+  EXPECT_TRUE(comes_true([&] { return ranks_of(folder).empty(); }));
   EXPECT_TRUE(nothing_is_left());
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "drawing.h"
-#include "glsl_program.h"
 
 namespace understudy::spu::testing {
 namespace {

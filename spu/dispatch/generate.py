@@ -12,6 +12,7 @@ Files written (README.md in this folder says who uses which):
     call_words.h, .cc   AsWords<Handler> and invoke: a call as words, and the call made from words
     pass_through.h    PassThrough<Before>: for every command "do this first, then call the next table"
     shell.h           Shell<Guard>: for every command the call within a try block, so that nothing thrown gets out
+    forwarding.h      what all these functions are marked with
     gl_entry_N.cc     the exported gl* functions of the entry library, in a few files so that they compile in parallel
     glx_entry.cc, egl_entry.cc  the exported glX* and egl* functions that the entry library does not write by hand
 
@@ -185,16 +186,18 @@ std::optional<CallId> find_call(std::string_view name) noexcept {{
 
 def pass_through(commands):
     functions = "\n".join(
-        f"  static {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
+        f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
         f"    return Before::before(CallId::{c.member}).{c.member}({c.arguments});\n"
         f"  }}"
         for c in commands
     )
     slots = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
+    chosen = "\n".join(f'    if constexpr (Before::chooses("{c.name}")) table.{c.member} = &{c.name};' for c in commands)
     return f"""\
 #pragma once
 
 #include "dispatch/call_id.h"
+#include "dispatch/forwarding.h"
 #include "dispatch/table.h"
 
 namespace understudy::spu {{
@@ -209,15 +212,31 @@ struct PassThrough {{
   static void fill(DispatchTable& table) {{
 {slots}
   }}
+
+  /// Sets the slots of the commands whose names `static constexpr bool Before::chooses(std::string_view)` chooses, and
+  /// leaves the others alone.
+  static void fill_chosen(DispatchTable& table) {{
+{chosen}
+  }}
 }};
 
 }}  // namespace understudy::spu
 """
 
 
+def forwarding():
+    return """\
+#pragma once
+
+/// Of a function that only hands its arguments on. Sanitizers leave those alone: there are thousands, which would take
+/// most of the time that a sanitized build takes, and what they call is checked.
+#define UNDERSTUDY_FORWARDING __attribute__((no_sanitize("address", "undefined", "thread")))
+"""
+
+
 def shell(commands):
     functions = "\n".join(
-        f"  static {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
+        f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
         f"    try {{\n"
         f"      return Guard::guarded().{c.member}({c.arguments});\n"
         f"    }} catch (abi::__forced_unwind&) {{\n"
@@ -236,6 +255,7 @@ def shell(commands):
 #include <cxxabi.h>
 
 #include "dispatch/call_id.h"
+#include "dispatch/forwarding.h"
 #include "dispatch/table.h"
 
 namespace understudy::spu {{
@@ -325,6 +345,7 @@ def main():
     write(out / "call_shape.cc", shapes.shape_source(gl, read_enumerants(arguments.gl)))
     write(out / "call_words.h", shapes.words_header(gl))
     write(out / "call_words.cc", shapes.words_source(gl))
+    write(out / "forwarding.h", forwarding())
     write(out / "pass_through.h", pass_through(gl))
     write(out / "shell.h", shell(gl))
     share = -(-len(gl) // GL_ENTRY_FILES)

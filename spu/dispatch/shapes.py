@@ -324,7 +324,7 @@ def words_header(commands):
         handed_on = f"Handler::call(CallId::{c.member}, " + ("words)" if c.parameters else "nullptr)")
         array = f"    const std::uint64_t words[] = {{{', '.join(f'word({p.name})' for p in c.parameters)}}};\n" if c.parameters else ""
         end = f"    {handed_on};\n" if c.result == "void" else f"    return argument<{c.result}>({handed_on});\n"
-        functions.append(f"  static {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n{array}{end}  }}")
+        functions.append(f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n{array}{end}  }}")
     fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
     plain_fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands if is_plain(c))
     return f"""\
@@ -336,6 +336,7 @@ def words_header(commands):
 
 #include "dispatch/call_id.h"
 #include "dispatch/call_shape.h"
+#include "dispatch/forwarding.h"
 #include "dispatch/table.h"
 
 namespace understudy::spu {{

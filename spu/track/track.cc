@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "dispatch/pass_through.h"
+#include "spu/track/call_names.h"
 #include "spu/track/calls.h"
 #include "spu/track/program_slots.h"
 #include "spu/track/state.h"
@@ -56,6 +57,7 @@ struct NotesMode<Slot> {
 };
 
 struct NoteTextureChange {
+  static constexpr bool chooses(std::string_view name) { return changes_texture(name); }
   static const DispatchTable& before(CallId) {
     Track& track = here();
     track.texture_changes();
@@ -237,14 +239,7 @@ void fill_compiling(DispatchTable& table) {
 }
 
 void fill_texture_changes(DispatchTable& table) {
-  DispatchTable changes = table;
-  PassThrough<NoteTextureChange>::fill(changes);
-  for (std::size_t i = 0; i < call_count; ++i) {
-    const CallKind kind = kind_of(CallId(i));
-    if (kind == CallKind::bound_texture || kind == CallKind::unknown_texture) {
-      set_slot(table, CallId(i), slot(changes, CallId(i)));
-    }
-  }
+  PassThrough<NoteTextureChange>::fill_chosen(table);
   table.TexImage3D = DefinesVolume<0, &DispatchTable::TexImage3D>::call;
   table.TexImage3DEXT = DefinesVolume<0, &DispatchTable::TexImage3DEXT>::call;
   table.TexStorage3D = DefinesVolume<0, &DispatchTable::TexStorage3D>::call;

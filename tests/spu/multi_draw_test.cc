@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -83,7 +84,9 @@ std::vector<Way> ways() {
        [](GlApplication& app, const SliceArrays& a) {
          for (std::size_t i = 0; i < slices; ++i)
            app.gl().DrawArraysIndirect(
-               GL_TRIANGLE_FAN, static_cast<const std::byte*>(a.indirect_arrays) + i * 4 * sizeof(GLuint));
+               GL_TRIANGLE_FAN,
+               reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(a.indirect_arrays) +
+                                             i * 4 * sizeof(GLuint)));
        },
        true},
       {"two glMultiDrawElements",

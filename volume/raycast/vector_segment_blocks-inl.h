@@ -22,12 +22,12 @@ struct SegmentBlock {
 template <bool pre_integrated>
 HWY_INLINE void find_ends(const SegmentPacket& rays, SegmentBlock<pre_integrated>& block) {
   const FloatTag f;
-  const Floats beyond = hn::Add(rays.k, hn::Set(f, float(block.count)));
+  const Floats beyond = hn::Add(rays.k, hn::Set(f, float(samples_between_tests)));
   const Floats none_after = hn::Add(rays.last, hn::Set(f, 1.0F));
   const Mask inside =
       hn::And(hn::Ge(rays.k, hn::Max(rays.begin, hn::Zero(f))), hn::Le(beyond, hn::Min(rays.end, none_after)));
   block.inside = hn::AllTrue(f, inside);
-  for (std::size_t i = 0; i <= block.count; ++i) {
+  for (std::size_t i = 0; i <= samples_between_tests; ++i) {
     const Floats k = hn::Add(rays.k, hn::Set(f, float(i)));
     block.u[i] = block.inside ? k : on_ray(rays, k);
   }
@@ -38,15 +38,15 @@ HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& cons
                                SegmentBlock<pre_integrated>& block) {
   const FloatTag f;
   const Floats zero = hn::Zero(f);
-  std::array<Located, block.count> located;
-  for (std::size_t i = 0; i < block.count; ++i)
+  std::array<Located, samples_between_tests> located;
+  for (std::size_t i = 0; i < samples_between_tests; ++i)
     locate(place_at(rays, block.u[i + 1], constants), constants, located[i]);
   if (!rays.known) rays.value = value_at(place_at(rays, block.u[0], constants), constants, source);
   block.values[0] = rays.value;
   block.in_one_piece = block.inside;
   if constexpr (pre_integrated) {
     AxisPlace front = place_on_axis(rays.value, constants);
-    for (std::size_t i = 0; i < block.count; ++i) {
+    for (std::size_t i = 0; i < samples_between_tests; ++i) {
       block.values[i + 1] = value_of(located[i], constants, source);
       const AxisPlace back = place_on_axis(block.values[i + 1], constants);
       Ints corner = corner_of_pair(front, back, constants);
@@ -61,12 +61,12 @@ HWY_INLINE void classify_block(SegmentPacket& rays, const SegmentConstants& cons
     }
     if (constants.values_beyond) {
       Mask parted = hn::Lt(hn::Zero(f), hn::Zero(f));
-      for (std::size_t i = 0; i < block.count; ++i)
+      for (std::size_t i = 0; i < samples_between_tests; ++i)
         parted = hn::Or(parted, PlacedEnds(block.values[i], block.values[i + 1], constants).part());
       block.in_one_piece = block.inside && hn::AllFalse(f, parted);
     }
   } else {
-    for (std::size_t i = 0; i < block.count; ++i) {
+    for (std::size_t i = 0; i < samples_between_tests; ++i) {
       block.values[i + 1] = value_of(located[i], constants, source);
       const Mask before = hn::Lt(hn::Add(rays.k, hn::Set(f, float(i))), zero);
       look_up(block.values[i], hn::Or(before, hn::Not(block.present(rays, i))), constants, source,
@@ -84,10 +84,10 @@ HWY_INLINE bool find_parted(const SegmentPacket& rays, const SegmentConstants& c
   bool any_parted = false;
   for (std::size_t l = 0; l < constants.levels; ++l) {
     Mask parts = hn::Lt(hn::Zero(f), hn::Zero(f));
-    for (std::size_t i = 0; i < block.count; ++i)
+    for (std::size_t i = 0; i < samples_between_tests; ++i)
       parts = hn::Or(parts, passes<Source>(block.values[i], block.values[i + 1], constants.level[l]));
     if (hn::AllFalse(f, parts)) continue;
-    for (std::size_t i = 0; i < block.count; ++i)
+    for (std::size_t i = 0; i < samples_between_tests; ++i)
       parted[i] =
           parted[i] ||
           !hn::AllFalse(f, hn::And(block.present(rays, i),
@@ -107,27 +107,27 @@ HWY_INLINE void light_block(const SegmentPacket& rays, const SegmentConstants& c
   std::array<Slope, samples_between_tests> slopes;
   std::array<bool, samples_between_tests> shown, inner{};
   bool any_shown = false;
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < samples_between_tests; ++i) {
     shown[i] = show(colours[i]);
     any_shown = any_shown || shown[i];
   }
   if (!any_shown) return;
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < samples_between_tests; ++i) {
     if (!shown[i]) continue;
     const Floats middle = hn::Mul(hn::Set(f, 0.5F), hn::Add(block.u[i], block.u[i + 1]));
     const Position p = place_at(rays, pre_integrated ? middle : block.u[i], constants);
     inner[i] = look_around(p, block.present(rays, i), constants, around[i]);
     if (!inner[i]) find_clamped_slope(p, constants, source, slopes[i]);
   }
-  for (std::size_t i = 0; i < block.count; ++i)
+  for (std::size_t i = 0; i < samples_between_tests; ++i)
     if (inner[i]) find_slope(around[i], constants, source, slopes[i]);
   std::array<Brightness, samples_between_tests> bright;
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < samples_between_tests; ++i) {
     bright[i].gleam = hn::Zero(f);
     if (shown[i]) find_cosines(rays, slopes[i], constants, source, bright[i]);
   }
   if (constants.gleams) raise(constants, bright);
-  for (std::size_t i = 0; i < block.count; ++i)
+  for (std::size_t i = 0; i < samples_between_tests; ++i)
     if (shown[i]) light_up(bright[i], constants, colours[i]);
 }
 
@@ -154,7 +154,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
     pixels = mine;
   } else {
     std::array<Colours, samples_between_tests> colours;
-    for (std::size_t i = 0; i < block.count; ++i) {
+    for (std::size_t i = 0; i < samples_between_tests; ++i) {
       if (pre_integrated && !block.in_one_piece) {
         show_between(block.values[i], block.values[i + 1], hn::Sub(block.u[i + 1], block.u[i]),
                      hn::Not(block.present(rays, i)), constants, source, colours[i]);
@@ -163,7 +163,7 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
       }
     }
     if constexpr (lit) light_block(rays, constants, source, block, colours);
-    for (std::size_t i = 0; i < block.count; ++i) {
+    for (std::size_t i = 0; i < samples_between_tests; ++i) {
       if (!parted[i]) {
         compose_over(colours[i], pixels);
         continue;
@@ -185,9 +185,9 @@ HWY_INLINE void take_segments(SegmentPacket& rays, const SegmentConstants& const
                                        colours[i], pixels);
     }
   }
-  rays.value = block.values[block.count];
+  rays.value = block.values[samples_between_tests];
   rays.known = true;
-  rays.k = hn::Add(rays.k, hn::Set(f, float(block.count)));
+  rays.k = hn::Add(rays.k, hn::Set(f, float(samples_between_tests)));
 }
 
 /// The packet whose lowest left pixel is (x, y) of the packet.

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dispatch/pass_through.h"
+#include "spu/track/call_names.h"
 #include "spu/track/calls.h"
 #include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/draw_slots.h"
@@ -16,8 +17,20 @@ DrawObserver& here() {
   return *Chain::current()->find<DrawObserver>();
 }
 
+constexpr std::string_view depth_readers[] = {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex",
+                                              "glCopyImageSubData", "glBlit", "glDrawPixels", "glBitmap",
+                                              // Framebuffers that change may give their depth texture away.
+                                              "glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer",
+                                              "glGetTexImage", "glGetnTexImage", "glGetTextureImage",
+                                              "glGetTextureSubImage"};
+
 /// A draw with a depth test, or a read: the answer would depend on the deferred depth.
 struct NoteDepthUse {
+  static constexpr bool chooses(std::string_view name) {
+    if (name == "glEnd") return false;
+    return is_draw(name) || name == "glCallList" || name == "glCallLists" ||
+           starts_with_any(name, depth_readers);
+  }
   static const DispatchTable& before(CallId call) {
     DrawObserver& observer = here();
     // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
@@ -55,20 +68,6 @@ void APIENTRY blit_framebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to_
       .BlitFramebuffer(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);
 }
 
-bool looks_at_depth(CallId call) {
-  if (call == CallId::End || kind_of(call) == CallKind::vertex) return false;
-  if (kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists) return true;
-  const std::string_view name = call_name(call);
-  // Framebuffers that change may give their depth texture away.
-  for (const std::string_view reader :
-       {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glCopyImageSubData", "glBlit",
-        "glDrawPixels", "glBitmap", "glBindFramebuffer", "glFramebuffer", "glNamedFramebuffer", "glGetTexImage",
-        "glGetnTexImage", "glGetTextureImage", "glGetTextureSubImage"}) {
-    if (name.starts_with(reader)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void write_depth(const DispatchTable& gl, const Run& run) {
@@ -81,11 +80,7 @@ void write_depth(const DispatchTable& gl, const Run& run) {
 
 void fill_depth_deferred_slots(DispatchTable& table) {
   fill_watching_slots(table);
-  DispatchTable noting;
-  PassThrough<NoteDepthUse>::fill(noting);
-  for (std::size_t i = 0; i < call_count; ++i) {
-    if (looks_at_depth(CallId(i))) set_slot(table, CallId(i), slot(noting, CallId(i)));
-  }
+  PassThrough<NoteDepthUse>::fill_chosen(table);
   table.Clear = clear;
   table.ReadPixels = read_pixels;
   table.BlitFramebuffer = blit_framebuffer;

@@ -45,13 +45,13 @@ class CurrentAttributes {
  private:
   using Four = std::array<GLfloat, 4>;
   struct FixedFunction {
-    Four colour{};
-    Four secondary_colour{};
-    Four normal{};
+    Four colour;
+    Four secondary_colour;
+    Four normal;
     /// OpenGL's least number of fixed-function units that carry coordinates.
-    std::array<Four, 8> coordinates{};
-    GLfloat fog_coordinate = 0;
-    GLboolean edge_flag = GL_TRUE;
+    std::array<Four, 8> coordinates;
+    GLfloat fog_coordinate;
+    GLboolean edge_flag;
   };
   template <class T>
   struct Generic {

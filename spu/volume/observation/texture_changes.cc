@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dispatch/pass_through.h"
+#include "spu/track/call_names.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/observation/draw_observer.h"
@@ -33,6 +34,7 @@ void bound_textures_change(DrawObserver& observer, int dimensions) {
 }
 
 struct NoteTextureChange {
+  static constexpr bool chooses(std::string_view name) { return changes_texture(name); }
   static const DispatchTable& before(CallId call) {
     DrawObserver& observer = here();
     if (kind_of(call) == CallKind::bound_texture && !observer.inside_begin) {
@@ -136,14 +138,7 @@ void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLin
 }  // namespace
 
 void fill_texture_change_slots(DispatchTable& table) {
-  DispatchTable changes = table;
-  PassThrough<NoteTextureChange>::fill(changes);
-  for (std::size_t i = 0; i < call_count; ++i) {
-    const CallKind kind = kind_of(CallId(i));
-    if (kind == CallKind::bound_texture || kind == CallKind::unknown_texture) {
-      set_slot(table, CallId(i), slot(changes, CallId(i)));
-    }
-  }
+  PassThrough<NoteTextureChange>::fill_chosen(table);
   using Table = DispatchTable;
   table.TextureStorage1D = ChangesNamedTexture<&Table::TextureStorage1D>::call;
   table.TextureStorage2D = ChangesNamedTexture<&Table::TextureStorage2D>::call;

@@ -150,7 +150,7 @@ const ProgramFindings* ProgramText::findings(std::span<const std::string> fragme
     if (const auto* failure = std::get_if<program::Failure>(&read)) {
       trouble_ = "the fragment shader is not understood: " + failure->what;
     } else {
-      findings_.emplace(std::get<program::StageFacts>(std::move(read)), roles);
+      findings_.emplace(ProgramFindings{std::get<program::StageFacts>(std::move(read)), roles});
     }
   }
   if (!findings_) return nullptr;

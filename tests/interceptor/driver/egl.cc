@@ -5,7 +5,6 @@
 #include "driver.h"
 
 constexpr unsigned opengl_es_api = 0x30A0;
-constexpr unsigned opengl_api = 0x30A2;
 constexpr int context_client_type = 0x3097;
 
 static Handles handles;

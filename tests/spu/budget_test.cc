@@ -150,8 +150,10 @@ TEST_F(BudgetTest, ABusyMachineKeepsTheErrorToo) {
 }
 
 TEST_F(BudgetTest, FewerSamplesAreTakenForALargerError) {
+  // Far apart: of settings that keep an error the fastest is taken, as measured, and another load may order
+  // neighbours otherwise.
   std::uint64_t last = ~std::uint64_t(0);
-  for (const double error : {0.5 / 255, 4 / 255.0, 0.2}) {
+  for (const double error : {0.5 / 255, 0.2}) {
     Budget budget({.error = error});
     const auto request = ask(budget);
     ASSERT_TRUE(request);

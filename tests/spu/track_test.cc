@@ -12,6 +12,7 @@
 
 #include "dispatch/call_id.h"
 #include "dispatch/pass_through.h"
+#include "spu/track/call_names.h"
 
 namespace understudy::spu {
 namespace {
@@ -197,6 +198,17 @@ TEST_F(TrackAlone, SeesTexturesAttachedInEveryWay) {
   EXPECT_TRUE(group->is_rendered_to(8)) << "the name has come again";
   gl().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 0, 0);
   EXPECT_FALSE(group->is_rendered_to(0));
+}
+
+TEST(CallNames, ChooseTheCallsOfTheirKinds) {
+  for (std::size_t number = 0; number < call_count; ++number) {
+    const auto call = CallId(number);
+    const CallKind kind = kind_of(call);
+    EXPECT_EQ(changes_texture(call_name(call)),
+              kind == CallKind::bound_texture || kind == CallKind::unknown_texture)
+        << call_name(call);
+    EXPECT_EQ(is_draw(call_name(call)), kind == CallKind::draw) << call_name(call);
+  }
 }
 
 }  // namespace

@@ -6,13 +6,12 @@
 /// The ends of eight segments of every ray, and what they show.
 template <bool pre_integrated>
 struct SegmentBlock {
-  static constexpr std::size_t count = samples_between_tests;
   using Classified = std::conditional_t<pre_integrated, SegmentPlace, TablePlace>;
 
   bool inside = false;        // all are there, and a step long
   bool in_one_piece = false;  // and, pre-integrated, none leads past an end of the table
-  std::array<Floats, count + 1> u, values;
-  std::array<Classified, count> classified;
+  std::array<Floats, samples_between_tests + 1> u, values;
+  std::array<Classified, samples_between_tests> classified;
 
   Mask present(const SegmentPacket& rays, std::size_t i) const {
     return hn::Le(hn::Add(rays.k, hn::Set(FloatTag(), float(i))), rays.last);

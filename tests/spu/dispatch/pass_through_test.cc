@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -14,6 +15,7 @@ std::vector<CallId> noted;
 DispatchTable next{};
 
 struct Note {
+  static constexpr bool chooses(std::string_view name) { return name.starts_with("glTexImage"); }
   static const DispatchTable& before(CallId call) {
     noted.push_back(call);
     return next;
@@ -47,6 +49,15 @@ TEST(PassThrough, FillsEverySlotWithAFunctionOfItsOwn) {
   }
   std::sort(functions.begin(), functions.end());
   EXPECT_EQ(std::adjacent_find(functions.begin(), functions.end()), functions.end());
+}
+
+TEST(PassThrough, FillsTheChosenSlotsAndLeavesTheOthers) {
+  DispatchTable table{};
+  PassThrough<Note>::fill_chosen(table);
+  for (std::size_t number = 0; number < call_count; ++number) {
+    const auto call = static_cast<CallId>(number);
+    EXPECT_EQ(slot(table, call) != nullptr, Note::chooses(call_name(call))) << call_name(call);
+  }
 }
 
 }  // namespace

@@ -140,5 +140,15 @@ TEST(BlockHashes, KnowTheRangeOfFiniteValues) {
   EXPECT_EQ(hashes.range(), (std::array{1.0F, 9.0F})) << "what is gone counts no longer";
 }
 
+TEST(BlockHashes, KnowTheRangeOf16BitValues) {
+  const TexelBox box{{0, 0, 0}, {20, 20, 20}};
+  BlockHashes hashes(box, TexelType::u16);
+  std::vector<std::uint16_t> values(8000, 500);
+  values[17] = 7;
+  values[7999] = 1300;
+  hashes.take(box, std::as_bytes(std::span(values)));
+  EXPECT_EQ(hashes.range(), (std::array{7.0F / 65535, 1300.0F / 65535}));
+}
+
 }  // namespace
 }  // namespace understudy::spu

@@ -180,7 +180,8 @@ TEST(RecognitionOfFormats, EveryScalarFormatIsReadBackAndProbed) {
   for (const Format& format :
        {Format{"R8", GL_R8, GL_RED, 1}, Format{"R16", GL_R16, GL_RED, 1}, Format{"R16F", GL_R16F, GL_RED, 1},
         Format{"R32F", GL_R32F, GL_RED, 1}, Format{"R32F up to 3", GL_R32F, GL_RED, 3},
-        Format{"LUMINANCE16", GL_LUMINANCE16, GL_LUMINANCE, 1},
+        Format{"R16 up to 1/50", GL_R16, GL_RED, 0.02F}, Format{"R8_SNORM", GL_R8_SNORM, GL_RED, 1},
+        Format{"R16_SNORM", GL_R16_SNORM, GL_RED, 1}, Format{"LUMINANCE16", GL_LUMINANCE16, GL_LUMINANCE, 1},
         Format{"INTENSITY16", GL_INTENSITY16, GL_LUMINANCE, 1}}) {
     auto app = GlApplication::start(Profile::compatibility);
     if (!app) GTEST_SKIP() << "no EGL context here";

@@ -16,14 +16,12 @@
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/refusal/refusal.h"
 #include "spu/volume/texture/texels.h"
+#include "spu/volume/texture/value_range.h"
 #include "volume/classification.h"
 
 namespace understudy::spu {
 
 struct GlContext;
-
-/// Entries of a probed table: multiples of 1/255 fall on entries, so that 8-bit tables keep their steps.
-constexpr int probed_entries = 16 * 255 + 1;
 
 /// What was found, for all runs whose inputs keep within a range.
 struct Probed {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "spu/track/share_group.h"
+#include "spu/volume/texture/value_range.h"
 #include "volume/texel_box.h"
 
 namespace understudy::spu {
@@ -27,9 +28,8 @@ bool MergedVolumes::belongs(const Group& group, GLuint texture, const DrawnBrick
                             const volume::Classification& classification) {
   const KnownVolume* const first = volumes_.find(group.textures.front());
   if (first == nullptr || !first->colours.probed) return false;
-  // A table over float values spans those of its own brick.
-  const bool same_colours =
-      type == volume::TexelType::f32 || first->colours.probed->classification == classification;
+  // The table spans the values of its own brick.
+  const bool same_colours = has_value_range(type) || first->colours.probed->classification == classification;
   return group.type == type && same_colours && group.textures.size() < most_bricks &&
          std::find(group.textures.begin(), group.textures.end(), texture) == group.textures.end() &&
          lattice_offset(group.bricks.front(), brick);
@@ -84,6 +84,7 @@ std::unique_ptr<MergedVolume> MergedVolumes::merged(const Group& group) {
   merged->tiling = std::get<Tiling>(std::move(tiling));
   whole.texture = first.texture;
   whole.texture.size = merged->tiling.size;
+  whole.range = value_range(whole.texture, whole.range);
   return merged;
 }
 

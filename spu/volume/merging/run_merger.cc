@@ -16,6 +16,7 @@
 #include "spu/volume/merging/merged_geometry.h"
 #include "spu/volume/merging/merged_upload.h"
 #include "spu/volume/request/explanation.h"
+#include "spu/volume/texture/value_range.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "volume/texel_box.h"
 
@@ -55,9 +56,8 @@ bool RunMerger::still_known(const Pipeline& pipeline, const RecognisedRun& seen,
                             const TextureDescription& texture, const MergedVolume& merged) const {
   const std::size_t place = *merged.place_of(pipeline.volume.texture);
   const volume::TexelBox read = texels_read(seen.slices.region, texture.size, texture.filter);
-  // A table over float values was probed for those that were known.
-  const bool other_values =
-      texture.type == volume::TexelType::f32 && seen.texture_version != merged.versions[place];
+  // The table was probed for the values that were known.
+  const bool other_values = has_value_range(texture.type) && seen.texture_version != merged.versions[place];
   return alike(texture, merged.descriptions[place]) && texture.size == merged.descriptions[place].size &&
          volume::contains(merged.shown[place], read) && !other_values;
 }
@@ -73,7 +73,7 @@ MergedVolume* RunMerger::volume_of(const Pipeline& pipeline, const RecognisedRun
 std::optional<ImageRequest> RunMerger::request_of(const Pipeline& pipeline, const RecognisedRun& seen,
                                                   KnownVolume& volume, const MergedVolume& merged) {
   SentVolume& sent = volume.sent;
-  if (sent.texture.type == volume::TexelType::f32) sent.range = merged.volume.sent.range;
+  if (has_value_range(sent.texture.type)) sent.range = merged.volume.sent.range;
   ImageRequest image = stages_.slices.compose(pipeline, seen, {sent, volume.colours, *volume.counters});
   if (image.request.slice_segment || image.request.fog) return std::nullopt;
   return image;

@@ -2,7 +2,7 @@
 #include "spu/volume/texture/texels.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -31,8 +31,12 @@ std::string name_of_format(GLint format) {
   switch (format) {
     case GL_R8:
       return "R8";
+    case GL_R8_SNORM:
+      return "R8_SNORM";
     case GL_R16:
       return "R16";
+    case GL_R16_SNORM:
+      return "R16_SNORM";
     case GL_R16F:
       return "R16F";
     case GL_R32F:
@@ -110,10 +114,18 @@ std::optional<std::string> describe_components(const GlContext& context, GLenum 
     }
     if (type == GL_UNSIGNED_NORMALIZED) {
       description.type = bits <= 8 ? volume::TexelType::u8 : volume::TexelType::u16;
+      description.steps = bits <= 8 ? 255 : 65535;
+    } else if (type == GL_SIGNED_NORMALIZED) {
+      // Most computed tomographies (VTK, ITK): read as the numbers from -1 to 1 that the pipeline sees.
+      description.type = volume::TexelType::f32;
+      description.held = {-1, 1};
+      description.steps = bits <= 8 ? 127 : 32767;
     } else if (type == GL_FLOAT) {
       description.type = volume::TexelType::f32;
+      description.held = {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
+      description.steps = 0;
     } else {
-      return "the texture's texels are signed or integers";
+      return "the texture's texels are integers";
     }
     return std::nullopt;
   }
@@ -277,6 +289,8 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
   } else {
     gl.GetTexParameterfv(target, GL_TEXTURE_BORDER_COLOR, description.border.data());
   }
+  for (float& component : description.border)
+    component = std::clamp(component, description.held[0], description.held[1]);
   if (description.base == BaseFormat::alpha) description.border[0] = description.border[3];
   if (description.grey) description.border[1] = description.border[2] = description.border[0];
   if (description.opaque) description.border[3] = 1;
@@ -300,18 +314,6 @@ std::unique_ptr<TexelSource> texture_source(const GlContext& context, GLuint tex
 std::unique_ptr<TexelSource> stack_source(const GlContext& context, std::span<const GLuint> textures,
                                           const TextureDescription& description) {
   return std::make_unique<Stack>(context, textures, description);
-}
-
-std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> range) {
-  if (description.type != volume::TexelType::f32 || range[0] > range[1]) return {0.0F, 1.0F};
-  for (const volume::Wrap wrap : description.wrap) {
-    if (wrap != volume::Wrap::border || !std::isfinite(description.border[0])) continue;
-    range[0] = std::min(range[0], description.border[0]);
-    range[1] = std::max(range[1], description.border[0]);
-  }
-  // A constant field has no range to spread a table over: any room above it will do.
-  if (range[0] == range[1]) range[1] += std::max(std::abs(range[1]), 1.0F);
-  return range;
 }
 
 GLenum probe_format(BaseFormat base) {

@@ -6,6 +6,7 @@
 // bricks. No copy stays here.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,6 +28,8 @@ enum class BaseFormat { red, luminance, intensity, alpha, rgba };
 struct TextureDescription {
   std::array<int, 3> size{};
   volume::TexelType type = volume::TexelType::u8;
+  std::array<float, 2> held{0, 1};  ///< the least and the greatest number that the format holds
+  int steps = 255;                  ///< texels are multiples of 1 / steps; 0: floats
   BaseFormat base = BaseFormat::red;
   bool opaque = false;  ///< colours without alpha: it is 1 everywhere
   bool grey = false;    ///< colours are luminance and alpha
@@ -64,9 +67,5 @@ std::unique_ptr<TexelSource> texture_source(const GlContext& context, GLuint tex
 /// refused.
 std::unique_ptr<TexelSource> stack_source(const GlContext& context, std::span<const GLuint> textures,
                                           const TextureDescription& description);
-
-/// The values over which a table is to be spread: of float fields, whose finite texels lie in `texels`, with
-/// the border colour where it shows; [0,1] of others.
-std::array<float, 2> value_range(const TextureDescription& description, std::array<float, 2> texels);
 
 }  // namespace understudy::spu

@@ -39,7 +39,7 @@ std::uint64_t hash_of(std::uint64_t hash, const std::byte* bytes, std::size_t co
   return hash;
 }
 
-void widen(std::array<float, 2>& range, const std::byte* texels, std::size_t count) {
+void widen_by_floats(std::array<float, 2>& range, const std::byte* texels, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     float value;
     std::memcpy(&value, texels + i * sizeof value, sizeof value);
@@ -47,6 +47,19 @@ void widen(std::array<float, 2>& range, const std::byte* texels, std::size_t cou
     range[0] = std::min(range[0], value);
     range[1] = std::max(range[1], value);
   }
+}
+
+void widen_by_words(std::array<float, 2>& range, const std::byte* texels, std::size_t count) {
+  std::uint16_t low = 65535;
+  std::uint16_t high = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint16_t value;
+    std::memcpy(&value, texels + i * sizeof value, sizeof value);
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  range[0] = std::min(range[0], float(low) / 65535.0F);
+  range[1] = std::max(range[1], float(high) / 65535.0F);
 }
 
 /// Adds a box, or makes one longer that ends along `axis` where it begins.
@@ -109,7 +122,8 @@ void BlockHashes::take_slice(int z, const TexelBox& box, const std::byte* slice)
       const auto width = std::size_t(std::min(edge, box.high[0] - x));
       if (first_row) *block = {first_hash, no_values};
       block->hash = hash_of(block->hash, slice, width * texel);
-      if (type_ == volume::TexelType::f32) widen(block->range, slice, width);
+      if (type_ == volume::TexelType::f32) widen_by_floats(block->range, slice, width);
+      if (type_ == volume::TexelType::u16) widen_by_words(block->range, slice, width);
       slice += width * texel;
     }
   }

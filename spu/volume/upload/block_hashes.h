@@ -28,7 +28,8 @@ class BlockHashes {
   /// and whose texels differ from those of last time; the first time all do.
   std::vector<volume::TexelBox> take(const volume::TexelBox& box, std::span<const std::byte> texels);
 
-  /// Lowest and highest finite value of a float field; low > high when there is none.
+  /// Lowest and highest finite value, normalised, of a field of floats or of 16 bits; low > high when there is
+  /// none, and for other types.
   std::array<float, 2> range() const;
 
  private:

@@ -13,6 +13,7 @@
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/refusal/refusal.h"
 #include "spu/volume/session/render_session.h"
+#include "spu/volume/texture/value_range.h"
 #include "spu/volume/timing/frame_account.h"
 #include "volume/texel_box.h"
 

@@ -6,7 +6,7 @@ namespace adversary::casters {
 
 Scenario signed_16() {
   return {.sentence = "Signed normalised texels of 16 bits, from -1 to 1.",
-          .expectation = Expectation::either,
+          .expectation = Expectation::must_be_substituted,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = caster_scene(canvas, {.fragment = over_caster(R"(
 )",

@@ -6,7 +6,7 @@ namespace adversary::slices {
 
 Scenario signed_16() {
   return {.sentence = "Signed normalised texels of 16 bits, from -1 to 1.",
-          .expectation = Expectation::either,
+          .expectation = Expectation::must_be_substituted,
           .start = [](Canvas& canvas) -> DrawFrame {
             auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
 )",

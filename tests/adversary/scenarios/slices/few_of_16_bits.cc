@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/adversary/scenario.h"
+#include "tests/adversary/slice_scene.h"
+
+namespace adversary::slices {
+
+Scenario few_of_16_bits() {
+  return {.sentence = "Texels of 16 bits of which 0 to 1300 are used.",
+          .expectation = Expectation::must_be_substituted,
+          .start = [](Canvas& canvas) -> DrawFrame {
+            auto scene = slice_scene(canvas, {.fragment = slice_fragment_shader(R"(
+)",
+                                                                                R"(
+  colour = texture(table, vec2(value * 65535.0 / 1300.0, 0.5));)"),
+                                              .grid = scaled(sampled(48, waves), 1300.0F / 65535, 0),
+                                              .format = {.texel = Texel::unsigned16}});
+            return [scene](int frame) { scene->draw(frame); };
+          }};
+}
+
+}  // namespace adversary::slices

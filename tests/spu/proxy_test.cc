@@ -256,7 +256,7 @@ TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
         const volume::Vec3 way{uniform(random), uniform(random), uniform(random)};
         rays.push_back({way, samples_of_length(truth, steps_of_way(truth, way))});
       }
-      const auto fits = fit_steps(rays, texels);
+      const auto fits = fit_steps(rays, axes_in_texels(texels));
       ASSERT_EQ(fits.size(), 1U) << metric[4] << ", first " << first;
       EXPECT_LE(fits[0].unexplained, most_unexplained);
       const volume::RaySteps rule = rules_of(fits[0]).front();
@@ -265,7 +265,7 @@ TEST(StepFit, FindsTheMetricAndWhereTheFirstSampleLies) {
         EXPECT_NEAR(steps_of_way(rule, ray.way), steps_of_way(truth, ray.way), 0.2);
       // Rays that begin anywhere within two steps are another matter.
       for (CountedRay& ray : rays) ray.samples += std::floor(2 * uniform(random));
-      const auto jittered = fit_steps(rays, texels);
+      const auto jittered = fit_steps(rays, axes_in_texels(texels));
       ASSERT_EQ(jittered.size(), 1U);
       EXPECT_GT(jittered[0].unexplained, 0.05);
     }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "spu/volume/proxy/axis_lengths.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/step_density.h"
 #include "spu/volume/proxy/step_fit.h"
@@ -43,7 +44,8 @@ class TellingStretch {
     const double extent = double(rising_.size()) - 1;
     if (from == rising_.begin() || to == rising_.end() || double(to - from) > widest * extent)
       return std::nullopt;
-    const double middle = (double(from - begin) + double(to - begin) - 1) / 2;
+    // Where the table is flat, in its middle.
+    const double middle = (entry_at(told - flat) + entry_at(told + flat)) / 2;
     return (middle / extent - margin) / (1 - 2 * margin);
   }
 
@@ -59,9 +61,17 @@ class TellingStretch {
         last_(last) {
     for (std::size_t i = first; i <= last; ++i) rising_.push_back(sign * table.entries[i][channel]);
   }
+  /// Between which entries the channel reaches that value.
+  double entry_at(float told) const {
+    const auto above = std::upper_bound(rising_.begin() + 1, rising_.end() - 1, told);
+    const float rise = *above - above[-1];
+    const double part = rise > 0 ? std::clamp((told - above[-1]) / rise, 0.0F, 1.0F) : 0.5;
+    return double(above - rising_.begin()) - 1 + part;
+  }
   float value_of(double entry) const { return value_at({low_, high_}, entry / double(entries_ - 1)); }
 
   static constexpr double margin = 0.05;
+  static constexpr float flat = 1e-5F;  ///< what changes by less tells nothing
 
   float low_, high_;
   std::size_t entries_;
@@ -72,7 +82,6 @@ class TellingStretch {
 };
 
 std::optional<TellingStretch> TellingStretch::of(const volume::TransferFunction& table) {
-  constexpr float flat = 1e-5F;
   float most = 0.2F;
   std::optional<TellingStretch> best;
   for (std::size_t channel = 0; channel < 4; ++channel) {
@@ -126,10 +135,6 @@ void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroug
   }
 }
 
-double length_of(const volume::Vec3& way, const volume::Vec3& unit) {
-  return volume::length({way[0] * unit[0], way[1] * unit[1], way[2] * unit[2]});
-}
-
 /// Whether the samples of nearly all rays lie where `steps` says.
 bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps) {
   constexpr double colours_of_8_bits = 0.3;  // of a step
@@ -146,13 +151,12 @@ bool lie_as_said(const std::vector<RayEnds>& ends, const volume::RaySteps& steps
   return double(elsewhere) <= most_elsewhere * double(ends.size());
 }
 
-/// Steps of which about so many as the ways tell make up a unit, of which there are so many `per_axis`:
-/// exactly, by the number that each ray then has.
-std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const std::array<int, 3>& per_axis) {
-  const volume::Vec3 unit{double(per_axis[0]), double(per_axis[1]), double(per_axis[2])};
+/// Steps of one length where the texture's axes are `axes` long: about so many to a unit as the ways tell, and
+/// then exactly, by the number that each ray has.
+std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const volume::Vec3& axes) {
   std::vector<SampledWay> ways;
   for (const RayEnds& ray : ends) {
-    const double length = length_of(ray.way, unit);
+    const double length = volume::length({ray.way[0] * axes[0], ray.way[1] * axes[1], ray.way[2] * axes[2]});
     ways.push_back({length, (ray.last - ray.first) * length, (1 - ray.last) * length});
   }
   const auto density = step_density(ways);
@@ -160,11 +164,20 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
   std::vector<CountedRay> counted;
   for (std::size_t i = 0; i < ends.size(); ++i)
     counted.push_back({ends[i].way, std::round(*density * ways[i].sampled) + 1});
-  for (const StepFit& fit : fit_steps(counted, per_axis)) {
+  for (const StepFit& fit : fit_steps(counted, axes)) {
     const volume::RaySteps steps = rules_of(fit).front();
     if (fit.unexplained <= most_unexplained && lie_as_said(ends, steps)) return steps;
   }
   return std::nullopt;
+}
+
+/// Whether both give every way nearly as many steps.
+bool alike(const volume::RaySteps& one, const volume::RaySteps& other) {
+  constexpr double same = 1e-3;
+  if (one.first != other.first) return false;
+  return std::ranges::all_of(std::array{0U, 4U, 8U}, [&](std::size_t k) {
+    return std::abs(one.metric[k] - other.metric[k]) <= same * std::abs(one.metric[k]);
+  });
 }
 
 /// Of some rays all over the box; none where colours do not tell enough of them.
@@ -186,12 +199,22 @@ std::vector<RayEnds> seen_ends(const MarchContext& measured, FieldProbe& probe,
 
 }  // namespace
 
-std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
-                                              const volume::TransferFunction& table, const ProxyBox& box) {
+std::vector<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
+                                            const volume::TransferFunction& table, const ProxyBox& box) {
   const std::vector<RayEnds> ends = seen_ends(measured, probe, table, box);
-  if (ends.empty()) return std::nullopt;
-  if (auto steps = steps_in(ends, measured.texture.size)) return steps;
-  return steps_in(ends, {1, 1, 1});
+  if (ends.empty()) return {};
+  // Rays of nearly one direction may lie on steps of one length in all of these.
+  std::vector<volume::Vec3> spaces{axes_in_texels(measured.texture.size)};
+  if (const auto lengths = axis_lengths(box.camera.texture_to_clip, probe.width(), probe.height()))
+    spaces.push_back(*lengths);
+  spaces.push_back({1, 1, 1});
+  std::vector<volume::RaySteps> found;
+  for (const volume::Vec3& axes : spaces) {
+    const auto steps = steps_in(ends, axes);
+    if (steps && std::ranges::none_of(found, [&](const auto& other) { return alike(other, *steps); }))
+      found.push_back(*steps);
+  }
+  return found;
 }
 
 std::optional<bool> extremes_lie_on(const volume::RaySteps& steps, const MarchContext& measured,

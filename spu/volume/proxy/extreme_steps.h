@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "spu/volume/proxy/coordinate_space.h"
 #include "spu/volume/proxy/field_probe.h"
@@ -12,10 +13,11 @@
 
 namespace understudy::spu {
 
-/// Constant steps of so many texels, or of one length in texture space. `table`: the colours of extreme values.
-/// Null where colours do not tell values apart, or samples do not lie on such steps.
-std::optional<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
-                                              const volume::TransferFunction& table, const ProxyBox& box);
+/// Constant steps: of so many texels, of one length in the world that the camera shows, or of one length in
+/// texture space; each that samples lie on. `table`: the colours of extreme values. None where colours do not
+/// tell values apart, or samples do not lie on such steps.
+std::vector<volume::RaySteps> extreme_steps(const MarchContext& measured, FieldProbe& probe,
+                                            const volume::TransferFunction& table, const ProxyBox& box);
 
 /// Whether the samples of nearly all rays lie on `steps`; empty where colours do not tell values apart.
 std::optional<bool> extremes_lie_on(const volume::RaySteps& steps, const MarchContext& measured,

@@ -101,7 +101,7 @@ std::optional<JitterFinding> jitter_by(const GlContext& context, FieldProbe& pro
   if (!tile) return std::nullopt;
   volume::RayOffsets shown{tile->width, tile->height, std::vector<float>(tile->texels(), 0.0F)};
   std::vector<CountedRay> zeros = counted_under(probe, texture, shown, count);
-  const auto fits = fit_steps(zeros, size);
+  const auto fits = fit_steps(zeros, axes_in_texels(size));
   const bool alike = !fits.empty() && std::all_of(fits.begin(), fits.end(), [](const StepFit& fit) {
     return fit.unexplained <= most_unexplained;
   });

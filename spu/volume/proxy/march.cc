@@ -91,7 +91,8 @@ class MarchMeasurement {
   std::vector<Rgba> through_;  ///< their colours on a ray through the middle
   March march_;
   std::vector<volume::RaySteps> rules_;
-  bool extreme_seen_ = false;  ///< whether the first of `rules_` was seen of an extreme, in the first space
+  std::size_t extremes_seen_ =
+      0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
   std::vector<SplitRays> split_;
 };
 
@@ -156,7 +157,7 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   const auto counted = count();
   if (const auto* reason = std::get_if<std::string>(&counted)) return Refusal{*reason};
   const auto& all = std::get<std::vector<CountedRay>>(counted);
-  auto fits = fit_steps(all, size);
+  auto fits = fit_steps(all, axes_in_texels(size));
   if (fits.empty()) return "too few rays of several samples are in view to tell the step";
   if (fits.front().unexplained > most_unexplained) {
     auto finding = find_jitter(measured_.context, measured_.run, probe_, count, all, size);
@@ -204,8 +205,8 @@ std::optional<Refusal> MarchMeasurement::measure() {
 std::optional<Refusal> MarchMeasurement::find_places() {
   if (march_.extreme) {
     const auto steps = extreme_steps(measured_, probe_, march_.table, box_);
-    extreme_seen_ = steps.has_value();
-    if (steps) rules_.insert(rules_.begin(), *steps);
+    extremes_seen_ = steps.size();
+    rules_.insert(rules_.begin(), steps.begin(), steps.end());
     return std::nullopt;
   }
   // Where the eye is inside, rays of all directions begin at one place.
@@ -249,7 +250,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     if (!boxes[i]) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
-      const bool seen = !march_.extreme || (extreme_seen_ && i == 0 && r == 0);
+      const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
       if (misplaced_part(split_, rays, rules_[r]) <= most_misplaced)
         add_marches(spaces[i], rules_[r], seen, marches);
     }
@@ -312,7 +313,8 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto counted = counted_rays(measured, probe, rays, march);
   if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
-  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), measured.texture.size)) {
+  const volume::Vec3 axes = axes_in_texels(measured.texture.size);
+  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), axes)) {
     const volume::RaySteps rule = rules_of(fit).front();
     if (fit.unexplained > most_unexplained || rule.first != march.steps.first) continue;
     changed.steps.metric = rule.metric;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 
 #include "compositor/blend.h"
 #include "compositor/rendered.h"
@@ -89,6 +90,24 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame
   const bool values = march.extreme || frame % 2 == 0;
   return {.values = values ? 3 : 0, .offset = turns - std::floor(turns), .long_ray = !values};
 }
+
+/// How little a march explains an image, smaller being better: by its worst tile, as verification judges it;
+/// where that is no more than a driver's rounding, what was seen of samples is believed before what was
+/// guessed; and then the mean tells, in which a few rays that graze the box weigh much.
+struct Unlikeness {
+  static constexpr double rounding = 0.25;
+
+  Unlikeness() = default;
+  Unlikeness(const March& march, const ImageDifference& difference)
+      : severity(std::max(difference.worst.severity(), rounding)),
+        guessed(!march.steps_seen),
+        mean_square(difference.mean_square) {}
+  auto operator<=>(const Unlikeness&) const = default;
+
+  double severity = 0;
+  bool guessed = false;
+  double mean_square = 0;
+};
 
 Refusal no_coordinate() {
   return "no output of the vertex shader is a texture coordinate over the whole box";
@@ -291,7 +310,7 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
                                    const std::vector<March>& marches) {
   std::optional<NativeImage> looked_at;
   const March* best = nullptr;
-  double least = 0;
+  Unlikeness least;
   for (const March& march : marches) {
     const auto box = proxy_box(draw.measured(), march.space);
     if (!box) continue;
@@ -308,10 +327,10 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
     volume::Image shown = copy_of(rendered.image);
     volume::FrameCounts counts;
     complete_image(march, image, service, shown, counts);
-    const double difference = difference_between(draw.run.pipeline(), *looked_at, shown.view()).mean_square;
-    if (best != nullptr && difference >= least) continue;
+    const Unlikeness unlikeness(march, difference_between(draw.run.pipeline(), *looked_at, shown.view()));
+    if (best != nullptr && !(unlikeness < least)) continue;
     best = &march;
-    least = difference;
+    least = unlikeness;
   }
   if (best == nullptr) throw Refusal{"the driver offers no float framebuffer to compare images in"};
   return *best;

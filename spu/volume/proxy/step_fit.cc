@@ -139,8 +139,7 @@ std::optional<StepFit> fit_products(std::span<const CountedRay> rays, double off
 }
 
 /// Every count allows an interval of the one unknown; where most of them meet is the answer.
-std::optional<StepFit> fit_texels(std::span<const CountedRay> rays, const std::array<int, 3>& texels,
-                                  double offset) {
+std::optional<StepFit> fit_one_length(std::span<const CountedRay> rays, const Vec3& axes, double offset) {
   constexpr double rounding = 0.51;
   struct End {
     double place;
@@ -148,8 +147,7 @@ std::optional<StepFit> fit_texels(std::span<const CountedRay> rays, const std::a
   };
   std::vector<End> ends;
   for (const CountedRay& ray : rays) {
-    const double length =
-        volume::length({ray.way[0] * texels[0], ray.way[1] * texels[1], ray.way[2] * texels[2]});
+    const double length = volume::length({ray.way[0] * axes[0], ray.way[1] * axes[1], ray.way[2] * axes[2]});
     if (!(length > 0)) return std::nullopt;
     ends.push_back({(ray.samples - offset - rounding) / length, 1});
     ends.push_back({(ray.samples - offset + rounding) / length, -1});
@@ -166,20 +164,20 @@ std::optional<StepFit> fit_texels(std::span<const CountedRay> rays, const std::a
   }
   if (!(density > 0)) return std::nullopt;
   std::array<double, 6> g{};
-  for (std::size_t k = 0; k < 3; ++k) g[k] = density * density * texels[k] * texels[k];
+  for (std::size_t k = 0; k < 3; ++k) g[k] = density * density * axes[k] * axes[k];
   return finished(rays, g, offset, rounding);
 }
 
-std::optional<StepFit> fit_axes(std::span<const CountedRay> rays, const std::array<int, 3>&, double offset) {
+std::optional<StepFit> fit_axes(std::span<const CountedRay> rays, const Vec3&, double offset) {
   return fit_products<3>(rays, offset);
 }
-std::optional<StepFit> fit_any(std::span<const CountedRay> rays, const std::array<int, 3>&, double offset) {
+std::optional<StepFit> fit_any(std::span<const CountedRay> rays, const Vec3&, double offset) {
   return fit_products<6>(rays, offset);
 }
 
 }  // namespace
 
-std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::array<int, 3>& texels) {
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const Vec3& axes) {
   constexpr std::size_t fewest = 64;
   constexpr double shortest = 2;  // samples: some programs take one where there is room for none
   std::vector<CountedRay> counted;
@@ -187,10 +185,10 @@ std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::arra
                [](const CountedRay& ray) { return ray.samples >= shortest; });
   if (counted.size() < fewest) return {};
   std::optional<StepFit> best;
-  for (const auto& fit : {fit_texels, fit_axes, fit_any}) {
+  for (const auto& fit : {fit_one_length, fit_axes, fit_any}) {
     std::vector<StepFit> good;
     for (const double offset : {-0.5, 0.0, 0.5}) {
-      const auto found = fit(counted, texels, offset);
+      const auto found = fit(counted, axes, offset);
       if (!found) continue;
       if (found->unexplained <= most_unexplained) good.push_back(*found);
       if (!best || found->unexplained < best->unexplained) best = found;

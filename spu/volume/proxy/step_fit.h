@@ -27,14 +27,20 @@ struct StepFit {
   double unexplained = 1;
 };
 
+/// How long the axes of a texture are in texels.
+constexpr volume::Vec3 axes_in_texels(const std::array<int, 3>& size) {
+  return {double(size[0]), double(size[1]), double(size[2])};
+}
+
 /// More unexplained rays than that are no rounding.
 constexpr double most_unexplained = 0.01;
 
-/// The simplest fits that explain the counts: steps of so many texels, or, where no such step does, of a length
-/// along each axis, or in any affine space. Rays of nearly one direction tell little of the other ones, and the
-/// simpler space is the one that holds when the camera has moved. Several when the counts leave open where the
-/// first sample lies; when nothing explains them, the best one; none without enough rays.
-std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const std::array<int, 3>& texels);
+/// The simplest fits that explain the counts: steps of one length where the axes are `axes` long (in texels,
+/// say), or, where no such step does, of a length along each axis, or in any affine space. Rays of nearly one
+/// direction tell little of the other ones, and the simpler space is the one that holds when the camera has
+/// moved. Several when the counts leave open where the first sample lies; when nothing explains them, the best
+/// one; none without enough rays.
+std::vector<StepFit> fit_steps(std::span<const CountedRay> rays, const volume::Vec3& axes);
 
 /// How many samples rays of the opacities 1 - q^n hold, for an unknown q: the counts n. Empty when the
 /// opacities are not of that kind.

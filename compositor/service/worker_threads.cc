@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/service/worker_threads.h"
 
+#include <atomic>
 #include <exception>
 #include <latch>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -25,10 +27,25 @@ bool can_start(std::size_t count) {
   return threads.size() == count;
 }
 
+/// Where oneTBB's first initialisation throws, the next call that needs one waits for its end, for ever: it is
+/// not called again in this process.
+constinit std::atomic<bool> initialisation_failed{false};
+
+std::size_t allowed_parallelism() {
+  if (initialisation_failed)
+    throw std::runtime_error("oneTBB could not be started; raise the memory limit and start the program again");
+  try {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  } catch (...) {
+    initialisation_failed = true;
+    throw;
+  }
+}
+
 }  // namespace
 
 WorkerThreads::WorkerThreads() {
-  const std::size_t parallel = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const std::size_t parallel = allowed_parallelism();
   if (can_start(parallel - 1)) return;
   logging::log(logging::Level::warn,
                "{} threads cannot be started, so volumes are rendered on one; raise `ulimit -u` or `ulimit -v`",

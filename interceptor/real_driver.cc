@@ -79,20 +79,27 @@ class Locked {
   Locked& operator=(const Locked&) = delete;
 };
 
-/// Opens FOLDER/NAME. The spelling FOLDER/./NAME keeps glibc from taking the real library for what an
-/// application means that later asks for it by its usual absolute path: such a request must still reach the
-/// auditor.
+/// Writes the path of NAME in FOLDER; false where there is no such file. The spelling FOLDER/./NAME keeps glibc
+/// from taking the real library for what an application means that later asks for it by its usual absolute
+/// path: such a request must still reach the auditor.
+bool find_in(const char* folder, const char* name, char (&path)[PATH_MAX]) {
+  const int length = snprintf(path, sizeof path, "%s/./%s", folder, name);
+  return length >= 0 && length < static_cast<int>(sizeof path) && access(path, R_OK) == 0;
+}
+
 void* open_in(const char* folder, const char* name) {
   char path[PATH_MAX];
-  const int length = snprintf(path, sizeof path, "%s/./%s", folder, name);
-  if (length < 0 || length >= static_cast<int>(sizeof path) || access(path, R_OK) != 0) return nullptr;
-  return real_dlopen(path, RTLD_LAZY | RTLD_LOCAL);
+  return find_in(folder, name, path) ? real_dlopen(path, RTLD_LAZY | RTLD_LOCAL) : nullptr;
 }
 
 /// Takes the library from `folder` if it is there and is not ourselves.
 bool open_from(const char* folder, DriverLibrary& library) {
+  char path[PATH_MAX];
   void* handle = open_in(folder, library.file);
-  const bool classic = handle == nullptr && library.file_without_glvnd != nullptr;
+  // Beside a library of glvnd that is there and could not be opened, libGL is glvnd's: its functions would call
+  // ours.
+  const bool classic =
+      handle == nullptr && library.file_without_glvnd != nullptr && !find_in(folder, library.file, path);
   if (classic) handle = open_in(folder, library.file_without_glvnd);
   if (handle == nullptr) return false;
 

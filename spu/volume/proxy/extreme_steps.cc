@@ -174,10 +174,10 @@ std::optional<volume::RaySteps> steps_in(const std::vector<RayEnds>& ends, const
 /// Whether both give every way nearly as many steps.
 bool alike(const volume::RaySteps& one, const volume::RaySteps& other) {
   constexpr double same = 1e-3;
-  if (one.first != other.first) return false;
-  return std::ranges::all_of(std::array{0U, 4U, 8U}, [&](std::size_t k) {
-    return std::abs(one.metric[k] - other.metric[k]) <= same * std::abs(one.metric[k]);
-  });
+  const double most = same * std::max({one.metric[0], one.metric[4], one.metric[8]});
+  return one.first == other.first && std::ranges::equal(one.metric, other.metric, [&](double a, double b) {
+           return std::abs(a - b) <= most;
+         });
 }
 
 /// Of some rays all over the box; none where colours do not tell enough of them.

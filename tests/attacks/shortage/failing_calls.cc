@@ -25,6 +25,7 @@
 #include <sys/eventfd.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
 #include <unwind.h>
@@ -153,7 +154,9 @@ bool fails(Kind kind, const void* caller) {
   if (!plan().counts || plan().kind != kind || !is_understudys(caller)) return false;
   if (plan().calls->fetch_add(1, std::memory_order_relaxed) != plan().nth) return false;
   constexpr char said[] = "A CALL FAILS\n";
-  (void)!write(2, said, sizeof said - 1);
+  // Not by write(), which asks dlsym() for the C library's at its first use: dlsym() frees the state of
+  // dlerror(), and dlerror() may be what has asked for memory.
+  (void)!syscall(SYS_write, 2, said, sizeof said - 1);
   // For a debugger, and for whoever wants to see where.
   if (getenv("FAIL_ABORT") != nullptr) abort();
   return true;

@@ -21,14 +21,6 @@ constexpr int compression_level = 3;
 
 constexpr std::size_t file_header_bytes = 32;
 
-std::uint64_t header_checksum(const BlockHeader& header) {
-  std::array<std::uint8_t, offsetof(BlockHeader, checksum)> bytes{};
-  std::memcpy(bytes.data(), &header, bytes.size());
-  std::uint64_t sum = 0xcbf2'9ce4'8422'2325U;
-  for (const std::uint8_t byte : bytes) sum = (sum ^ byte) * 0x0000'0100'0000'01b3U;
-  return sum;
-}
-
 struct StreamDeleter {
   void operator()(ZSTD_DStream* stream) const { ZSTD_freeDStream(stream); }
   void operator()(ZSTD_CStream* stream) const { ZSTD_freeCStream(stream); }
@@ -60,6 +52,14 @@ std::vector<std::uint64_t> unpacked(std::span<const std::byte> compressed, std::
 }
 
 }  // namespace
+
+std::uint64_t header_checksum(const BlockHeader& header) {
+  std::array<std::uint8_t, offsetof(BlockHeader, checksum)> bytes{};
+  std::memcpy(bytes.data(), &header, bytes.size());
+  std::uint64_t sum = 0xcbf2'9ce4'8422'2325U;
+  for (const std::uint8_t byte : bytes) sum = (sum ^ byte) * 0x0000'0100'0000'01b3U;
+  return sum;
+}
 
 std::string in_block(const Block& block, std::string_view what) {
   return fmt::format("block {} at byte {}: {}", block.number, block.file_offset, what);

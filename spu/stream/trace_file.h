@@ -41,6 +41,8 @@ struct BlockHeader {
   std::uint64_t reserved[2] = {};
 };
 static_assert(sizeof(BlockHeader) == 64);
+/// What belongs into `checksum`.
+std::uint64_t header_checksum(const BlockHeader& header);
 
 /// What a block may claim to unpack to; a reader takes no more memory than really comes out.
 constexpr std::uint64_t most_block_words = std::uint64_t(1) << 29;

@@ -57,7 +57,7 @@ inline void shake_hands(std::span<const std::byte> input) {
 inline bool take_message(const compositor::Message& message, ChunkReceiver& chunks) {
   return may_refuse([&] {
     if (message.type == compositor::NodeMessage::rendered) {
-      std::vector<float> memory(std::size_t(4) * 256 * 256);
+      std::vector<float> memory(std::size_t(4) * 64 * 64);
       compositor::take_image(message.payload, memory);
     } else if (message.type == GlServerMessage::calls) {
       decode_calls(message.payload, chunks);
@@ -82,7 +82,8 @@ inline int play_remote_input(std::span<const std::byte> input) {
   int believed = 0;
   ChunkReceiver chunks;
   may_refuse([&] {
-    compositor::TcpMessageReader reader(all_protocols, std::size_t(1) << 22);
+    // More would be zeros, which a few bytes of a compressed block stand for and which take 10 ms to write.
+    compositor::TcpMessageReader reader(all_protocols, std::size_t(1) << 18);
     const std::size_t most = input.empty() ? 1 : 1 + std::to_integer<std::size_t>(input.front());
     while (!input.empty()) {
       const std::span<std::byte> room = reader.room();

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What nobody would say between applications, launchers and nodes: it is refused, or what was understood can be
+// written, and is understood again.
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <stdexcept>
+
+#include "tests/compositor/message_kinds.h"
+
+/// The first byte says which kind of message the others are.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace understudy::compositor;
+  static const std::vector<testing::MessageKind> kinds = testing::all_message_kinds();
+  if (size == 0) return 0;
+  const testing::MessageKind& kind = kinds[data[0] % kinds.size()];
+  // Memory of its own, so that a sanitizer sees what leads out of it.
+  const auto bytes = std::as_bytes(std::span(data, size).subspan(1));
+  const std::vector<std::byte> payload(bytes.begin(), bytes.end());
+  std::vector<std::byte> written;
+  try {
+    written = kind.read_and_write_again(payload);
+  } catch (const MalformedMessage&) {
+    return 0;
+  }
+  if (kind.read_and_write_again(written) != written) std::abort();
+  return 0;
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Traces that nobody recorded: what is no trace says so, and what is one yields blocks as large as they say.
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "spu/stream/trace_file.h"
+
+namespace {
+
+using namespace understudy::spu;
+
+void read(std::span<const std::byte> file) {
+  try {
+    TraceReader reader(file);
+    while (const auto block = reader.next()) {
+      if (block->records.size() > most_block_words || block->payload.size() > most_block_words) std::abort();
+      for (std::size_t at = 0; at < block->records.size();) {
+        const auto record = record_at(block->records, at, block->payload);
+        if (!record) break;
+        at += record->words.size();
+      }
+    }
+  } catch (const std::runtime_error&) {
+    // What is no trace says so.
+  }
+}
+
+template <class Plain>
+void append(std::vector<std::byte>& to, const Plain& value) {
+  const auto bytes = std::as_bytes(std::span(&value, 1));
+  to.insert(to.end(), bytes.begin(), bytes.end());
+}
+
+/// A file with one block and a right checksum. Of the input the first words are what its header says, and the
+/// rest is its data: packed already, or still to be packed.
+std::vector<std::byte> trace_with(std::span<const std::byte> input, bool packed) {
+  std::array<std::uint32_t, 3> said{};
+  const std::size_t head = std::min(input.size(), sizeof said);
+  std::memcpy(said.data(), input.data(), head);
+  input = input.subspan(head);
+  std::vector<std::byte> data(input.begin(), input.end());
+  BlockHeader header;
+  header.frames = said[0];
+  header.record_words = packed ? said[1] : input.size() / 8 - std::min<std::size_t>(said[1], input.size() / 8);
+  header.payload_words = packed ? said[2] : input.size() / 8 - header.record_words;
+  if (!packed) {
+    data.resize(ZSTD_compressBound(input.size()));
+    data.resize(ZSTD_compress(data.data(), data.size(), input.data(), input.size(), 1));
+  }
+  header.compressed_bytes = data.size();
+  header.checksum = header_checksum(header);
+  std::vector<std::byte> file;
+  append(file, trace_magic);
+  append(file, std::array<std::uint32_t, 4>{trace_version});
+  append(file, header);
+  file.insert(file.end(), data.begin(), data.end());
+  return file;
+}
+
+}  // namespace
+
+/// The first byte says how the others become a file.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto input = std::as_bytes(std::span(data, size).subspan(1));
+  if (data[0] % 3 == 0)
+    read(input);
+  else
+    read(trace_with(input, data[0] % 3 == 1));
+  return 0;
+}

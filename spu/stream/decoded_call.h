@@ -15,9 +15,13 @@
 namespace understudy::spu {
 
 /// Answers of a stream from elsewhere are given no more memory than this: a length there is only a claim.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+constexpr std::size_t most_output_bytes = std::size_t(1) << 20;  // zeros would be most of an input's time
+#else
 constexpr std::size_t most_output_bytes = std::size_t(64) << 20;
+#endif
 /// Answers to the sender of a linked stream: images and buffers of applications may be large.
-constexpr std::size_t most_linked_output_bytes = std::size_t(1) << 30;
+constexpr std::size_t most_linked_output_bytes = 16 * most_output_bytes;
 /// What fills memory before OpenGL writes answers into it, so that what it wrote is seen.
 constexpr std::byte unwritten{0xa5};
 

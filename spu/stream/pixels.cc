@@ -206,6 +206,10 @@ std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type) {
   return size->packed ? size->bytes : size->bytes * *count;
 }
 
+bool is_known_pixel(GLenum format, GLenum type) {
+  return type == GL_BITMAP || pixel_bytes(format, type);
+}
+
 std::optional<std::size_t> image_extent(const ImageShape& shape, const PixelStore& store) {
   if (empty(shape)) return 0;
   const auto layout = layout_of(shape, store);

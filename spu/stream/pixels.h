@@ -59,6 +59,9 @@ struct ImageShape {
 /// Bytes of one pixel; nothing for formats and types that OpenGL does not know together, and for bits.
 std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type);
 
+/// Whether OpenGL knows the two together: it answers others with an error, and reads nothing.
+bool is_known_pixel(GLenum format, GLenum type);
+
 /// Bytes from the pointer that the application gives to the end of what is read or written under `store`;
 /// nothing when the format is not known or the size is beyond reason, 0 for an empty image.
 std::optional<std::size_t> image_extent(const ImageShape& shape, const PixelStore& store);

@@ -63,17 +63,18 @@ class Programs : public testing::TestWithParam<unsigned> {
       drawn = drawn && status == 0;
     };
     draw("bare", {}, "");
-    draw("exact", {}, "--exact");
     draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder / "report.json").string(), "--"}, "");
     if (!drawn) return {};
-    const Outcome outcome{.visible = is_visible(folder / "bare"), .verdict = judge(folder, frames)};
+    const Verdict verdict =
+        judge_drawing_exactly_where_needed(folder, frames, [&] { draw("exact", {}, "--exact"); });
+    if (!drawn) return {};
+    const Outcome outcome{.visible = is_visible(folder / "bare"), .verdict = verdict};
     fmt::print("adversary: {}{}\n{}", line_about(program, outcome.verdict),
                outcome.visible ? "" : " (nothing is seen)", contents(folder / "under.log"));
     EXPECT_EQ(outcome.verdict.wrong_substituted, 0)
         << program.name << " is shown wrong: images are in " << folder;
     EXPECT_EQ(outcome.verdict.other_fact, "") << program.name;
-    if (outcome.verdict.wrong_substituted == 0 && std::getenv("ADVERSARY_KEEP_IMAGES") == nullptr)
-      fs::remove_all(folder);
+    if (outcome.verdict.wrong_substituted == 0 && !keeps_images()) fs::remove_all(folder);
     return outcome;
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,15 @@ struct Verdict {
       other_fact;  ///< the first that OpenGL told the program (a query, an error), where bare it told another
 };
 
-/// Reads the folders bare/, exact/ and under/ and report.json in `folder`.
+/// Reads the folders bare/, exact/ and under/ and report.json in `folder`. Without exact/ images must be
+/// bare/'s: what is right then is right with it, too, because the range from one to the other begins there.
 Verdict judge(const std::filesystem::path& folder, int frames);
+/// The same, having `draw_exact` make exact/ only where a frame seems wrong without it, or where images are
+/// kept.
+Verdict judge_drawing_exactly_where_needed(const std::filesystem::path& folder, int frames,
+                                           const std::function<void()>& draw_exact);
+/// Whether images are to stay, for adversary_calibrate: the environment has ADVERSARY_KEEP_IMAGES.
+bool keeps_images();
 /// Empty where the expectation is met; otherwise what is not.
 std::string what_is_not_met(const Scenario& scenario, const Verdict& verdict);
 /// One line: name, expectation, substituted, wrong, worst tile.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -53,14 +54,15 @@ inline void shake_hands(std::span<const std::byte> input) {
   });
 }
 
-/// Whether it was believed.
-inline bool take_message(const compositor::Message& message, ChunkReceiver& chunks) {
+/// Whether it was believed. `chunks` is large, and made for the first message that needs it.
+inline bool take_message(const compositor::Message& message, std::optional<ChunkReceiver>& chunks) {
   return may_refuse([&] {
     if (message.type == compositor::NodeMessage::rendered) {
       std::vector<float> memory(std::size_t(4) * 64 * 64);
       compositor::take_image(message.payload, memory);
     } else if (message.type == GlServerMessage::calls) {
-      decode_calls(message.payload, chunks);
+      if (!chunks) chunks.emplace();
+      decode_calls(message.payload, *chunks);
     } else if (message.type == GlServerMessage::answered) {
       decode_answer(message.payload);
     } else if (message.type == GlServerMessage::image || message.type == GlServerMessage::refined) {
@@ -80,7 +82,7 @@ inline constexpr std::array all_protocols{
 inline int play_remote_input(std::span<const std::byte> input) {
   shake_hands(input);
   int believed = 0;
-  ChunkReceiver chunks;
+  std::optional<ChunkReceiver> chunks;
   may_refuse([&] {
     // More would be zeros, which a few bytes of a compressed block stand for and which take 10 ms to write.
     compositor::TcpMessageReader reader(all_protocols, std::size_t(1) << 18);
@@ -101,7 +103,7 @@ inline int play_remote_input(std::span<const std::byte> input) {
 /// the payload. How many messages were believed.
 inline int play_gl_server_input(std::span<const std::byte> input) {
   int believed = 0;
-  ChunkReceiver chunks;
+  std::optional<ChunkReceiver> chunks;
   std::uint32_t head[2];
   while (input.size() >= sizeof head) {
     std::memcpy(head, input.data(), sizeof head);

@@ -38,7 +38,7 @@ namespace adversary {
 // clang-format on
 
 struct Gl {
-#define ADVERSARY_GL_MEMBER(name) decltype(&::gl##name) name;
+#define ADVERSARY_GL_MEMBER(name) decltype(&::gl##name) name;  // NOLINT(bugprone-macro-parentheses): a name
   ADVERSARY_GL_FUNCTIONS(ADVERSARY_GL_MEMBER)
 #undef ADVERSARY_GL_MEMBER
 };

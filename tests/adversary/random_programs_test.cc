@@ -15,6 +15,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/adversary/command.h"
@@ -65,10 +66,9 @@ class Programs : public testing::TestWithParam<unsigned> {
     draw("bare", {}, "");
     draw("under", {UNDERSTUDY_PROGRAM, "run", "--report", (folder / "report.json").string(), "--"}, "");
     if (!drawn) return {};
-    const Verdict verdict =
-        judge_drawing_exactly_where_needed(folder, frames, [&] { draw("exact", {}, "--exact"); });
+    Verdict verdict = judge_drawing_exactly_where_needed(folder, frames, [&] { draw("exact", {}, "--exact"); });
     if (!drawn) return {};
-    const Outcome outcome{.visible = is_visible(folder / "bare"), .verdict = verdict};
+    Outcome outcome{.visible = is_visible(folder / "bare"), .verdict = std::move(verdict)};
     fmt::print("adversary: {}{}\n{}", line_about(program, outcome.verdict),
                outcome.visible ? "" : " (nothing is seen)", contents(folder / "under.log"));
     EXPECT_EQ(outcome.verdict.wrong_substituted, 0)

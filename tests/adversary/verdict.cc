@@ -69,7 +69,7 @@ bool keeps_images() {
 Verdict judge_drawing_exactly_where_needed(const std::filesystem::path& folder, int frames,
                                            const std::function<void()>& draw_exact) {
   if (!keeps_images()) {
-    const Verdict without = judge(folder, frames);
+    Verdict without = judge(folder, frames);
     if (without.wrong_frames.empty()) return without;
   }
   draw_exact();

@@ -43,6 +43,16 @@ std::optional<std::size_t> bytes_in_buffer(CallId call, std::size_t p, const std
   }
 }
 
+/// Whether OpenGL answers a call whose extent is not known with an error, and reads nothing.
+bool driver_refuses(CallId call, std::size_t p, const std::uint64_t* words) {
+  const ExtentRule rule = call_shape(call).parameters()[p].rule;
+  if (rule != ExtentRule::image) return tells_by_enumerant(rule);
+  // The extent of a huge image is not known either, and a driver may read that: GL_UNPACK_ROW_LENGTH lets its
+  // rows overlap.
+  const ImageShape image = image_shape(call, words);
+  return !is_known_pixel(image.format, image.type);
+}
+
 }  // namespace
 
 bool may_be(const ParameterShape& parameter, ReferenceKind kind) noexcept {
@@ -149,14 +159,10 @@ std::string Decoder::check_memory(Call& call, std::size_t p) {
     return in_call(call.id, fmt::format("{} is an offset, but no buffer is bound", parameter.name()));
   if (call.kinds[p] != ReferenceKind::null || !parameter.input) return {};
   if (parameter.null_with != no_argument && call.words[parameter.null_with] == 0) return {};
-  const ImageShape image =
-      parameter.rule == ExtentRule::image ? image_shape(call.id, call.words.data()) : ImageShape{};
-  const auto needed = parameter.rule == ExtentRule::image ? image_extent(image, tight_pixels)
-                                                          : pointee_bytes(call.id, p, call.words.data());
-  // An image beyond reason has no extent either; rows that overlap can make it one that drivers read.
-  const bool driver_refuses = parameter.rule == ExtentRule::image ? !is_known_pixel(image.format, image.type)
-                                                                  : tells_by_enumerant(parameter.rule);
-  if (needed ? *needed == 0 : driver_refuses) return {};
+  const auto needed = parameter.rule == ExtentRule::image
+                          ? image_extent(image_shape(call.id, call.words.data()), tight_pixels)
+                          : pointee_bytes(call.id, p, call.words.data());
+  if (needed ? *needed == 0 : driver_refuses(call.id, p, call.words.data())) return {};
   if (parameter.rule == ExtentRule::indirect && needed && *needed <= most_output_bytes) {
     // Core profiles answer with an error, others draw nothing.
     call.words[p] = reinterpret_cast<std::uintptr_t>(scratch(*needed));

@@ -104,13 +104,13 @@ def reached(target):
     bin_folder = ROOT / "build-fuzz-coverage" / "bin"
     program = bin_folder / f"{target.name}_fuzzer"
     raw, profile = OUT / f"{target.name}.profraw", OUT / f"{target.name}.profdata"
-    # One by one, in one process: all are files, none a folder that would be mutated.
+    # Files are only run; a folder would be mutated. xargs keeps each command line short enough.
     inputs = [str(file) for folder in folders(target) for file in sorted(pathlib.Path(folder).iterdir())]
     arguments = OUT / f"{target.name}.inputs"
     arguments.write_text("\n".join(inputs))
     subprocess.run(["xargs", "-a", arguments, "-d", "\n", "-n", "2000", program],
                    env={**os.environ, "LLVM_PROFILE_FILE": str(raw) + ".%p"}, stdout=subprocess.DEVNULL,
-                   stderr=subprocess.DEVNULL, check=False)
+                   stderr=subprocess.DEVNULL, check=True)
     parts = sorted(OUT.glob(raw.name + ".*"))
     subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *parts], check=True)
     for part in parts:

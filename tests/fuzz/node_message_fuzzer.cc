@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nobody would say between applications, launchers and nodes: it is refused, or what was understood can be
-// written, and is understood again.
+// Arbitrary messages between applications, launchers and nodes. Each is refused with MalformedMessage, or its
+// decoded form can be encoded and decoded again without a change.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
-#include <stdexcept>
+#include <vector>
 
 #include "tests/compositor/message_kinds.h"
 

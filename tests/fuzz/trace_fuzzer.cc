@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces that nobody recorded: what is no trace says so, and what is one yields blocks as large as they say.
+// Arbitrary trace files. Each is refused, or yields blocks of the sizes that its headers give.
 #include <zstd.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void read(std::span<const std::byte> file) {
       }
     }
   } catch (const std::runtime_error&) {
-    // What is no trace says so.
+    // Not a trace.
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volume files that nobody saved, in every format: they are refused, or their first and last texels are read.
+// Arbitrary volume files of every format. Each is refused, or its first or last texels are read.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     read(path, folder.readable(), data[0] % 2 == 1);
   } catch (const FileError&) {
-    // What is no volume says so.
+    // Not a volume.
   }
   return 0;
 }

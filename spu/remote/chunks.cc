@@ -43,6 +43,7 @@ void ChunkSender::add_chunk(std::span<const std::uint64_t> words) {
   // The oldest chunk makes room, however often it was named since.
   const std::size_t at = next_slot_;
   next_slot_ = (next_slot_ + 1) % chunk_slots;
+  if (at == slots_.size()) slots_.emplace_back();
   Slot& slot = slots_[at];
   if (const auto gone = by_hash_.find(slot.hash); gone != by_hash_.end() && gone->second == at)
     by_hash_.erase(gone);
@@ -85,6 +86,7 @@ std::span<const std::uint64_t> ChunkReceiver::receive(std::span<const std::uint6
     const std::size_t count = head >> 32;
     if (slot >= chunk_slots || count == 0 || count > max_chunk_words || count > most - words_.size())
       throw MalformedMessage("calls: a chunk of no size, or of no place");
+    if (slot >= slots_.size()) slots_.resize(slot + 1);
     std::vector<std::uint64_t>& kept = slots_[slot];
     if ((head & known_bit) == 0) {
       if (count > data.size()) throw MalformedMessage("calls: a chunk is missing");

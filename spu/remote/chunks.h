@@ -35,7 +35,7 @@ class ChunkSender {
 
   void add_chunk(std::span<const std::uint64_t> words);
 
-  std::vector<Slot> slots_ = std::vector<Slot>(chunk_slots);
+  std::vector<Slot> slots_;  ///< as many as were used
   std::unordered_map<std::uint64_t, std::size_t> by_hash_;
   std::size_t next_slot_ = 0;
   std::vector<std::uint64_t> heads_;
@@ -49,7 +49,7 @@ class ChunkReceiver {
   std::span<const std::uint64_t> receive(std::span<const std::uint64_t> message, std::uint64_t most);
 
  private:
-  std::vector<std::vector<std::uint64_t>> slots_ = std::vector<std::vector<std::uint64_t>>(chunk_slots);
+  std::vector<std::vector<std::uint64_t>> slots_;  ///< up to the highest that was used
   std::vector<std::uint64_t> words_;
 };
 

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "dispatch/call_words.h"
 #include "spu/chain_text.h"
 #include "spu/pack/pack.h"
 #include "spu/stream/answers.h"
@@ -16,14 +15,6 @@
 
 namespace understudy::spu {
 namespace {
-
-struct Asked {
-  static std::uint64_t call(CallId call, const std::uint64_t* words) {
-    Chain* chain = Chain::current();
-    Remote* link = chain == nullptr ? nullptr : chain->find<Remote>();
-    return link == nullptr ? 0 : link->ask(call, words);
-  }
-};
 
 /// Most that is believed of an answer whose extent nobody knows.
 constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
@@ -89,15 +80,6 @@ bool unmaps(CallId call) {
 }
 
 }  // namespace
-
-const DispatchTable& remote_driver() {
-  static const DispatchTable table = [] {
-    DispatchTable all{};
-    AsWords<Asked>::fill(all);
-    return all;
-  }();
-  return table;
-}
 
 Remote::Remote(Chain& chain, ServerConnection& server)
     : chain_(chain),

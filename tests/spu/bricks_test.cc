@@ -10,6 +10,8 @@
 #include "colour_target.h"
 #include "compositor/service.h"
 #include "drawing.h"
+#include "spu/report/counters.h"
+#include "spu/volume/session/render_session.h"
 
 namespace understudy::spu::testing {
 namespace {

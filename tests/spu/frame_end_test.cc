@@ -13,6 +13,7 @@
 
 #include "dispatch/call_id.h"
 #include "slice_scenes.h"
+#include "spu/chain.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "compositor/rendered.h"
 #include "slice_scenes.h"
+#include "spu/chain.h"
 #include "spu/report/counters.h"
 #include "spu/volume/session/last_image.h"
 #include "spu/volume/timing/frame_ledger.h"

@@ -9,9 +9,12 @@
 #include <limits>
 #include <span>
 
+#include "spu/chain.h"
+#include "spu/options.h"
 #include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
 #include "spu/track/share_group.h"
+#include "spu/volume/session/render_session.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 /// What Mesa keeps until the process ends is not ours to free.
@@ -46,33 +49,45 @@ std::span<VolumeCounters> volumes() {
   return process_counters().volume;
 }
 
-}  // namespace
+/// Of all volumes so far.
+struct Sums {
+  std::uint64_t substituted = 0;
+  std::uint64_t left = 0;
+  std::uint64_t texel_bytes_sent = 0;
+  std::uint64_t texel_bytes_left_out = 0;
+};
 
-struct GlApplication::Egl {
+Sums sums() {
+  Sums all;
+  for (const VolumeCounters& volume : volumes()) {
+    all.substituted += volume.draws_substituted;
+    all.left += volume.draws_left;
+    all.texel_bytes_sent += volume.texel_bytes_sent;
+    all.texel_bytes_left_out += volume.texel_bytes_left_out;
+  }
+  return all;
+}
+
+/// A context of the driver, on a surface of its own.
+struct EglContext {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   EGLSurface surface = EGL_NO_SURFACE;
 
-  ~Egl() {
+  EglContext() = default;
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+  ~EglContext() {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (surface != EGL_NO_SURFACE) eglDestroySurface(display, surface);
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
   }
 };
 
-std::unique_ptr<GlApplication> GlApplication::start(Profile profile, Options options) {
-  // Whether the machine is fast enough is not what is tested.
-  options.speed_guard = false;
-  return start(profile, std::make_shared<RenderSession>(std::move(options)), nullptr);
-}
-
-std::unique_ptr<GlApplication> GlApplication::start_companion() const {
-  return start(profile_, session_, this);
-}
-
-std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared_ptr<RenderSession> session,
-                                                    const GlApplication* companion) {
-  auto egl = std::make_unique<Egl>();
+/// Null when there is none, or it cannot be made current. Objects are shared with `companion`'s.
+std::unique_ptr<EglContext> make_current_context(Profile profile, EGLContext companion) {
+  constexpr int size = GlApplication::size;
+  auto egl = std::make_unique<EglContext>();
   egl->display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (!eglInitialize(egl->display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) return nullptr;
   const EGLint wanted[] = {EGL_SURFACE_TYPE,
@@ -101,33 +116,67 @@ std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared
                                profile == Profile::core ? EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT
                                                         : EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
                                EGL_NONE};
-  egl->context = eglCreateContext(egl->display, config,
-                                  companion != nullptr ? companion->egl_->context : EGL_NO_CONTEXT, attributes);
+  egl->context = eglCreateContext(egl->display, config, companion, attributes);
   const EGLint extent[] = {EGL_WIDTH, size, EGL_HEIGHT, size, EGL_NONE};
   egl->surface = eglCreatePbufferSurface(egl->display, config, extent);
   if (egl->context == EGL_NO_CONTEXT || egl->surface == EGL_NO_SURFACE ||
       !eglMakeCurrent(egl->display, egl->surface, egl->surface, egl->context)) {
     return nullptr;
   }
-  std::unique_ptr<GlApplication> application(new GlApplication);
-  application->egl_ = std::move(egl);
-  application->profile_ = profile;
-  application->session_ = std::move(session);
-  application->group_ = companion != nullptr ? companion->group_ : std::make_shared<ShareGroup>();
-  application->chain_ = std::make_unique<Chain>(real_driver(), application->group_, &install);
-  if (assemble(*application->chain_, application->session_->options().chain, application->session_))
-    return nullptr;
-  application->chain_->make_current();
-  application->substituted_before_ = application->substituted();
-  application->left_before_ = application->left();
-  application->sent_before_ = application->texel_bytes_sent();
-  application->left_out_before_ = application->texel_bytes_left_out();
-  return application;
+  return egl;
 }
 
+}  // namespace
+
+struct GlApplication::Parts {
+  std::unique_ptr<EglContext> egl;
+  Profile profile = Profile::compatibility;
+  std::shared_ptr<RenderSession> session;
+  std::shared_ptr<ShareGroup> group;
+  std::unique_ptr<Chain> chain;
+  Sums before;
+};
+
+std::unique_ptr<GlApplication> GlApplication::start(Profile profile) {
+  return start(profile, Options{});
+}
+
+std::unique_ptr<GlApplication> GlApplication::start(Profile profile, const Options& options) {
+  Options without_guard = options;
+  // Whether the machine is fast enough is not what is tested.
+  without_guard.speed_guard = false;
+  return start(profile, std::make_shared<RenderSession>(std::move(without_guard)), nullptr);
+}
+
+std::unique_ptr<GlApplication> GlApplication::start_companion() const {
+  return start(parts_->profile, parts_->session, this);
+}
+
+std::unique_ptr<GlApplication> GlApplication::start(Profile profile, std::shared_ptr<RenderSession> session,
+                                                    const GlApplication* companion) {
+  auto parts = std::make_unique<Parts>();
+  parts->egl =
+      make_current_context(profile, companion != nullptr ? companion->parts_->egl->context : EGL_NO_CONTEXT);
+  if (parts->egl == nullptr) return nullptr;
+  parts->profile = profile;
+  parts->session = std::move(session);
+  parts->group = companion != nullptr ? companion->parts_->group : std::make_shared<ShareGroup>();
+  parts->chain = std::make_unique<Chain>(real_driver(), parts->group, &install);
+  if (assemble(*parts->chain, parts->session->options().chain, parts->session)) return nullptr;
+  parts->chain->make_current();
+  parts->before = sums();
+  return std::unique_ptr<GlApplication>(new GlApplication(std::move(parts)));
+}
+
+GlApplication::GlApplication(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
 GlApplication::~GlApplication() {
-  if (chain_) chain_->settle();
+  parts_->chain->settle();
   Chain::release_current();
+}
+
+RenderSession& GlApplication::session() const {
+  return *parts_->session;
 }
 
 const DispatchTable& GlApplication::gl() const {
@@ -139,17 +188,17 @@ const DispatchTable& GlApplication::driver() const {
 
 void GlApplication::use_chain(bool on) {
   if (on) {
-    chain_->make_current();
+    parts_->chain->make_current();
   } else {
-    chain_->settle();
+    parts_->chain->settle();
     Chain::release_current();
   }
 }
 
 void GlApplication::end_frame() {
   if (Chain::current() == nullptr) return;
-  chain_->settle();
-  chain_->frame_ended(FrameEnd::swap);
+  parts_->chain->settle();
+  parts_->chain->frame_ended(FrameEnd::swap);
 }
 
 std::vector<float> GlApplication::read_pixels() {
@@ -165,27 +214,19 @@ std::vector<float> GlApplication::read_depth() {
 }
 
 std::uint64_t GlApplication::substituted() const {
-  std::uint64_t sum = 0;
-  for (const VolumeCounters& volume : volumes()) sum += volume.draws_substituted;
-  return sum - substituted_before_;
+  return sums().substituted - parts_->before.substituted;
 }
 
 std::uint64_t GlApplication::left() const {
-  std::uint64_t sum = 0;
-  for (const VolumeCounters& volume : volumes()) sum += volume.draws_left;
-  return sum - left_before_;
+  return sums().left - parts_->before.left;
 }
 
 std::uint64_t GlApplication::texel_bytes_sent() const {
-  std::uint64_t sum = 0;
-  for (const VolumeCounters& volume : volumes()) sum += volume.texel_bytes_sent;
-  return sum - sent_before_;
+  return sums().texel_bytes_sent - parts_->before.texel_bytes_sent;
 }
 
 std::uint64_t GlApplication::texel_bytes_left_out() const {
-  std::uint64_t sum = 0;
-  for (const VolumeCounters& volume : volumes()) sum += volume.texel_bytes_left_out;
-  return sum - left_out_before_;
+  return sums().texel_bytes_left_out - parts_->before.texel_bytes_left_out;
 }
 
 std::string GlApplication::last_reason() const {

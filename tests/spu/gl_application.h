@@ -3,14 +3,18 @@
 // as the body would set it up. `gl()` is what the application's calls go through.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "spu/chain.h"
-#include "spu/options.h"
-#include "spu/report/counters.h"
-#include "spu/volume/session/render_session.h"
+#include "dispatch/table.h"
+
+namespace understudy::spu {
+struct Options;
+struct VolumeCounters;
+class RenderSession;
+}  // namespace understudy::spu
 
 namespace understudy::spu::testing {
 
@@ -21,7 +25,8 @@ class GlApplication {
  public:
   static constexpr int size = 96;  ///< of the framebuffer, both ways
 
-  static std::unique_ptr<GlApplication> start(Profile profile, Options options = {});
+  static std::unique_ptr<GlApplication> start(Profile profile);
+  static std::unique_ptr<GlApplication> start(Profile profile, const Options& options);
   /// A second context that shares its objects, current on the calling thread, where no other may be.
   std::unique_ptr<GlApplication> start_companion() const;
   ~GlApplication();
@@ -34,7 +39,7 @@ class GlApplication {
   const DispatchTable& driver() const;
 
   /// What all its contexts speak to the render service through.
-  RenderSession& session() const { return *session_; }
+  RenderSession& session() const;
 
   /// With false the application talks to the driver: the bare run.
   void use_chain(bool on);
@@ -57,19 +62,13 @@ class GlApplication {
   static const VolumeCounters& last_volume();
 
  private:
-  GlApplication() = default;
+  /// Its context of the driver, and what stands above.
+  struct Parts;
+  explicit GlApplication(std::unique_ptr<Parts> parts);
   static std::unique_ptr<GlApplication> start(Profile profile, std::shared_ptr<RenderSession> session,
                                               const GlApplication* companion);
-  struct Egl;
-  std::unique_ptr<Egl> egl_;
-  Profile profile_ = Profile::compatibility;
-  std::shared_ptr<RenderSession> session_;
-  std::shared_ptr<ShareGroup> group_;
-  std::unique_ptr<Chain> chain_;
-  std::uint64_t substituted_before_ = 0;
-  std::uint64_t left_before_ = 0;
-  std::uint64_t sent_before_ = 0;
-  std::uint64_t left_out_before_ = 0;
+
+  std::unique_ptr<Parts> parts_;
 };
 
 /// A smooth blob with a hole, 8 bits, non-cubic.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slice_scenes.h"
+#include "spu/chain.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "box_ray_caster.h"
+#include "spu/report/counters.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/step_density.h"

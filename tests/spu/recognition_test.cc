@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "slice_scenes.h"
+#include "spu/options.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 TEST(ShareGroup, AVersionNeverComesBack) {
   ShareGroup group;
@@ -132,7 +132,7 @@ TEST(ShareGroup, TellsOnceListsMayChangeTextures) {
 }
 
 /// A program of one vertex shader and one fragment shader, not yet linked.
-class Sources : public testing::Test {
+class Sources : public ::testing::Test {
  protected:
   static constexpr GLuint vertex = 1;
   static constexpr GLuint fragment = 2;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "slice_scenes.h"
+#include "spu/chain.h"
 #include "spu/track/state.h"
 
 namespace understudy::spu::testing {

@@ -8,6 +8,7 @@
 
 #include "box_ray_caster.h"
 #include "slice_scenes.h"
+#include "spu/chain.h"
 
 namespace understudy::spu::testing {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "slice_scenes.h"
+#include "spu/chain.h"
 
 namespace understudy::spu::testing {
 namespace {

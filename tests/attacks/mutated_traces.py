@@ -125,7 +125,11 @@ def main():
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(2) as pool:
         folder = Path(name)
         jobs = [pool.submit(play, program, traces[i % len(traces)], seed + i, folder) for i in range(count)]
-        endings = [ended for job in jobs for ended in job.result()]
+        endings = []
+        for number, job in enumerate(jobs, 1):
+            endings += job.result()
+            if number % 100 == 0:
+                print(f"{number} of {count} traces", flush=True)
     totals = collections.Counter((command, status) for _, command, status, _ in endings)
     for (command, status), number in sorted(totals.items(), key=str):
         print(f"{command}: {number} times {status}")

@@ -285,7 +285,11 @@ class LongMessageTest : public ::testing::Test {
     EXPECT_EQ(message_.payload, texels_);
   }
 
+#ifdef __SANITIZE_THREAD__
+  const milliseconds patience_{10'000};  // each byte takes ThreadSanitizer ten times as long
+#else
   const milliseconds patience_{2000};
+#endif
   const FileDescriptor listening_ = listen_at(TcpAddress{"127.0.0.1", 0});
   Line line_{own_address(listening_.get())};
   /// More than sockets keep.
@@ -300,7 +304,8 @@ class LongMessageTest : public ::testing::Test {
 
 /// So that an application that waits for its answer waits for the GL server, and not for a line.
 TEST_F(LongMessageTest, LeavesAnApplicationAsALineTakesIt) {
-  line_.set_bytes_per_second(24e6);
+  // For longer than either end waits for the other.
+  line_.set_bytes_per_second(double(texels_.size()) / (1.4e-3 * double(patience_.count())));
   const Bytes payload(texels_);
   application_->send(NodeMessage::add_texels, 7, {&payload, 1}, patience_);
   EXPECT_GT(line_.bytes_up(), texels_.size() / 2);

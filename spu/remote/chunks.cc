@@ -42,8 +42,9 @@ void ChunkSender::add_chunk(std::span<const std::uint64_t> words) {
   }
   // The oldest chunk makes room, however often it was named since.
   const std::size_t at = next_slot_;
-  next_slot_ = (next_slot_ + 1) % chunk_slots;
+  // First, since it may throw: the next slot is never beyond the end.
   if (at == slots_.size()) slots_.emplace_back();
+  next_slot_ = (next_slot_ + 1) % chunk_slots;
   Slot& slot = slots_[at];
   if (const auto gone = by_hash_.find(slot.hash); gone != by_hash_.end() && gone->second == at)
     by_hash_.erase(gone);

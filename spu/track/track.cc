@@ -267,11 +267,8 @@ void Track::end_list() {
 }
 
 void Track::texture_changes() {
-  if (chain_.group().has_volumes()) {
-    chain_.set_phase(Phase::watching);
-  } else {
-    chain_.group().some_texture_changed();
-  }
+  // Without volumes nobody asks which texture it was; with them, units that watch find out.
+  if (chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
 }
 
 void Track::volume_defined() {

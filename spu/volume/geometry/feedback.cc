@@ -36,15 +36,20 @@ class FeedbackState {
   void* buffer_ = nullptr;
 };
 
-/// In scope, OpenGL writes what is drawn into `buffer` instead of the framebuffer.
+/// In scope, OpenGL writes what is drawn into `buffer` instead of the framebuffer. Every vertex has its own
+/// colour, whatever the shade model: of a polygon that is shaded flat and clipped, Mesa leaves the colours of
+/// new vertices unset.
 class FeedbackMode {
  public:
   FeedbackMode(const DispatchTable& gl, std::vector<float>& buffer) : gl_(gl), application_(gl) {
+    gl_.GetIntegerv(GL_SHADE_MODEL, &shade_model_);
+    gl_.ShadeModel(GL_SMOOTH);
     gl_.FeedbackBuffer(GLsizei(buffer.size()), GL_4D_COLOR_TEXTURE, buffer.data());
     gl_.RenderMode(GL_FEEDBACK);
   }
   ~FeedbackMode() {
     if (!ended_) gl_.RenderMode(GL_RENDER);
+    gl_.ShadeModel(GLenum(shade_model_));
   }
   FeedbackMode(const FeedbackMode&) = delete;
   FeedbackMode& operator=(const FeedbackMode&) = delete;
@@ -58,6 +63,7 @@ class FeedbackMode {
  private:
   const DispatchTable& gl_;
   const FeedbackState application_;
+  GLint shade_model_ = GL_SMOOTH;
   bool ended_ = false;
 };
 
@@ -78,7 +84,7 @@ ObservedVertex vertex_from(const float* f, const Window& window) {
 ObservedPolygons parse(std::span<const float> feedback, const Window& window, bool stack) {
   ObservedPolygons polygons;
   polygons.clipped = true;
-  bool first = true;
+  std::optional<std::array<float, 4>> first_colour;
   std::size_t i = 0;
   double slice = 0;
   while (i + 1 < feedback.size()) {
@@ -96,10 +102,9 @@ ObservedPolygons parse(std::span<const float> feedback, const Window& window, bo
       polygons.vertices.push_back(vertex_from(f, window));
       if (stack) polygons.vertices.back().texture[2] = slice;
       const std::array<float, 4> colour{f[4], f[5], f[6], f[7]};
-      if (first) polygons.primary_colour = colour;
-      first = false;
+      if (!first_colour) polygons.constant_colour = first_colour = colour;
       for (int c = 0; c < 4; ++c) {
-        if (std::abs(colour[c] - polygons.primary_colour[c]) > 1e-3F) polygons.constant_colour = false;
+        if (std::abs(colour[c] - (*first_colour)[c]) > 1e-3F) polygons.constant_colour.reset();
       }
     }
     polygons.first.push_back(polygons.vertices.size());

@@ -83,8 +83,6 @@ class ArraysInMemory {
 bool GivenVertices::can_tell(const Run& run) const {
   const DispatchTable& gl = *context_.gl;
   if (!run.only_polygons) return false;
-  // Of a polygon that became triangles OpenGL would choose another vertex for the colour.
-  if (asked(gl, GL_SHADE_MODEL) == GL_FLAT) return false;
   // It may read attributes of any kind.
   if (context_.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return false;
   return asked(gl, GL_CLIENT_ATTRIB_STACK_DEPTH) < asked(gl, GL_MAX_CLIENT_ATTRIB_STACK_DEPTH);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +24,8 @@ struct ObservedPolygons {
   std::vector<std::size_t> first{0};
   /// True when the observation passed the clipper: what lies outside the view volume is missing.
   bool clipped = false;
-  /// The colour that reaches texturing (glColor, or lighting with a constant normal).
-  std::array<float, 4> primary_colour{1, 1, 1, 1};
-  bool constant_colour = true;
+  /// The colour that reaches texturing (glColor, or lighting with a constant normal); nothing where it varies.
+  std::optional<std::array<float, 4>> constant_colour{{1, 1, 1, 1}};
 
   std::size_t count() const { return first.size() - 1; }
   std::span<const ObservedVertex> polygon(std::size_t p) const {

@@ -91,6 +91,12 @@ std::vector<GLuint> place_slices(const Run& run, ObservedPolygons& polygons) {
   return textures;
 }
 
+/// A ray caster's box is one draw, or each of its faces is.
+bool may_be_box(const Run& run, const ProgramStages& stages) {
+  constexpr std::size_t faces = 6;
+  return run.draws <= faces && stages.observer != 0;
+}
+
 /// The other value of inputs that nobody tells: a colour that depends on one of them is not the sample's alone.
 constexpr std::array<float, 4> untold_value{0.75F, 0.75F, 0.75F, 1};
 
@@ -115,7 +121,7 @@ void take_inputs_of_feedback(const Pipeline& pipeline, RecognisedRun& seen) {
     if (input.name == "gl_TexCoord[0]") {
       fragment.first.push_back({});
     } else if (input.name == "gl_FrontColor") {
-      fragment.first.push_back(seen.polygons.primary_colour);
+      fragment.first.push_back(*seen.polygons.constant_colour);
     } else if (pipeline.fog && input.name == "gl_FogFragCoord") {
       fragment.first.push_back({seen.fog_numbers.front(), 0, 0, 0});
     } else if (pipeline.assembly) {
@@ -164,8 +170,7 @@ RecognisedRun Recogniser::observe(const Run& run, const std::string& known_coord
   if (record != nullptr) {
     const ProgramStages& parts = programs_.stages(pipeline.program, *record);
     seen.fragment.inputs = parts.inputs;
-    const bool one_draw = run.draws == 1 && parts.observer != 0;
-    if (!parts.trouble.empty() && !one_draw) throw Refusal{parts.trouble};
+    if (!parts.trouble.empty() && !may_be_box(run, parts)) throw Refusal{parts.trouble};
     if (record->vertex_shader) {
       observe_shader(run, parts, known_coordinate, seen);
       return seen;
@@ -185,8 +190,7 @@ void Recogniser::observe_shader(const Run& run, const ProgramStages& stages,
   Capture capture = capture_vertices(context_, run, stages, known_coordinate);
   if (!capture.fit && !known_coordinate.empty()) capture = capture_vertices(context_, run, stages);
   if (capture.polygons.count() == 0) throw NothingVisible{};
-  const bool one_draw = run.draws == 1 && stages.observer != 0;
-  seen.ray_caster = one_draw && capture.fit && draws_box(context_, run, stages, capture);
+  seen.ray_caster = may_be_box(run, stages) && capture.fit && draws_box(context_, run, stages, capture);
   if (seen.ray_caster) {
     seen.capture = std::move(capture);
     return;

@@ -24,6 +24,26 @@ std::vector<float> frame(GlApplication& app, const ColourTarget& target, const S
   return target.read();
 }
 
+/// Filtered as mip-mapped textures are, though samples are of level 0 alone: `limit` says how.
+SliceScene slices_of_one_level(void (*limit)(const DispatchTable&)) {
+  SliceScene scene = immediate_rgba();
+  scene.set_up = [limit, set_up_texture = scene.set_up](GlApplication& app) {
+    set_up_texture(app);
+    app.gl().TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    limit(app.gl());
+  };
+  return scene;
+}
+
+void cut_levels(const DispatchTable& gl) {
+  gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+}
+
+void cut_level_of_detail(const DispatchTable& gl) {
+  gl.GenerateMipmap(GL_TEXTURE_3D);
+  gl.TexParameterf(GL_TEXTURE_3D, GL_TEXTURE_MAX_LOD, 0);
+}
+
 struct Variant {
   const char* name;
   std::function<SliceScene()> scene;
@@ -70,6 +90,12 @@ INSTANTIATE_TEST_SUITE_P(
                 {0, 15, -40},
                 60,
                 "pre-integration table"},
+        Variant{"OneLevel", [] { return slices_of_one_level(cut_levels); }, {0, 15}, 45, "colours"},
+        Variant{"LevelOfDetailCut",
+                [] { return slices_of_one_level(cut_level_of_detail); },
+                {0, 15},
+                45,
+                "colours"},
         Variant{"LinearFog", [] { return fixed_function_fog(GL_LINEAR); }, {0, 15, -40}, 45, "fog"},
         Variant{"ExponentialFog", [] { return fixed_function_fog(GL_EXP); }, {0, 15, -40}, 45, "fog"},
         Variant{"SquaredFog", [] { return fixed_function_fog(GL_EXP2); }, {0, 15, -40}, 45, "fog"},

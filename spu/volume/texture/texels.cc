@@ -248,6 +248,25 @@ class Stack final : public TexelSource {
   std::vector<std::byte> slice_;
 };
 
+/// Whether samples can only be of level 0, which is the base level.
+bool has_one_level(const GlContext& context, GLenum target, GLint sampler) {
+  const DispatchTable& gl = *context.gl;
+  GLint last = 0;
+  gl.GetTexParameteriv(target, GL_TEXTURE_MAX_LEVEL, &last);
+  if (last == 0 || texture_parameter(gl, target, sampler, GL_TEXTURE_MAX_LOD) <= 0) return true;
+  // Of a texture whose storage is immutable the last level is at most the last that it has.
+  GLint levels = 0;
+  if (context.version >= 430) gl.GetTexParameteriv(target, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
+  return levels == 1;
+}
+
+/// How minified texels are filtered, as GL_NEAREST or GL_LINEAR where their level is 0; as it is set elsewhere.
+GLenum minifying_filter(const GlContext& context, GLenum target, GLint sampler) {
+  const auto filter = GLenum(texture_parameter(*context.gl, target, sampler, GL_TEXTURE_MIN_FILTER));
+  if (filter == GL_NEAREST || filter == GL_LINEAR || !has_one_level(context, target, sampler)) return filter;
+  return filter == GL_NEAREST_MIPMAP_NEAREST || filter == GL_NEAREST_MIPMAP_LINEAR ? GL_NEAREST : GL_LINEAR;
+}
+
 }  // namespace
 
 std::optional<std::string> describe_texture(const GlContext& context, GLenum target, int unit,
@@ -276,9 +295,9 @@ std::optional<std::string> describe_texture(const GlContext& context, GLenum tar
     gl.ActiveTexture(GLenum(active));
     gl.GetTexParameteriv(target, GL_TEXTURE_SWIZZLE_RGBA, description.swizzle.data());
   }
-  const GLint minify = texture_parameter(gl, target, sampler, GL_TEXTURE_MIN_FILTER);
-  const GLint magnify = texture_parameter(gl, target, sampler, GL_TEXTURE_MAG_FILTER);
-  if (minify != magnify) return "the texture is mip-mapped or filtered differently when minified";
+  const auto magnify = GLenum(texture_parameter(gl, target, sampler, GL_TEXTURE_MAG_FILTER));
+  if (minifying_filter(context, target, sampler) != magnify)
+    return "the texture is mip-mapped or filtered differently when minified";
   description.filter = magnify == GL_NEAREST ? volume::Filter::nearest : volume::Filter::linear;
   constexpr std::array<GLenum, 3> axes = {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -13,26 +13,27 @@ namespace {
 
 constexpr const char* vertex_source =
     "#version 330\n"
-    "uniform mat4 camera; in vec3 corner; out vec3 place;\n"
-    "void main() { place = corner; gl_Position = camera * vec4(corner, 1.0); }\n";
+    "uniform mat4 camera; in vec3 corner; out vec3 corner_between;\n"
+    "void main() { corner_between = corner; gl_Position = camera * vec4(corner, 1.0); }\n";
 
 constexpr const char* fragment_source =
     "#version 330\n"
-    "uniform sampler3D field; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
+    // `gradients` is never set, and so is on the unit of `field`, as in programs that keep lighting for later.
+    "uniform sampler3D field, gradients; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
-    "uniform int composition; uniform bool straight, divided, lit, jittered, noisy, reads_depth;\n"
+    "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
     "uniform vec2 window; uniform float past_planes;\n"
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
-    "in vec3 place; out vec4 colour;\n"
+    "in vec3 corner_between; out vec4 colour;\n"
     "vec4 classified(vec3 at) {\n"
     "  vec4 c = texture(table, texture(field, at).r);\n"
     "  if (lit) {\n"
     "    vec3 h = vec3(0.02, 0.0, 0.0);\n"
-    "    vec3 g = vec3(texture(field, at + h.xyy).r - texture(field, at - h.xyy).r,\n"
-    "                  texture(field, at + h.yxy).r - texture(field, at - h.yxy).r,\n"
-    "                  texture(field, at + h.yyx).r - texture(field, at - h.yyx).r);\n"
+    "    vec3 g = vec3(texture(gradients, at + h.xyy).r - texture(gradients, at - h.xyy).r,\n"
+    "                  texture(gradients, at + h.yxy).r - texture(gradients, at - h.yxy).r,\n"
+    "                  texture(gradients, at + h.yyx).r - texture(gradients, at - h.yyx).r);\n"
     "    c.rgb *= length(g) > 0.0 ? 0.2 + 0.8 * abs(normalize(g).x) : 0.2;\n"
     "  }\n"
     "  return vec4(c.rgb * c.a, c.a);\n"
@@ -50,7 +51,12 @@ constexpr const char* fragment_source =
     "}\n"
     "void main() {\n"
     "  if (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0) discard;\n"
+    "  vec3 place = corner_between;\n"
     "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
+    "  if (whole_rays) {\n"
+    "    vec3 to_entry = (vec3(lessThan(along, vec3(0.0))) - place) / along;\n"
+    "    place += along * max(to_entry.x, max(to_entry.y, to_entry.z));\n"
+    "  }\n"
     "  vec3 step = along / length(along * extent) * one_step;\n"
     "  vec3 to_exit = (vec3(greaterThan(step, vec3(0.0))) - place) / step;\n"
     "  float steps = min(to_exit.x, min(to_exit.y, to_exit.z));\n"
@@ -395,9 +401,9 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
     gl().ActiveTexture(GL_TEXTURE0);
   }
   gl().DepthMask(GL_FALSE);
-  gl().Enable(GL_CULL_FACE);
+  if (!style.both_faces) gl().Enable(GL_CULL_FACE);
   gl().Enable(GL_BLEND);
-  gl().BlendFunc(style.premultiplied ? GL_ONE : GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl().BlendFunc(style.premultiplied && !style.alpha_twice ? GL_ONE : GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl().UseProgram(program_);
   const auto at = [&](const char* name) { return gl().GetUniformLocation(program_, name); };
   set_matrix(gl(), program_, "camera", camera.forward);
@@ -414,6 +420,7 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("straight"), style.premultiplied ? 0 : 1);
   gl().Uniform1i(at("divided"), style.divided ? 1 : 0);
   gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
+  gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
@@ -427,7 +434,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
     corner_count_ = GLsizei(triangles.size() / 3);
     closed_before_ = style.closed_before_eye;
   }
-  gl().DrawArrays(GL_TRIANGLES, 0, corner_count_);
+  const GLsizei of_draw = style.face_by_face ? 6 : corner_count_;
+  for (GLint first = 0; first < corner_count_; first += of_draw) gl().DrawArrays(GL_TRIANGLES, first, of_draw);
   gl().Disable(GL_BLEND);
   gl().Disable(GL_CULL_FACE);
 }

@@ -16,8 +16,12 @@ struct MarchStyle {
 
   Composition composition = Composition::over;
   bool premultiplied = true;  ///< what the shader writes, and the blend function
+  bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha once more
   bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length
   bool parallel = false;      ///< the projection
+  bool both_faces = false;    ///< neither front nor back faces of the box are culled
+  bool face_by_face = false;  ///< each face of the box is a draw
+  bool whole_rays = false;    ///< rays begin at the nearest face, whichever face makes the fragment
   bool lit = false;           ///< brightness by the gradient
   bool jittered = false;      ///< every ray starts at a place of its own
   bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window

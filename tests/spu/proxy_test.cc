@@ -54,6 +54,11 @@ std::vector<Kind> kinds() {
            {.premultiplied = false, .divided = true, .extent = stretched}},
           {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
           {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
+          {"over, alpha applied twice", {.alpha_twice = true, .extent = stretched}},
+          {"over, face by face", {.face_by_face = true, .extent = stretched}},
+          {"over, front and back faces", {.both_faces = true, .extent = stretched}},
+          {"maximum, front and back faces",
+           {.composition = Composition::maximum, .both_faces = true, .extent = of_cubes}},
           {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
           {"minimum", {.composition = Composition::minimum, .extent = of_cubes}},
           {"maximum, parallel projection",
@@ -192,6 +197,8 @@ TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
                 {.lit = true}},
         Refusal{"samples do not lie on constant steps from the box's faces (jitter, cropping)",
                 {.jittered = true}},
+        Refusal{"rays that begin at the back faces of the box show something, too",
+                {.both_faces = true, .whole_rays = true}},
         Refusal{"the near plane cuts the ray caster's box, or the eye is inside", {.distance = 0.8}}}) {
     ProxyScene scene(refusal.style);
     if (!scene.app) GTEST_SKIP() << "no EGL context here";

@@ -69,12 +69,17 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
 
   complete_ = surfaces.bind_framebuffer(width, height) != 0;
   // Which of the box's faces make fragments is the application's choice.
-  if (saved_.was_enabled(GL_CULL_FACE)) gl_.Enable(GL_CULL_FACE);
+  gl_.Enable(saved_.was_enabled(GL_CULL_FACE) ? GL_CULL_FACE : GL_DEPTH_TEST);
+  gl_.GetIntegerv(GL_DEPTH_FUNC, &depth_function_);
+  gl_.DepthFunc(GL_LESS);
+  gl_.DepthMask(GL_TRUE);
   gl_.Enable(GL_SCISSOR_TEST);
 }
 
 FieldProbe::~FieldProbe() {
   gl_.Scissor(scissor_[0], scissor_[1], scissor_[2], scissor_[3]);
+  gl_.DepthFunc(GLenum(depth_function_));
+  gl_.Disable(GL_DEPTH_TEST);
   gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_SCISSOR_TEST);
   gl_.DeleteTextures(GLsizei(textures_.size()), textures_.data());
@@ -151,6 +156,19 @@ std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<con
   return colours;
 }
 
+std::vector<volume::Rgba> FieldProbe::sums_at(double x, double y, std::span<const float> values) {
+  if (saved_.was_enabled(GL_CULL_FACE)) return {};
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.BlendEquation(GL_FUNC_ADD);
+  gl_.BlendFunc(GL_ONE, GL_ONE);
+  gl_.Enable(GL_BLEND);
+  std::vector<volume::Rgba> sums = at(x, y, values);
+  gl_.Disable(GL_BLEND);
+  gl_.Enable(GL_DEPTH_TEST);
+  for (volume::Rgba& sum : sums) sum[3] -= no_fragment;
+  return sums;
+}
+
 void FieldProbe::show_instead(const SampledTexture& texture, int width, int height,
                               std::span<const float> texels) {
   if (std::find(tiled_units_.begin(), tiled_units_.end(), texture.unit) == tiled_units_.end()) {
@@ -182,6 +200,8 @@ void FieldProbe::show_own(const SampledTexture& texture) {
 void FieldProbe::clear() {
   constexpr std::array<float, 4> nothing{0, 0, 0, no_fragment};
   gl_.ClearBufferfv(GL_COLOR, 0, nothing.data());
+  constexpr float farthest = 1;
+  gl_.ClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
 std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The application's own draw over fields that are known: its volume is replaced by one value, its depth texture
-// by the far plane, its framebuffer by a float one, its cuts are lifted. Everything is put back.
+// by the far plane, its framebuffer by a float one, its cuts are lifted. Everything is put back. Where the
+// box's faces are not culled, a pixel's nearest fragment is looked at, whatever the order of the faces.
 #pragma once
 
 #include <array>
@@ -35,6 +36,9 @@ class FieldProbe {
 
   /// The same over fields that rise by `rise` through the volume, in the middle of which they have the value.
   std::vector<volume::Rgba> at_slope(double x, double y, std::span<const float> values, float rise);
+
+  /// As at(), the sum of all fragments of a pixel instead of the nearest one; nothing where faces are culled.
+  std::vector<volume::Rgba> sums_at(double x, double y, std::span<const float> values);
 
   /// The fragments of `rows` rows of the application's viewport from `first_row` on, over the field of `value`.
   std::vector<volume::Rgba> rows(int first_row, int rows, float value);
@@ -88,7 +92,8 @@ class FieldProbe {
   int ramp_texels_ = field_texels;   ///< the more, the nearer to the box's faces does a ramp go on
   std::array<GLint, 4> viewport_{};  ///< the application's
   std::array<GLint, 4> scissor_{};
-  int fine_ = 0;  ///< edge of the viewport that rays are picked from
+  int fine_ = 0;              ///< edge of the viewport that rays are picked from
+  GLint depth_function_ = 0;  ///< the application's
   SavedState saved_;
   LiftedCuts lifted_;
   std::vector<GLuint> textures_;

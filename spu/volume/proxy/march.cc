@@ -104,12 +104,21 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   const Ray brief = ray_of_length(rays_, texels_, 3);
   const auto briefly = probe_.at(brief.x, brief.y, values_);
   if (!finite(through_) || !finite(briefly)) return "the fragment stage gives colours that are not finite";
+  // Of a box whose faces are not culled, both are blended.
+  const auto sums = probe_.sums_at(middle[0], middle[1], values_);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const Rgba nearest = reached(through_[i]) ? through_[i] : Rgba{};
+    if (!(largest_difference(sums[i], nearest) <= 1e-6F))
+      return "rays that begin at the back faces of the box show something, too";
+  }
   // Whatever the way through it, one value has one colour: samples are not composed.
   march_.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
   if (!march_.extreme) march_.sum = plain_sum(through_, briefly);
+  march_.alpha_twice = !march_.extreme && !march_.sum && !measured_.run.pipeline().blending.premultiplied &&
+                       grow_with_alpha(through_, briefly);
   const auto way = rays_.way(middle[0], middle[1]);
   if (march_.extreme && (!way || steps_of_way(texels_, *way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
@@ -273,6 +282,8 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 }
 
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  // Blending that multiplies by alpha no more.
+  if (march.alpha_twice && measured.run.pipeline().blending.premultiplied) return std::nullopt;
   March changed = march;
   changed.table.low = measured.range[0];
   changed.table.high = measured.range[1];
@@ -349,7 +360,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   constexpr float same_colour = 5e-3F;
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
-  const bool already = measured.run.pipeline().blending.premultiplied;
+  const bool already = premultiplied_already(measured, march);
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   std::vector<float> values;
   values.reserve(std::size_t(looked_at.values));

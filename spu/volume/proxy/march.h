@@ -41,6 +41,9 @@ struct March {
   /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
   bool steps_seen = true;
   std::optional<PlainSum> sum;
+  /// Of samples that are composed by over: the program writes colours that are multiplied by alpha, and
+  /// blending multiplies them by it once more.
+  bool alpha_twice = false;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
   volume::TransferFunction table;  ///< premultiplied; of one sample
   float translucent = 0;           ///< a value whose field lets light through a ray, the longest that does
@@ -85,7 +88,8 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
 void ask_nodes(const March& march, volume::RenderRequest& request);
 
 /// What their image then becomes: of extreme values the colours that these have, of sums what is shown of
-/// them. Samples that are composed by over already are the image.
+/// them, and colours times alpha where alpha is applied twice. Other samples that are composed by over already
+/// are the image.
 bool needs_finish(const March& march);
 void finish_image(const March& march, volume::Image& image);
 

@@ -11,6 +11,16 @@ namespace understudy::spu {
 
 using volume::Rgba;
 
+namespace {
+
+void multiply_by_alpha(volume::Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= image.rgba[i + 3];
+  }
+}
+
+}  // namespace
+
 void ask_nodes(const March& march, volume::RenderRequest& request) {
   request.steps = march.steps;
   if (!march.extreme) {
@@ -32,10 +42,11 @@ void ask_nodes(const March& march, volume::RenderRequest& request) {
 }
 
 bool needs_finish(const March& march) {
-  return march.extreme || march.sum;
+  return march.extreme || march.sum || march.alpha_twice;
 }
 
 void finish_image(const March& march, volume::Image& image) {
+  if (march.alpha_twice) return multiply_by_alpha(image);
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     Rgba colour{};

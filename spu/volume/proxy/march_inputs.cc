@@ -66,6 +66,9 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   MarchInputs inputs;
   inputs.fixed = {measured.range[0], measured.range[1], pipeline.blending.premultiplied ? 1.0F : 0.0F,
                   float(measured.texture.base)};
+  GLint culled = 0;
+  gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
+  inputs.fixed.push_back(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
   if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);

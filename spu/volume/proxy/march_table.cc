@@ -43,7 +43,7 @@ class TableRays {
         rays_(rays),
         rule_(rule),
         march_(march),
-        premultiplied_(measured.run.pipeline().blending.premultiplied) {
+        premultiplied_(premultiplied_already(measured, march)) {
     values_.reserve(table_entries);
     for (int i = 0; i < table_entries; ++i)
       values_.push_back(value_at(measured.range, double(i) / (table_entries - 1)));

@@ -14,6 +14,7 @@ constexpr std::size_t most_far_planes = 4;
 ProbeSurfaces::~ProbeSurfaces() {
   gl_.DeleteFramebuffers(1, &framebuffer_);
   gl_.DeleteRenderbuffers(1, &colour_);
+  gl_.DeleteRenderbuffers(1, &depth_);
   for (const FarPlane& plane : far_planes_) gl_.DeleteTextures(1, &plane.texture);
 }
 
@@ -21,6 +22,7 @@ GLuint ProbeSurfaces::bind_framebuffer(int width, int height) {
   const bool fits = framebuffer_ != 0 && extent_[0] >= width && extent_[1] >= height;
   if (framebuffer_ == 0) {
     gl_.GenRenderbuffers(1, &colour_);
+    gl_.GenRenderbuffers(1, &depth_);
     gl_.GenFramebuffers(1, &framebuffer_);
   }
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -30,8 +32,11 @@ GLuint ProbeSurfaces::bind_framebuffer(int width, int height) {
     gl_.GetIntegerv(GL_RENDERBUFFER_BINDING, &application_renderbuffer);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, colour_);
     gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, depth_);
+    gl_.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, GLuint(application_renderbuffer));
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour_);
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     complete_ = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   }
   return complete_ ? framebuffer_ : 0;

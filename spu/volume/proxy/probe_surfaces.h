@@ -17,8 +17,8 @@ class ProbeSurfaces {
   ProbeSurfaces(const ProbeSurfaces&) = delete;
   ProbeSurfaces& operator=(const ProbeSurfaces&) = delete;
 
-  /// A framebuffer of floats with at least so many pixels, which becomes the current one. What it shows is not
-  /// known. 0 where the driver cannot draw into floats.
+  /// A framebuffer of floats with at least so many pixels and their depths, which becomes the current one. What
+  /// it shows is not known. 0 where the driver cannot draw into floats.
   GLuint bind_framebuffer(int width, int height);
   /// A depth texture of this size that is 1 everywhere, bound to GL_TEXTURE_2D of the active unit.
   void bind_far_plane(int width, int height);
@@ -32,6 +32,7 @@ class ProbeSurfaces {
   const DispatchTable& gl_;
   std::array<int, 2> extent_{};
   GLuint colour_ = 0;
+  GLuint depth_ = 0;
   GLuint framebuffer_ = 0;
   bool complete_ = false;
   std::vector<FarPlane> far_planes_;

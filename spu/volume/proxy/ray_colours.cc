@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/proxy/field_probe.h"
 
 namespace understudy::spu {
@@ -22,6 +23,27 @@ Rgba premultiplied(Rgba fragment, bool already) {
   if (!reached(fragment)) return {};
   for (std::size_t c = 0; c < 3 && !already; ++c) fragment[c] *= fragment[3];
   return fragment;
+}
+
+bool premultiplied_already(const MarchContext& measured, const March& march) {
+  return measured.run.pipeline().blending.premultiplied || march.alpha_twice;
+}
+
+bool grow_with_alpha(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
+  constexpr float least_alpha = 0.02F;
+  constexpr double clearly = 0.1;
+  double from_same = 0;
+  double from_multiplied = 0;
+  for (std::size_t i = 0; i < through.size(); ++i) {
+    const Rgba& longer = through[i];
+    const Rgba& shorter = briefly[i];
+    if (!(shorter[3] > least_alpha && longer[3] > 1.2F * shorter[3])) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      from_same += std::abs(longer[c] - shorter[c]);
+      from_multiplied += std::abs(longer[c] * shorter[3] / longer[3] - shorter[c]);
+    }
+  }
+  return from_multiplied < clearly * from_same;
 }
 
 float brightest_channel(const Rgba& colour) {

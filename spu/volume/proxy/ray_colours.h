@@ -18,8 +18,14 @@ float value_at(const std::array<float, 2>& range, double place);
 /// Whether there was a fragment.
 bool reached(const volume::Rgba& fragment);
 
-/// The fragment as it would be blended: premultiplied.
+/// The fragment's ray: premultiplied.
 volume::Rgba premultiplied(volume::Rgba fragment, bool already);
+/// Whether fragments are that already.
+bool premultiplied_already(const MarchContext& measured, const March& march);
+
+/// Whether fragments over fields of one value are multiplied by alpha: on a long ray, `through`, by as much
+/// more as that has more alpha than on a short one over the same fields, `briefly`.
+bool grow_with_alpha(const std::vector<volume::Rgba>& through, const std::vector<volume::Rgba>& briefly);
 float brightest_channel(const volume::Rgba& colour);
 
 /// One of `n` equal samples that make up `ray`, and the ray that `n` equal samples make up; premultiplied.

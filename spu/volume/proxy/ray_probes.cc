@@ -94,7 +94,7 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
                                                                 const March& march) {
   // Where nearly nothing is let through any more, programs stop, or one sample makes no difference.
   constexpr float most_counted = 0.99F;
-  const bool already = measured.run.pipeline().blending.premultiplied;
+  const bool already = premultiplied_already(measured, march);
   std::vector<CountedRay> counted;
   std::vector<double> amounts;
   std::vector<Rgba> colours;
@@ -120,10 +120,11 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
   // Colour over opacity stays what it is for one sample.
   const std::size_t longest = std::size_t(most - amounts.begin());
+  const float most_off = 0.01F * brightest_channel(colours[longest]);
   for (std::size_t i = 0; i < counted.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double expected = double(colours[longest][c]) / *most * amounts[i];
-      if (std::abs(colours[i][c] - expected) > 0.01)
+      if (std::abs(colours[i][c] - expected) > most_off)
         return "the colours of a ray's samples are not composed by over";
     }
     counted[i].samples = counts[i];

@@ -186,7 +186,7 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   if (!contrast) return {};
   const auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
   if (fields.empty()) return {};
-  SplitCounting counting(probe, contrast->amount, measured.run.pipeline().blending.premultiplied, fields);
+  SplitCounting counting(probe, contrast->amount, premultiplied_already(measured, march), fields);
   for (int band = 0; band < split_bands; ++band)
     counting.add_rows(
         std::clamp((2 * band + 1) * probe.height() / (2 * split_bands), 0, std::max(0, probe.height() - 2)));

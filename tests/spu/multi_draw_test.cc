@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices that are drawn many by one call, or by indices with a base: what viewers do whose slices are polygons
-// of three to six corners in one buffer.
+// Slices that are drawn many by one call, by indices with a base, or as instances: what viewers do whose slices
+// are polygons of three to six corners in one buffer, or copies of one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-constexpr int slices = 40;
+constexpr int slices = 40;  // as the vertex shader says
 constexpr int corners = 4;  ///< of a slice
 
 /// What all slices' calls are made from: in buffers, or in the application's memory.
@@ -108,6 +108,22 @@ std::vector<Way> ways() {
            app.gl().DrawRangeElementsBaseVertex(GL_TRIANGLE_FAN, 0, corners - 1, corners, GL_UNSIGNED_SHORT,
                                                 a.of_first[i], a.base[i]);
        }},
+      {"glDrawArraysInstanced",
+       [](GlApplication& app, const SliceArrays&) {
+         app.gl().DrawArraysInstanced(GL_TRIANGLE_FAN, 0, corners, slices);
+       },
+       true},
+      {"glDrawElementsInstanced",
+       [](GlApplication& app, const SliceArrays& a) {
+         app.gl().DrawElementsInstanced(GL_TRIANGLE_FAN, corners, GL_UNSIGNED_SHORT, a.of_first[0], slices);
+       },
+       true},
+      {"glDrawElementsInstancedBaseVertex",
+       [](GlApplication& app, const SliceArrays& a) {
+         app.gl().DrawElementsInstancedBaseVertex(GL_TRIANGLE_FAN, corners, GL_UNSIGNED_SHORT, a.own[1], slices,
+                                                  -corners);
+       },
+       true},
   };
 }
 
@@ -122,7 +138,8 @@ class Slices {
         "#version 330\n"
         "in vec3 corner; out vec3 place; uniform vec2 turn;\n"
         "void main() {\n"
-        "  place = corner; vec3 p = corner - 0.5;\n"
+        "  place = corner; place.z += float(gl_InstanceID) / 40.0;\n"
+        "  vec3 p = place - 0.5;\n"
         "  gl_Position = vec4(turn.x * p.x + turn.y * p.z, p.y, turn.y * p.x - turn.x * p.z, 1.0);\n"
         "}\n";
     const char* fragments =

@@ -275,6 +275,55 @@ void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count,
     observer.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
 
+/// Arrays and elements in buffers, `instances` times: the run takes them, or the application draws.
+template <class Add>
+bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLsizei instances,
+                         bool from_buffers, Add add) {
+  ArraySources sources;
+  const bool can_wait = count >= 0 && instances > 0 && std::int64_t(count) * instances <= most_elements;
+  if (can_wait && from_buffers && joins_run(observer) && !read_array_sources(observer.context(), sources) &&
+      !sources.client_memory) {
+    Run& run = observer.run();
+    const WholeDraw whole(run);
+    add(run);
+    run.only_polygons &= draws_polygons(mode);
+    ++run.draws;
+    return true;
+  }
+  observer.settle();
+  return false;
+}
+
+bool joins_run_instanced(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type,
+                         GLsizei instances) {
+  GLint element_buffer = 0;
+  observer.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+  return joins_run_instanced(observer, mode, range.count, instances,
+                             element_buffer != 0 && index_size(type) != 0,
+                             [&](Run& run) { run.draw_elements_instanced(mode, range, type, instances); });
+}
+
+void APIENTRY draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLsizei instances) {
+  DrawObserver& observer = here();
+  if (!joins_run_instanced(observer, mode, count, instances, first >= 0,
+                           [&](Run& run) { run.draw_arrays_instanced(mode, first, count, instances); }))
+    observer.next().DrawArraysInstanced(mode, first, count, instances);
+}
+
+void APIENTRY draw_elements_instanced(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                      GLsizei instances) {
+  DrawObserver& observer = here();
+  if (!joins_run_instanced(observer, mode, {count, indices}, type, instances))
+    observer.next().DrawElementsInstanced(mode, count, type, indices, instances);
+}
+
+void APIENTRY draw_elements_instanced_base_vertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                                  GLsizei instances, GLint base_vertex) {
+  DrawObserver& observer = here();
+  if (!joins_run_instanced(observer, mode, {count, indices, base_vertex}, type, instances))
+    observer.next().DrawElementsInstancedBaseVertex(mode, count, type, indices, instances, base_vertex);
+}
+
 /// As OpenGL lays draws out in a buffer.
 struct ArraysCommand {
   GLuint count, instances, first, base_instance;
@@ -417,6 +466,13 @@ void fill_draws(DispatchTable& table) {
   table.MultiDrawElements = multi_draw_elements;
   table.MultiDrawElementsEXT = multi_draw_elements;
   table.MultiDrawElementsBaseVertex = multi_draw_elements_base_vertex;
+  table.DrawArraysInstanced = draw_arrays_instanced;
+  table.DrawArraysInstancedARB = draw_arrays_instanced;
+  table.DrawArraysInstancedEXT = draw_arrays_instanced;
+  table.DrawElementsInstanced = draw_elements_instanced;
+  table.DrawElementsInstancedARB = draw_elements_instanced;
+  table.DrawElementsInstancedEXT = draw_elements_instanced;
+  table.DrawElementsInstancedBaseVertex = draw_elements_instanced_base_vertex;
 }
 
 }  // namespace

@@ -41,6 +41,17 @@ void Run::draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum
   reads_arrays = true;
 }
 
+void Run::draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLsizei instances) {
+  reads_arrays = true;
+  append_call(calls_, &DispatchTable::DrawArraysInstanced, mode, first, count, instances);
+  attributes_read_ = calls_.words().size();
+}
+
+void Run::draw_elements_instanced(GLenum mode, const ElementPart& range, GLenum type, GLsizei instances) {
+  draw_elements(mode, {&range, 1}, type);
+  buffer_draws_.back().instances = instances;
+}
+
 void Run::draw_kept(const DispatchTable& gl, const BufferDraw& draw) const {
   const GLsizei* const count = counts_.data() + draw.part;
   const void* const* const offset = offsets_.data() + draw.part;
@@ -48,7 +59,12 @@ void Run::draw_kept(const DispatchTable& gl, const BufferDraw& draw) const {
   // Contexts that know no base vertices are never asked for one.
   const bool based = std::any_of(base, base + draw.parts, [](GLint vertex) { return vertex != 0; });
   const auto parts = GLsizei(draw.parts);
-  if (draw.type == 0) {
+  if (draw.instances != 1) {
+    if (based)
+      gl.DrawElementsInstancedBaseVertex(draw.mode, *count, draw.type, *offset, draw.instances, *base);
+    else
+      gl.DrawElementsInstanced(draw.mode, *count, draw.type, *offset, draw.instances);
+  } else if (draw.type == 0) {
     gl.MultiDrawArrays(draw.mode, first_.data() + draw.part, count, parts);
   } else if (parts == 1 && based) {
     gl.DrawElementsBaseVertex(draw.mode, *count, draw.type, *offset, *base);

@@ -53,6 +53,9 @@ class Run {
   /// Draws from buffers. Elements have their indices in the bound element buffer.
   void draw_arrays(GLenum mode, std::span<const GLint> first, std::span<const GLsizei> count);
   void draw_elements(GLenum mode, std::span<const ElementPart> ranges, GLenum type);
+  /// The same for one range, `instances` times.
+  void draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLsizei instances);
+  void draw_elements_instanced(GLenum mode, const ElementPart& range, GLenum type, GLsizei instances);
   /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
   bool reads_arrays = false;
   /// No draw is of points or lines, or of what nobody knows.
@@ -85,6 +88,7 @@ class Run {
     GLenum type;  ///< of the indices; 0: there are none
     std::size_t part;
     std::size_t parts;
+    GLsizei instances = 1;  ///< of the one part, where not 1
   };
   void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
   struct Place {

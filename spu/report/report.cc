@@ -275,6 +275,13 @@ std::string listed(const ReasonCounts& reasons) {
   return list;
 }
 
+/// Empty where the volume was left before its texture was looked at.
+std::string extent_and_format(const VolumeCounters& volume) {
+  if (volume.size[0] == 0) return {};
+  return fmt::format(", {} x {} x {} {}", volume.size[0], volume.size[1], volume.size[2],
+                     text_in(volume.texture_format));
+}
+
 }  // namespace
 
 bool lost_server(Processes processes) {
@@ -353,9 +360,8 @@ std::string explanation_text(Processes processes) {
                         counted(calls_of(*process), "OpenGL call"), counted(process->frames.load(), "frame"));
     for (const VolumeCounters* const entry : volumes_of(*process)) {
       const VolumeCounters& volume = *entry;
-      text += fmt::format("understudy:   texture {}, {} x {} x {} {}: {} of slices substituted, {} left\n",
-                          volume.texture, volume.size[0], volume.size[1], volume.size[2],
-                          text_in(volume.texture_format), counted(volume.draws_substituted.load(), "run"),
+      text += fmt::format("understudy:   texture {}{}: {} of slices substituted, {} left\n", volume.texture,
+                          extent_and_format(volume), counted(volume.draws_substituted.load(), "run"),
                           volume.draws_left.load());
       if (volume.explanation[0] != '\0') {
         text += fmt::format("understudy:     recognised: {}\n", text_in(volume.explanation));

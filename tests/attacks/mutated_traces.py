@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutated traces through replay, trim and print: no crash of ours, no hang.
+"""Mutated traces through replay, trim and print: no crash of ours, no hang, no memory without measure.
 
     mutated_traces.py UNDERSTUDY COUNT SEED TRACE...
 
 A driver that crashes says so by status 5 and the call (apps/understudy/gl_server/guarded_player.h); such runs are counted and
-listed. Anything else but success and a refusal fails.
+listed. Anything else but success and a refusal fails, and so does a process that takes 1 GiB more than the largest does for the
+traces as they are.
 """
 
 import collections
 import os
 import random
+import resource
 import subprocess
 import sys
 import tempfile
@@ -18,6 +20,7 @@ from pathlib import Path
 
 from trace_blocks import Trace
 
+MOST_KIB_MORE = 1 << 20
 LIMIT_S = 120  # for a hang; nothing here takes a second
 REFUSED = (0, 1, 2)
 DRIVER_CRASHED = 5
@@ -107,16 +110,24 @@ def ending(program, command):
     return ended.returncode, said
 
 
-def play(program, data, seed, folder):
-    """(command, ending, what was said) of the three commands."""
-    chance = random.Random(seed)
-    trace, out = folder / f"{seed}.ust", folder / f"{seed}.out"
-    trace.write_bytes(mutated(data, chance))
+def play(program, data, name, folder):
+    """(name, command, ending, what was said) of the three commands."""
+    trace, out = folder / f"{name}.ust", folder / f"{name}.out"
+    trace.write_bytes(data)
     commands = [["replay", "--native", trace], ["trim", trace, "--frames", "2-2", "-o", out], ["print", trace]]
-    endings = [(seed, command[0], *ending(program, command)) for command in commands]
+    endings = [(name, command[0], *ending(program, command)) for command in commands]
     trace.unlink()
     out.unlink(missing_ok=True)
     return endings
+
+
+def play_mutated(program, data, seed, folder):
+    return play(program, mutated(data, random.Random(seed)), seed, folder)
+
+
+def largest_kib():
+    """Of any process that has ended."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
 
 
 def main():
@@ -124,7 +135,10 @@ def main():
     traces = [Path(name).read_bytes() for name in sys.argv[4:]]
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(2) as pool:
         folder = Path(name)
-        jobs = [pool.submit(play, program, traces[i % len(traces)], seed + i, folder) for i in range(count)]
+        for number, trace in enumerate(traces):
+            play(program, trace, f"whole{number}", folder)
+        usual_kib = largest_kib()
+        jobs = [pool.submit(play_mutated, program, traces[i % len(traces)], seed + i, folder) for i in range(count)]
         endings = []
         for number, job in enumerate(jobs, 1):
             endings += job.result()
@@ -139,6 +153,9 @@ def main():
     wrong = [ended for ended in endings if ended[2] not in (*REFUSED, DRIVER_CRASHED)]
     for number, command, status, said in wrong[:5]:
         print(f"seed {number}, {command}: {status}\n{said[-4000:]}")
+    print(f"the largest process: {largest_kib() >> 10} MiB; for the traces as they are {usual_kib >> 10} MiB")
+    if largest_kib() - usual_kib > MOST_KIB_MORE:
+        raise SystemExit("a mutated trace takes more than 1 GiB beyond those as they are")
     if wrong:
         raise SystemExit(f"{len(wrong)} of {len(endings)} runs ended as none should")
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "compositor/service/limits.h"
 #include "spu/registry/assemble.h"
 #include "spu/report/counters.h"
 #include "spu/stream/event.h"
@@ -22,6 +23,12 @@ namespace {
 
 /// What a file may claim of a drawable.
 constexpr std::uint64_t largest_side = 16384;
+
+/// Memory is taken for all of it.
+bool may_be_drawable(std::uint64_t width, std::uint64_t height) {
+  return width <= largest_side && height <= largest_side &&
+         width * height <= compositor::limits::max_window_pixels;
+}
 
 thread_local const DispatchTable* installed = nullptr;
 
@@ -178,9 +185,9 @@ std::string Player::make_current(const Record& record) {
   }
   const auto found = contexts_.find(words[0]);
   if (found == contexts_.end()) return fmt::format("current: there is no context {}", words[0]);
-  const auto side = [](std::uint64_t pixels) {
-    return int(std::clamp<std::uint64_t>(pixels, 1, largest_side));
-  };
+  if (!may_be_drawable(words[1], words[2]))
+    return fmt::format("current: a drawable of {} x {} pixels is larger than windows are", words[1], words[2]);
+  const auto side = [](std::uint64_t pixels) { return int(std::max<std::uint64_t>(pixels, 1)); };
   const Thread wanted{words[0], words.size() > 3 ? words[3] : 0, {side(words[1]), side(words[2])}};
   if (thread.context != 0 && thread.context != wanted.context && thread.context == active_) leave();
   thread = wanted;

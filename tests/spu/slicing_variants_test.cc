@@ -39,11 +39,6 @@ void cut_levels(const DispatchTable& gl) {
   gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
 }
 
-void cut_level_of_detail(const DispatchTable& gl) {
-  gl.GenerateMipmap(GL_TEXTURE_3D);
-  gl.TexParameterf(GL_TEXTURE_3D, GL_TEXTURE_MAX_LOD, 0);
-}
-
 struct Variant {
   const char* name;
   std::function<SliceScene()> scene;
@@ -91,11 +86,6 @@ INSTANTIATE_TEST_SUITE_P(
                 60,
                 "pre-integration table"},
         Variant{"OneLevel", [] { return slices_of_one_level(cut_levels); }, {0, 15}, 45, "colours"},
-        Variant{"LevelOfDetailCut",
-                [] { return slices_of_one_level(cut_level_of_detail); },
-                {0, 15},
-                45,
-                "colours"},
         Variant{"LinearFog", [] { return fixed_function_fog(GL_LINEAR); }, {0, 15, -40}, 45, "fog"},
         Variant{"ExponentialFog", [] { return fixed_function_fog(GL_EXP); }, {0, 15, -40}, 45, "fog"},
         Variant{"SquaredFog", [] { return fixed_function_fog(GL_EXP2); }, {0, 15, -40}, 45, "fog"},

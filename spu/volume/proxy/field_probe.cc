@@ -157,7 +157,7 @@ std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<con
 }
 
 std::vector<volume::Rgba> FieldProbe::sums_at(double x, double y, std::span<const float> values) {
-  if (saved_.was_enabled(GL_CULL_FACE)) return {};
+  if (culls_faces()) return {};
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BlendEquation(GL_FUNC_ADD);
   gl_.BlendFunc(GL_ONE, GL_ONE);

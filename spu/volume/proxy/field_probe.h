@@ -37,6 +37,8 @@ class FieldProbe {
   /// The same over fields that rise by `rise` through the volume, in the middle of which they have the value.
   std::vector<volume::Rgba> at_slope(double x, double y, std::span<const float> values, float rise);
 
+  bool culls_faces() const { return saved_.was_enabled(GL_CULL_FACE); }
+
   /// As at(), the sum of all fragments of a pixel instead of the nearest one; nothing where faces are culled.
   std::vector<volume::Rgba> sums_at(double x, double y, std::span<const float> values);
 

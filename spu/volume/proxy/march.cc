@@ -49,6 +49,19 @@ std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size,
 const Refusal samples_lie_elsewhere{
     "samples do not lie on constant steps from the box's faces (jitter, cropping)"};
 
+constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
+
+/// Whether all fragments of a ray add up to the nearest one: if faces are not culled, the front and the back
+/// fragment are blended.
+bool only_nearest_shows(FieldProbe& probe, const Ray& ray, const std::vector<float>& values,
+                        const std::vector<Rgba>& nearest) {
+  const auto sums = probe.sums_at(ray.x, ray.y, values);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!(largest_difference(sums[i], reached(nearest[i]) ? nearest[i] : Rgba{}) <= 1e-6F)) return false;
+  }
+  return true;
+}
+
 /// One measurement, from the composition of samples to their places and colours. Each step fills in its part of
 /// the march, or says why there is none.
 class MarchMeasurement {
@@ -104,13 +117,11 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   const Ray brief = ray_of_length(rays_, texels_, 3);
   const auto briefly = probe_.at(brief.x, brief.y, values_);
   if (!finite(through_) || !finite(briefly)) return "the fragment stage gives colours that are not finite";
-  // Of a box whose faces are not culled, both are blended.
-  const auto sums = probe_.sums_at(middle[0], middle[1], values_);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const Rgba nearest = reached(through_[i]) ? through_[i] : Rgba{};
-    if (!(largest_difference(sums[i], nearest) <= 1e-6F))
-      return "rays that begin at the back faces of the box show something, too";
-  }
+  const Blending& blending = measured_.run.pipeline().blending;
+  if (!probe_.culls_faces() &&
+      (blending.op == volume::Operator::min || blending.alpha.op == volume::Operator::min))
+    return "front and back faces of the box are drawn under a minimum";
+  if (!only_nearest_shows(probe_, {middle[0], middle[1]}, values_, through_)) return back_faces_show;
   // Whatever the way through it, one value has one colour: samples are not composed.
   march_.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -379,6 +390,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const auto shows_table = [&](const Ray& ray) {
     const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
     const auto fragments = probe.at(ray.x, ray.y, values);
+    if (!only_nearest_shows(probe, ray, values, fragments)) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!expected(fragments[i], values[i], samples)) return false;
     }

@@ -69,6 +69,9 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   GLint culled = 0;
   gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
   inputs.fixed.push_back(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
+  GLint front = 0;
+  gl.GetIntegerv(GL_FRONT_FACE, &front);
+  inputs.fixed.push_back(float(front));
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
   if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);

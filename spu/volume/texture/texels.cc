@@ -249,11 +249,11 @@ class Stack final : public TexelSource {
 };
 
 /// Whether samples can only be of level 0, which is the base level.
-bool has_one_level(const GlContext& context, GLenum target, GLint sampler) {
+bool has_one_level(const GlContext& context, GLenum target) {
   const DispatchTable& gl = *context.gl;
   GLint last = 0;
   gl.GetTexParameteriv(target, GL_TEXTURE_MAX_LEVEL, &last);
-  if (last == 0 || texture_parameter(gl, target, sampler, GL_TEXTURE_MAX_LOD) <= 0) return true;
+  if (last == 0) return true;
   // Of a texture whose storage is immutable the last level is at most the last that it has.
   GLint levels = 0;
   if (context.version >= 430) gl.GetTexParameteriv(target, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
@@ -263,7 +263,7 @@ bool has_one_level(const GlContext& context, GLenum target, GLint sampler) {
 /// How minified texels are filtered, as GL_NEAREST or GL_LINEAR where their level is 0; as it is set elsewhere.
 GLenum minifying_filter(const GlContext& context, GLenum target, GLint sampler) {
   const auto filter = GLenum(texture_parameter(*context.gl, target, sampler, GL_TEXTURE_MIN_FILTER));
-  if (filter == GL_NEAREST || filter == GL_LINEAR || !has_one_level(context, target, sampler)) return filter;
+  if (filter == GL_NEAREST || filter == GL_LINEAR || !has_one_level(context, target)) return filter;
   return filter == GL_NEAREST_MIPMAP_NEAREST || filter == GL_NEAREST_MIPMAP_LINEAR ? GL_NEAREST : GL_LINEAR;
 }
 

@@ -267,7 +267,7 @@ void Track::end_list() {
 }
 
 void Track::texture_changes() {
-  // Without volumes nobody asks which texture it was; with them, units that watch find out.
+  // Without volumes nobody asks which texture it was. In the watching phase, units note it themselves.
   if (chain_.group().has_volumes()) chain_.set_phase(Phase::watching);
 }
 

@@ -83,6 +83,19 @@ TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
   }
 }
 
+TEST(Proxies, BackFacesThatAreDrawnLaterAreSeen) {
+  ProxyScene scene({.whole_rays = true});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  for (int i = 0; i < 6; ++i) scene.frame(true, 20);
+  EXPECT_EQ(scene.app->substituted(), 6U) << scene.app->last_reason();
+  const auto culled = scene.frame(false, 20);
+  scene.caster().style.both_faces = true;
+  const auto under = scene.frame(true, 20);
+  const auto bare = scene.frame(false, 20);
+  EXPECT_TRUE(under == bare) << psnr(under, bare) << " dB";
+  EXPECT_LT(psnr(bare, culled), 35) << "back faces change nothing: the test tests nothing";
+}
+
 TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
   ProxyScene scene(MarchStyle{});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";

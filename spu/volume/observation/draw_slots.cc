@@ -275,14 +275,21 @@ void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count,
     observer.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
 
-/// Arrays and elements in buffers, `instances` times: the run takes them, or the application draws.
-template <class Add>
-bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLsizei instances,
-                         bool from_buffers, Add add) {
+/// Whether arrays, and elements too if `elements` says that they are drawn, lie in buffers.
+bool reads_buffers(DrawObserver& observer, bool elements) {
   ArraySources sources;
+  if (read_array_sources(observer.context(), sources) || sources.client_memory) return false;
+  GLint element_buffer = 0;
+  if (elements) observer.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+  return !elements || element_buffer != 0;
+}
+
+/// A draw from buffers, `instances` times: the run takes it by `add`, or the application draws.
+template <class Add>
+bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLsizei instances, bool elements,
+                         Add add) {
   const bool can_wait = count >= 0 && instances > 0 && std::int64_t(count) * instances <= most_elements;
-  if (can_wait && from_buffers && joins_run(observer) && !read_array_sources(observer.context(), sources) &&
-      !sources.client_memory) {
+  if (can_wait && joins_run(observer) && reads_buffers(observer, elements)) {
     Run& run = observer.run();
     const WholeDraw whole(run);
     add(run);
@@ -296,16 +303,16 @@ bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLs
 
 bool joins_run_instanced(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type,
                          GLsizei instances) {
-  GLint element_buffer = 0;
-  observer.next().GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
-  return joins_run_instanced(observer, mode, range.count, instances,
-                             element_buffer != 0 && index_size(type) != 0,
+  // A type that is in error is left to the application, as a negative count is.
+  const GLsizei count = index_size(type) != 0 ? range.count : -1;
+  return joins_run_instanced(observer, mode, count, instances, true,
                              [&](Run& run) { run.draw_elements_instanced(mode, range, type, instances); });
 }
 
 void APIENTRY draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLsizei instances) {
   DrawObserver& observer = here();
-  if (!joins_run_instanced(observer, mode, count, instances, first >= 0,
+  const GLsizei vertices = first >= 0 ? count : -1;
+  if (!joins_run_instanced(observer, mode, vertices, instances, false,
                            [&](Run& run) { run.draw_arrays_instanced(mode, first, count, instances); }))
     observer.next().DrawArraysInstanced(mode, first, count, instances);
 }
@@ -447,6 +454,22 @@ void APIENTRY active_texture_in_run(GLenum texture) {
   observer.next().ActiveTexture(texture);
 }
 
+/// Under their names in extensions too, if the driver has the core's, by which runs make them.
+void fill_instanced_draws(DispatchTable& table) {
+  if (table.DrawArraysInstanced != nullptr) {
+    table.DrawArraysInstanced = draw_arrays_instanced;
+    table.DrawArraysInstancedARB = draw_arrays_instanced;
+    table.DrawArraysInstancedEXT = draw_arrays_instanced;
+  }
+  if (table.DrawElementsInstanced != nullptr) {
+    table.DrawElementsInstanced = draw_elements_instanced;
+    table.DrawElementsInstancedARB = draw_elements_instanced;
+    table.DrawElementsInstancedEXT = draw_elements_instanced;
+  }
+  if (table.DrawElementsInstancedBaseVertex != nullptr)
+    table.DrawElementsInstancedBaseVertex = draw_elements_instanced_base_vertex;
+}
+
 void fill_draws(DispatchTable& table) {
   table.Begin = begin;
   table.CallList = call_list;
@@ -466,13 +489,7 @@ void fill_draws(DispatchTable& table) {
   table.MultiDrawElements = multi_draw_elements;
   table.MultiDrawElementsEXT = multi_draw_elements;
   table.MultiDrawElementsBaseVertex = multi_draw_elements_base_vertex;
-  table.DrawArraysInstanced = draw_arrays_instanced;
-  table.DrawArraysInstancedARB = draw_arrays_instanced;
-  table.DrawArraysInstancedEXT = draw_arrays_instanced;
-  table.DrawElementsInstanced = draw_elements_instanced;
-  table.DrawElementsInstancedARB = draw_elements_instanced;
-  table.DrawElementsInstancedEXT = draw_elements_instanced;
-  table.DrawElementsInstancedBaseVertex = draw_elements_instanced_base_vertex;
+  fill_instanced_draws(table);
 }
 
 }  // namespace

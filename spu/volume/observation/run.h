@@ -41,7 +41,8 @@ class Run {
   /// The texture that the volume is known by: of a stack one of its ends, whichever is drawn first.
   GLuint volume_texture() const;
 
-  /// Where deferred calls go; all of them are plain, and none but those of the next four sets an attribute.
+  /// Where deferred calls go; all of them are plain, and none but those that set_attribute() and call_list()
+  /// add sets an attribute.
   Records& calls() { return calls_; }
   /// A call of kind `vertex`, with its arguments as AsWords makes them.
   void set_attribute(CallId call, const std::uint64_t* words);
@@ -88,7 +89,7 @@ class Run {
     GLenum type;  ///< of the indices; 0: there are none
     std::size_t part;
     std::size_t parts;
-    GLsizei instances = 1;  ///< of the one part, where not 1
+    GLsizei instances = 1;  ///< if not 1, the draw has one part
   };
   void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
   struct Place {

@@ -93,8 +93,7 @@ std::optional<std::string> read_program_textures(const GlContext& context, const
     gl.GetUniformiv(pipeline.program, sampler.location, &unit);
     if (target == 0) continue;
     SampledTexture sampled{target, unit, bound_texture(gl, target, unit), sampler.location};
-    // Another sampler of the volume's own unit (one for gradients that was never set, and so is on unit 0,
-    // too).
+    // A second sampler on the volume's unit reads the same texture. Viewers leave an unused one on unit 0.
     if (target == GL_TEXTURE_3D && volumes > 0 && unit == pipeline.volume.unit) continue;
     // A 3-D sampler without a texture (a mask that is not in use) gives the same everywhere: PyMOL has one.
     if (target == GL_TEXTURE_3D && sampled.texture != 0) {

@@ -68,7 +68,7 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
   saved_.borrow_texture(GL_TEXTURE_3D, pipeline.volume.unit);
 
   complete_ = surfaces.bind_framebuffer(width, height) != 0;
-  // Which of the box's faces make fragments is the application's choice.
+  // Which of the box's faces make fragments is the application's choice. If all do, the nearest counts.
   gl_.Enable(saved_.was_enabled(GL_CULL_FACE) ? GL_CULL_FACE : GL_DEPTH_TEST);
   gl_.GetIntegerv(GL_DEPTH_FUNC, &depth_function_);
   gl_.DepthFunc(GL_LESS);
@@ -165,7 +165,7 @@ std::vector<volume::Rgba> FieldProbe::sums_at(double x, double y, std::span<cons
   std::vector<volume::Rgba> sums = at(x, y, values);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_DEPTH_TEST);
-  for (volume::Rgba& sum : sums) sum[3] -= no_fragment;
+  for (volume::Rgba& sum : sums) sum[3] -= no_fragment;  // which each sum began with
   return sums;
 }
 

@@ -49,6 +49,11 @@ std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size,
 const Refusal samples_lie_elsewhere{
     "samples do not lie on constant steps from the box's faces (jitter, cropping)"};
 
+/// Whether blending multiplies colours by alpha, after they are clamped.
+bool multiplies_by_alpha(const Pipeline& pipeline) {
+  return !pipeline.blending.premultiplied && !pipeline.target.floating;
+}
+
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
 
 /// Whether all fragments of a ray add up to the nearest one: if faces are not culled, the front and the back
@@ -128,7 +133,7 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
   if (!march_.extreme) march_.sum = plain_sum(through_, briefly);
-  march_.alpha_twice = !march_.extreme && !march_.sum && !measured_.run.pipeline().blending.premultiplied &&
+  march_.alpha_twice = !march_.extreme && !march_.sum && multiplies_by_alpha(measured_.run.pipeline()) &&
                        grow_with_alpha(through_, briefly);
   const auto way = rays_.way(middle[0], middle[1]);
   if (march_.extreme && (!way || steps_of_way(texels_, *way) < 2 * brief.length))
@@ -293,8 +298,7 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
 }
 
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
-  // Blending that multiplies by alpha no more.
-  if (march.alpha_twice && measured.run.pipeline().blending.premultiplied) return std::nullopt;
+  if (march.alpha_twice && !multiplies_by_alpha(measured.run.pipeline())) return std::nullopt;
   March changed = march;
   changed.table.low = measured.range[0];
   changed.table.high = measured.range[1];

@@ -13,9 +13,11 @@ using volume::Rgba;
 
 namespace {
 
+/// As blending does in a normalised framebuffer, which clamps colours first.
 void multiply_by_alpha(volume::Image& image) {
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] *= image.rgba[i + 3];
+    for (std::size_t c = 0; c < 3; ++c)
+      image.rgba[i + c] = std::min(image.rgba[i + c], 1.0F) * image.rgba[i + 3];
   }
 }
 

@@ -66,12 +66,14 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   MarchInputs inputs;
   inputs.fixed = {measured.range[0], measured.range[1], pipeline.blending.premultiplied ? 1.0F : 0.0F,
                   float(measured.texture.base)};
+  inputs.fixed.push_back(pipeline.target.floating ? 1.0F : 0.0F);
+  // Which faces make fragments shows only on rays that are looked at, as what varies is.
   GLint culled = 0;
-  gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
-  inputs.fixed.push_back(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
   GLint front = 0;
+  gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
   gl.GetIntegerv(GL_FRONT_FACE, &front);
-  inputs.fixed.push_back(float(front));
+  inputs.varying.push_back(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
+  inputs.varying.push_back(float(front));
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
   if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);

@@ -18,13 +18,13 @@ float value_at(const std::array<float, 2>& range, double place);
 /// Whether there was a fragment.
 bool reached(const volume::Rgba& fragment);
 
-/// The fragment's ray: premultiplied.
+/// The colour of a fragment's ray, multiplied by alpha.
 volume::Rgba premultiplied(volume::Rgba fragment, bool already);
-/// Whether fragments are that already.
+/// Whether the program's fragments are multiplied by alpha.
 bool premultiplied_already(const MarchContext& measured, const March& march);
 
-/// Whether fragments over fields of one value are multiplied by alpha: on a long ray, `through`, by as much
-/// more as that has more alpha than on a short one over the same fields, `briefly`.
+/// Whether colours grow in proportion to alpha from a short ray (`briefly`) to a long one (`through`) over the
+/// same fields, each of one value.
 bool grow_with_alpha(const std::vector<volume::Rgba>& through, const std::vector<volume::Rgba>& briefly);
 float brightest_channel(const volume::Rgba& colour);
 

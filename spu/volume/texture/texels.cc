@@ -260,7 +260,7 @@ bool has_one_level(const GlContext& context, GLenum target) {
   return levels == 1;
 }
 
-/// How minified texels are filtered, as GL_NEAREST or GL_LINEAR where their level is 0; as it is set elsewhere.
+/// The minifying filter; without its mipmap part if only level 0 can be sampled.
 GLenum minifying_filter(const GlContext& context, GLenum target, GLint sampler) {
   const auto filter = GLenum(texture_parameter(*context.gl, target, sampler, GL_TEXTURE_MIN_FILTER));
   if (filter == GL_NEAREST || filter == GL_LINEAR || !has_one_level(context, target)) return filter;

@@ -56,14 +56,16 @@ class Piglit : public CommandTest {
   /// Runs all tests, with `before` in front of piglit, and leaves the results in a folder of that name.
   void run_all(const std::string& results, const std::string& before, const std::string& chain) const {
     const auto jobs = std::to_string(std::max(2U, std::thread::hardware_concurrency()));
+    const std::string with = with_more_time.string() + " " + before;
     Child piglit(command_of({script.string(), file(results).string()},
-                            {{"WITH", before}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
+                            {{"WITH", with}, {"UNDERSTUDY_CHAIN", chain}, {"JOBS", jobs}}),
                  file(""));
     const Outcome outcome = piglit.finish(patience_with_piglit);
     ASSERT_EQ(outcome.status, 0) << outcome.out << outcome.err;
   }
 
   const fs::path script = fs::path(SOURCE_FOLDER) / "../shared/clients/piglit";
+  const fs::path with_more_time = fs::path(SOURCE_FOLDER) / "tests/piglit/with_more_time";
 };
 
 TEST_F(Piglit, SeesTheSameOpenGlUnderEveryChain) {

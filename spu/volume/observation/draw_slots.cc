@@ -303,7 +303,7 @@ bool joins_run_instanced(DrawObserver& observer, GLenum mode, GLsizei count, GLs
 
 bool joins_run_instanced(DrawObserver& observer, GLenum mode, const ElementPart& range, GLenum type,
                          GLsizei instances) {
-  // A type that is in error is left to the application, as a negative count is.
+  // A type that is in error takes the path of a negative count: the draw call is passed on.
   const GLsizei count = index_size(type) != 0 ? range.count : -1;
   return joins_run_instanced(observer, mode, count, instances, true,
                              [&](Run& run) { run.draw_elements_instanced(mode, range, type, instances); });

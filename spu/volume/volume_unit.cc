@@ -170,10 +170,13 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
                                            shown, volume.verified, *volume.counters),
                     volume, session_->ledger().frames());
   };
-  const volume::FrameCounts counts =
-      stages.presentation.show(service, {run.pipeline(), image, volume, compared_whole}, check);
+  const auto& capture = recognised.seen.capture;
+  const volume::FrameCounts counts = stages.presentation.show(
+      service, {run.pipeline(), image, volume, compared_whole, capture ? &capture->polygons : nullptr}, check);
   run.shown = true;
-  if (stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
+  // Where the image replaces what is there, it is drawn with the box, and that with its depth.
+  if (!run.pipeline().blending.replaces &&
+      stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
     depth_watched_ = run.volume_texture();
     chain().set_phase(Phase::depth_deferred);
   }

@@ -22,7 +22,7 @@ constexpr const char* fragment_source =
     "uniform sampler3D field, gradients; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
-    "uniform vec2 window; uniform float past_planes;\n"
+    "uniform vec2 window; uniform float past_planes; uniform bool discards;\n"
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
@@ -50,7 +50,7 @@ constexpr const char* fragment_source =
     "  return in_croppingFlags[region] != 0;\n"
     "}\n"
     "void main() {\n"
-    "  if (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0) discard;\n"
+    "  if (discards && (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0)) discard;\n"
     "  vec3 place = corner_between;\n"
     "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
     "  if (whole_rays) {\n"
@@ -71,7 +71,7 @@ constexpr const char* fragment_source =
     "    if (rise > 0.0) begin = max(begin, -above / rise);\n"
     "    else end_of_ray = min(end_of_ray, -above / rise);\n"
     "  }\n"
-    "  if (begin >= end_of_ray) discard;\n"
+    "  if (discards && begin >= end_of_ray) discard;\n"
     "  if (begin > 0.0 || end_of_ray < steps)\n"
     "  {\n"
     "    float shown = end_of_ray - begin;\n"
@@ -83,11 +83,11 @@ constexpr const char* fragment_source =
     "  if (jittered) first = fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5) + 0.5;\n"
     "  if (noisy) first = texture(noise, gl_FragCoord.xy / vec2(textureSize(noise, 0))).r;\n"
     "  count = jittered || noisy ? floor(steps - first) + 1.0 : count;\n"
-    "  if (count < 1.0) discard;\n"
+    "  if (discards && count < 1.0) discard;\n"
     "  if (reads_depth) {\n"
     "    vec4 end = vec4(2.0 * gl_FragCoord.xy / window - 1.0, 0.0, 1.0);\n"
     "    end.z = 2.0 * texelFetch(opaque, ivec2(gl_FragCoord.xy), 0).r - 1.0;\n"
-    "    if (gl_FragCoord.z * 2.0 - 1.0 >= end.z) discard;\n"
+    "    if (discards && gl_FragCoord.z * 2.0 - 1.0 >= end.z) discard;\n"
     "    end = inverse_camera * end;\n"
     "    count = min(count, ceil(length((end.xyz / end.w - place) * extent) / one_step));\n"
     "  }\n"
@@ -400,9 +400,9 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
     gl().CopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, GlApplication::size, GlApplication::size);
     gl().ActiveTexture(GL_TEXTURE0);
   }
-  gl().DepthMask(GL_FALSE);
+  gl().DepthMask(style.writes_depth ? GL_TRUE : GL_FALSE);
   if (!style.both_faces) gl().Enable(GL_CULL_FACE);
-  gl().Enable(GL_BLEND);
+  if (!style.replaces) gl().Enable(GL_BLEND);
   gl().BlendFunc(style.premultiplied && !style.alpha_twice ? GL_ONE : GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl().UseProgram(program_);
   const auto at = [&](const char* name) { return gl().GetUniformLocation(program_, name); };
@@ -422,6 +422,7 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
   gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
+  gl().Uniform1i(at("discards"), style.discards ? 1 : 0);
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
   set_cuts(gl(), style, program_);

@@ -17,6 +17,9 @@ struct MarchStyle {
   Composition composition = Composition::over;
   bool premultiplied = true;  ///< what the shader writes, and the blend function
   bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha once more
+  bool replaces = false;      ///< blending is disabled
+  bool writes_depth = false;
+  bool discards = true;       ///< rays without a sample
   bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length
   bool parallel = false;      ///< the projection
   bool both_faces = false;    ///< neither front nor back faces of the box are culled

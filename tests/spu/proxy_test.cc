@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ray casters in a fragment shader, recognised by what they draw: the same image, or the application's own.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,20 +50,26 @@ struct Kind {
 std::vector<Kind> kinds() {
   const std::array<float, 3> stretched{1.0F, 1.3F, 0.7F};
   const std::array<float, 3> of_cubes{1.2F, 1.0F, 0.85F};  // texels of the blob
-  return {{"over, premultiplied, steps of one length", {.extent = stretched}},
-          {"over, straight colours, a way in equal parts",
-           {.premultiplied = false, .divided = true, .extent = stretched}},
-          {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
-          {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
-          {"over, alpha applied twice", {.alpha_twice = true, .extent = stretched}},
-          {"over, face by face", {.face_by_face = true, .extent = stretched}},
-          {"over, front and back faces", {.both_faces = true, .extent = stretched}},
-          {"maximum, front and back faces",
-           {.composition = Composition::maximum, .both_faces = true, .extent = of_cubes}},
-          {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
-          {"minimum", {.composition = Composition::minimum, .extent = of_cubes}},
-          {"maximum, parallel projection",
-           {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
+  return {
+      {"over, premultiplied, steps of one length", {.extent = stretched}},
+      {"over, straight colours, a way in equal parts",
+       {.premultiplied = false, .divided = true, .extent = stretched}},
+      {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
+      {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
+      {"over, alpha applied twice", {.alpha_twice = true, .extent = stretched}},
+      {"over, face by face", {.face_by_face = true, .extent = stretched}},
+      {"over, front and back faces", {.both_faces = true, .extent = stretched}},
+      {"maximum, front and back faces",
+       {.composition = Composition::maximum, .both_faces = true, .extent = of_cubes}},
+      {"over, blending disabled", {.replaces = true, .discards = false, .extent = stretched}},
+      {"over, blending disabled, front and back faces",
+       {.replaces = true, .writes_depth = true, .discards = false, .both_faces = true, .extent = stretched}},
+      {"maximum, blending disabled",
+       {.composition = Composition::maximum, .replaces = true, .discards = false, .extent = of_cubes}},
+      {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
+      {"minimum", {.composition = Composition::minimum, .extent = of_cubes}},
+      {"maximum, parallel projection",
+       {.composition = Composition::maximum, .parallel = true, .extent = of_cubes}}};
 }
 
 TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
@@ -81,6 +88,47 @@ TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
     }
     EXPECT_LT(psnr(scene.frame(false, 20), scene.frame(false, 110)), 30) << "the angle changes nothing";
   }
+}
+
+TEST(Proxies, WithoutBlendingDepthIsThatOfTheBox) {
+  ProxyScene scene({.replaces = true, .writes_depth = true, .discards = false});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  const auto depth_after = [&](bool under) {
+    scene.frame(under, 20, 0.99F);
+    constexpr GLsizei size = GlApplication::size;
+    std::vector<float> depth(std::size_t(size) * size);
+    scene.app->gl().ReadPixels(0, 0, size, size, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+    return depth;
+  };
+  const auto under = depth_after(true);
+  EXPECT_EQ(scene.app->substituted(), 1U) << scene.app->last_reason();
+  EXPECT_TRUE(under == depth_after(false));
+  EXPECT_NE(*std::min_element(under.begin(), under.end()), *std::max_element(under.begin(), under.end()));
+}
+
+TEST(Proxies, WithoutBlendingWhatCannotBeKnownIsNotSubstituted) {
+  const std::vector<Kind> left = {
+      {"whichever face is drawn last is left", {.replaces = true, .discards = false, .both_faces = true}},
+      {"what is discarded replaces nothing", {.replaces = true}}};
+  for (const Kind& kind : left) {
+    ProxyScene scene(kind.style);
+    ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+    const auto under = scene.frame(true, 20);
+    EXPECT_EQ(scene.app->substituted(), 0U) << kind.name;
+    EXPECT_THAT(scene.app->last_reason(), ::testing::HasSubstr("blending is disabled")) << kind.name;
+    EXPECT_TRUE(under == scene.frame(false, 20)) << kind.name;
+  }
+}
+
+TEST(Proxies, BlendingMayBeSwitchedBetweenFrames) {
+  ProxyScene scene({.discards = false});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  for (const bool disabled : {false, true, true, false}) {
+    scene.caster().style.replaces = disabled;
+    const auto under = scene.frame(true, 20);
+    EXPECT_GE(psnr(under, scene.frame(false, 20)), 38) << (disabled ? "disabled" : "enabled");
+  }
+  EXPECT_EQ(scene.app->substituted(), 4U) << scene.app->last_reason();
 }
 
 TEST(Proxies, BackFacesThatAreDrawnLaterAreSeen) {

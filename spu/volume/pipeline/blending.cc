@@ -43,6 +43,11 @@ std::optional<std::string> read_front_to_back(const Factors& alpha, bool written
   return "the slices blend front to back, but their alpha does not";
 }
 
+/// As OpenGL begins with.
+bool replaces(GLint equation, const Factors& factors) {
+  return equation == GL_FUNC_ADD && factors.source == GL_ONE && factors.destination == GL_ZERO;
+}
+
 std::optional<std::string> read_colour(GLint equation, const Factors& factors, Blending& blending) {
   if (const auto op = extremum(equation)) {
     blending.op = *op;
@@ -113,7 +118,14 @@ std::optional<std::string> read_blending(const DispatchTable& gl, const Target& 
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
   const bool alpha_written = mask[3] && target.alpha_bits > 0;
-  if (auto reason = read_colour(integer(gl, GL_BLEND_EQUATION_RGB), colour, blending)) return reason;
+  const GLint equation = integer(gl, GL_BLEND_EQUATION_RGB);
+  blending.replaces = !gl.IsEnabled(GL_BLEND) ||
+                      (replaces(equation, colour) && (!alpha_written || replaces(alpha_equation, alpha)));
+  if (blending.replaces) {
+    blending.premultiplied = true;
+    return std::nullopt;
+  }
+  if (auto reason = read_colour(equation, colour, blending)) return reason;
   if (blending.front_to_back != FrontToBack::no) {
     if (alpha_equation != GL_FUNC_ADD) return "the slices blend front to back, but their alpha does not";
     return read_front_to_back(alpha, alpha_written, blending);

@@ -29,10 +29,14 @@ enum class FrontToBack {
   transparency,  ///< DST_ALPHA, ONE with ZERO, 1 - SRC_ALPHA: alpha is what has not
 };
 
+/// Why slices are not substituted where a fragment replaces what is there.
+constexpr const char* slices_replace = "blending is disabled: what is drawn replaces what is there";
+
 struct Blending {
   volume::Operator op = volume::Operator::over;
   FrontToBack front_to_back = FrontToBack::no;
   bool premultiplied = false;  ///< the fragment's colour is taken as it is, not times its alpha
+  bool replaces = false;       ///< blending is disabled, or ONE, ZERO: a fragment replaces what is there
   AlphaBlending alpha;
 
   /// The image's own alpha is not what the slices leave: a second image is needed for it.

@@ -292,6 +292,8 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   if (!pipeline.target.normalised && !pipeline.target.floating)
     return "the framebuffer's colours are neither normalised nor float";
   if (auto reason = read_blending(gl, pipeline.target, pipeline.blending)) return reason;
+  if (pipeline.blending.replaces && !context.core && gl.IsEnabled(GL_ALPHA_TEST))
+    return "fragments that the alpha test takes away replace nothing";
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
   if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
@@ -321,8 +323,11 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
     reason = read_fixed_function_textures(context, stacks, pipeline);
   }
   if (pipeline.volume.texture == 0) return NotAVolume{};
-  if (!gl.IsEnabled(GL_BLEND)) reason = "blending is disabled: what is drawn replaces what is there";
+  // One fragment may be a whole ray, but only of a program.
+  const bool may_be_rays = pipeline.program != 0 && !pipeline.stack;
+  if (!may_be_rays && !gl.IsEnabled(GL_BLEND)) reason = slices_replace;
   if (!reason) reason = read_surroundings(context, pipeline);
+  if (!reason && !may_be_rays && pipeline.blending.replaces) reason = slices_replace;
   // One textured quad is no sign of a volume: nothing is said of it.
   if (reason && pipeline.stack) return NotAVolume{};
   if (reason) return LeftAlone{pipeline.volume.texture, *reason};

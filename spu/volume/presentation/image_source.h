@@ -3,6 +3,7 @@
 // error or the time that was asked for.
 #pragma once
 
+#include "spu/volume/geometry/polygon.h"
 #include "spu/volume/known_volumes/known_volume.h"
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/proxy/ray_caster_stage.h"
@@ -36,7 +37,8 @@ struct ImageToShow {
   const Pipeline& pipeline;
   ImageRequest& image;
   KnownVolume& volume;
-  bool compared_whole = false;  ///< before it is shown
+  bool compared_whole = false;            ///< before it is shown
+  const ObservedPolygons* box = nullptr;  ///< of a ray caster: what its fragments cover
 };
 
 class ImageSource {

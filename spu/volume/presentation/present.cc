@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
+#include "spu/volume/presentation/own_program.h"
+#include "spu/volume/refusal/refusal.h"
 #include "volume/blending_operator.h"
 
 namespace understudy::spu {
@@ -29,15 +30,6 @@ constexpr const char* fragment_source =
     "  if (first_as_alpha) colour.a = colour.r;\n"
     "}\n";
 
-GLuint compile(const DispatchTable& gl, GLenum stage, bool core, const char* source) {
-  const std::string text = std::string(core ? "#version 150\n" : "#version 130\n") + source;
-  const char* pointer = text.c_str();
-  const GLuint shader = gl.CreateShader(stage);
-  gl.ShaderSource(shader, 1, &pointer, nullptr);
-  gl.CompileShader(shader);
-  return shader;
-}
-
 /// Blending that puts an image made with `op` where its samples would have gone one by one.
 void set_blending(const DispatchTable& gl, volume::Operator op) {
   gl.BlendEquation(op == volume::Operator::max ? GL_MAX : op == volume::Operator::min ? GL_MIN : GL_FUNC_ADD);
@@ -49,21 +41,8 @@ void set_blending(const DispatchTable& gl, volume::Operator op) {
 bool Presenter::prepare() {
   if (program_ != 0) return true;
   const DispatchTable& gl = *context_.gl;
-  const GLuint vertex = compile(gl, GL_VERTEX_SHADER, context_.core, vertex_source);
-  const GLuint fragment = compile(gl, GL_FRAGMENT_SHADER, context_.core, fragment_source);
-  program_ = gl.CreateProgram();
-  gl.AttachShader(program_, vertex);
-  gl.AttachShader(program_, fragment);
-  gl.DeleteShader(vertex);
-  gl.DeleteShader(fragment);
-  gl.LinkProgram(program_);
-  GLint linked = 0;
-  gl.GetProgramiv(program_, GL_LINK_STATUS, &linked);
-  if (!linked) {
-    gl.DeleteProgram(program_);
-    program_ = 0;
-    return false;
-  }
+  program_ = link_program(context_, vertex_source, fragment_source);
+  if (program_ == 0) return false;
   origin_ = gl.GetUniformLocation(program_, "origin");
   first_as_alpha_ = gl.GetUniformLocation(program_, "first_as_alpha");
   shown_ = gl.GetUniformLocation(program_, "shown");
@@ -126,7 +105,7 @@ void Presenter::present(const volume::ImageView& image, const Blending& blending
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
   SavedState saved(context_);
-  if (!prepare()) return;
+  if (!prepare()) throw Refusal{"the driver does not link the program that images are drawn with"};
   saved.borrow_texture(GL_TEXTURE_2D, 0);
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, texture_);

@@ -19,7 +19,8 @@ class Presenter {
   explicit Presenter(const GlContext& context) : context_(context) {}
 
   /// Colour and alpha as the slices would have left them. `alpha` is the image of alpha_as_colour() where
-  /// `blending.alpha_stands_apart()`.
+  /// `blending.alpha_stands_apart()`. Throws Refusal, and has drawn nothing then, where the driver does not
+  /// link the program.
   void present(const volume::ImageView& image, const Blending& blending, const Target& target,
                const volume::ImageView* alpha);
 

@@ -9,6 +9,7 @@
 #include "spu/report/optimization.h"
 #include "spu/volume/presentation/image_source.h"
 #include "spu/volume/presentation/present.h"
+#include "spu/volume/presentation/replace.h"
 #include "spu/volume/session/render_session.h"
 #include "volume/frame_counts.h"
 
@@ -20,7 +21,7 @@ class Presentation {
   using Check = std::function<void(const volume::ImageView&)>;
 
   Presentation(const GlContext& context, RenderSession& session, ImageSource& source, FrameAccount& account)
-      : session_(session), source_(source), account_(account), presenter_(context) {}
+      : session_(session), source_(source), account_(account), presenter_(context), replacer_(context) {}
 
   /// Renders the request and puts the image into the application's framebuffer. Needs the session's lock.
   /// Throws what `check` and the service throw; nothing is shown then.
@@ -35,6 +36,7 @@ class Presentation {
   ImageSource& source_;
   FrameAccount& account_;
   Presenter presenter_;
+  Replacer replacer_;
   std::uint64_t saved_ = 0;
 };
 

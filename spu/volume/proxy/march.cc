@@ -57,9 +57,10 @@ bool multiplies_by_alpha(const Pipeline& pipeline) {
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
 
 /// Whether all fragments of a ray add up to the nearest one: if faces are not culled, the front and the back
-/// fragment are blended.
-bool only_nearest_shows(FieldProbe& probe, const Ray& ray, const std::vector<float>& values,
-                        const std::vector<Rgba>& nearest) {
+/// fragment are blended. Where fragments replace what is there, the nearest one is left (RayCasterStage).
+bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
+                        const std::vector<float>& values, const std::vector<Rgba>& nearest) {
+  if (measured.run.pipeline().blending.replaces) return true;
   const auto sums = probe.sums_at(ray.x, ray.y, values);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (!(largest_difference(sums[i], reached(nearest[i]) ? nearest[i] : Rgba{}) <= 1e-6F)) return false;
@@ -126,7 +127,7 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   if (!probe_.culls_faces() &&
       (blending.op == volume::Operator::min || blending.alpha.op == volume::Operator::min))
     return "front and back faces of the box are drawn under a minimum";
-  if (!only_nearest_shows(probe_, {middle[0], middle[1]}, values_, through_)) return back_faces_show;
+  if (!only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_)) return back_faces_show;
   // Whatever the way through it, one value has one colour: samples are not composed.
   march_.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -394,7 +395,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const auto shows_table = [&](const Ray& ray) {
     const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
     const auto fragments = probe.at(ray.x, ray.y, values);
-    if (!only_nearest_shows(probe, ray, values, fragments)) return false;
+    if (!only_nearest_shows(measured, probe, ray, values, fragments)) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!expected(fragments[i], values[i], samples)) return false;
     }

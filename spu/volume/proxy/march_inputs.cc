@@ -67,6 +67,7 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   inputs.fixed = {measured.range[0], measured.range[1], pipeline.blending.premultiplied ? 1.0F : 0.0F,
                   float(measured.texture.base)};
   inputs.fixed.push_back(pipeline.target.floating ? 1.0F : 0.0F);
+  inputs.fixed.push_back(pipeline.blending.replaces ? 1.0F : 0.0F);
   // Which faces make fragments shows only on rays that are looked at, as what varies is.
   GLint culled = 0;
   GLint front = 0;

@@ -109,6 +109,18 @@ struct Unlikeness {
   double mean_square = 0;
 };
 
+/// Why fragments that replace what is there may leave another image than the nodes'; null: they leave theirs.
+std::optional<Refusal> refusal_of_replacing(const GlContext& context, const Pipeline& pipeline,
+                                            const ProgramFindings& says) {
+  if (!pipeline.blending.replaces) return std::nullopt;
+  // Where both were drawn, what is left must be the nearer one.
+  const bool nearest_is_left =
+      context.gl->IsEnabled(GL_CULL_FACE) || (pipeline.depth_test && pipeline.depth_write);
+  if (!nearest_is_left) return "front and back faces of the box are drawn, and blending is disabled";
+  if (!says.facts.discards.empty()) return "fragments are discarded, and blending is disabled";
+  return std::nullopt;
+}
+
 Refusal no_coordinate() {
   return "no output of the vertex shader is a texture coordinate over the whole box";
 }
@@ -216,6 +228,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::ray_caster);
   if (auto refusal = refusal_of_ray_caster(says)) throw Refusal{std::move(*refusal)};
+  if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
   draw.tables_of_samples = says.ray->tables_of_samples;
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();

@@ -170,6 +170,8 @@ RecognisedRun Recogniser::observe(const Run& run, const std::string& known_coord
   if (record != nullptr) {
     const ProgramStages& parts = programs_.stages(pipeline.program, *record);
     seen.fragment.inputs = parts.inputs;
+    if (pipeline.blending.replaces && !(record->vertex_shader && may_be_box(run, parts)))
+      throw Refusal{slices_replace};
     if (!parts.trouble.empty() && !may_be_box(run, parts)) throw Refusal{parts.trouble};
     if (record->vertex_shader) {
       observe_shader(run, parts, known_coordinate, seen);
@@ -195,6 +197,7 @@ void Recogniser::observe_shader(const Run& run, const ProgramStages& stages,
     seen.capture = std::move(capture);
     return;
   }
+  if (run.pipeline().blending.replaces) throw Refusal{slices_replace};
   if (!stages.trouble.empty()) throw Refusal{stages.trouble};
   if (!capture.fit) throw Refusal{"no output of the vertex shader is an affine map of the position"};
   seen.polygons = std::move(capture.polygons);

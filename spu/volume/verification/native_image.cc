@@ -20,6 +20,7 @@ class ColourBlending {
     gl_.GetIntegerv(GL_BLEND_DST_ALPHA, &factors_[3]);
     gl_.GetIntegerv(GL_BLEND_EQUATION_RGB, &equations_[0]);
     gl_.GetIntegerv(GL_BLEND_EQUATION_ALPHA, &equations_[1]);
+    if (blending.replaces) return;
     gl_.BlendEquation(GLenum(equations_[0]));
     if (blending.front_to_back != FrontToBack::no) {
       gl_.BlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);

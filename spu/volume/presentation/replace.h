@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where blending is disabled, the box of a ray caster is drawn again, clip position by clip position, and its
+// fragments take the image's pixels: they cover, hide and are hidden as the application's fragments would.
+#pragma once
+
+#include "dispatch/table.h"
+#include "spu/volume/geometry/polygon.h"
+#include "volume/image.h"
+
+namespace understudy::spu {
+
+struct GlContext;
+
+/// Holds one texture, one program, one buffer and one vertex array of the context it was made in.
+class Replacer {
+ public:
+  explicit Replacer(const GlContext& context) : context_(context) {}
+
+  /// Draws the triangles of `box` under the application's scissor, masks, depth test and culling. A fragment
+  /// outside of `image` becomes nothing: colour and alpha 0. Throws Refusal, and has drawn nothing then, where
+  /// the driver does not link the program.
+  void replace(const volume::ImageView& image, const ObservedPolygons& box);
+
+ private:
+  bool prepare();
+  void show(const volume::ImageView& image) const;
+  void draw(const ObservedPolygons& box) const;
+
+  const GlContext& context_;
+  GLuint program_ = 0;
+  GLuint texture_ = 0;
+  GLuint vertices_ = 0;
+  GLuint vertex_array_ = 0;
+  GLint origin_ = -1;  ///< locations of the uniforms that say where the image lies, in pixels
+  GLint extent_ = -1;
+};
+
+}  // namespace understudy::spu

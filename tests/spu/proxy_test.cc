@@ -245,6 +245,20 @@ TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
   EXPECT_EQ(scene.app->substituted(), 2U) << scene.app->last_reason();
 }
 
+TEST(Proxies, RaysThatDoNotEndAtGeometryInTheBoxAreLeft) {
+  for (const bool replaces : {false, true}) {
+    ProxyScene scene({.replaces = replaces, .discards = !replaces});
+    ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+    constexpr float through_the_middle = 0.877F;
+    for (const float wall : {0.0F, 0.5F, through_the_middle, 0.99F}) {
+      const auto under = scene.frame(true, 25, wall);
+      EXPECT_GE(psnr(under, scene.frame(false, 25, wall)), 38) << "wall at " << wall;
+    }
+    // Without blending the box is tested as the application's is.
+    EXPECT_EQ(scene.app->substituted(), replaces ? 4U : 3U) << scene.app->last_reason();
+  }
+}
+
 TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
   struct Refusal {
     const char* reason;

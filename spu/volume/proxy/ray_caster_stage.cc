@@ -12,6 +12,8 @@
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "spu/report/optimization.h"
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/geometry_inside.h"
 #include "spu/volume/proxy/ray_ends.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
@@ -109,6 +111,19 @@ struct Unlikeness {
   double mean_square = 0;
 };
 
+/// Whether the program, with the uniforms it has, fetches from a depth texture.
+bool fetches_depth(const GlContext& context, const Pipeline& pipeline, const program::StageFacts& facts) {
+  const DispatchTable& gl = *context.gl;
+  return std::ranges::any_of(pipeline.others, [&](const SampledTexture& texture) {
+    if (!is_depth_texture(gl, texture)) return false;
+    return std::ranges::any_of(facts.fetches, [&](const program::Fetch& fetch) {
+      const bool known = !fetch.sampler.empty() && fetch.sampler.find('*') == std::string::npos;
+      return !known ||
+             gl.GetUniformLocation(pipeline.program, fetch.sampler.c_str()) == texture.sampler_location;
+    });
+  });
+}
+
 /// Why fragments that replace what is there may leave another image than the nodes'; null: they leave theirs.
 std::optional<Refusal> refusal_of_replacing(const GlContext& context, const Pipeline& pipeline,
                                             const ProgramFindings& says) {
@@ -138,6 +153,7 @@ struct RayCasterStage::Draw {
   std::vector<CoordinateSpace> spaces{};
   Cuts cuts{};
   bool eye_inside = false;
+  bool ends_at_geometry = false;  ///< rays end at the opaque geometry, whose depth the program samples
   std::span<const std::string> tables_of_samples{};
 
   MarchContext measured() const {
@@ -229,6 +245,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::ray_caster);
   if (auto refusal = refusal_of_ray_caster(says)) throw Refusal{std::move(*refusal)};
   if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
+  draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
@@ -269,7 +286,13 @@ volume::RenderRequest RayCasterStage::compose(const Draw& draw, const ProxyBox& 
   const SentVolume& sent = draw.known.sent;
   volume::RenderRequest request =
       composer_.compose(pipeline, box.camera, box.region, sent.description, sent.texture.filter);
+  // The box that an image replaces its pixels by is tested against depth itself.
+  if (pipeline.blending.replaces && !draw.ends_at_geometry) return request;
   composer_.hide_behind_geometry(pipeline, request);
+  const volume::Matrix4& texture_to_clip = box.camera.texture_to_clip;
+  if (!draw.ends_at_geometry &&
+      geometry_inside(request, texture_to_clip, {texture_to_clip, box.region, box.cuts}))
+    throw Refusal{"opaque geometry stands in the ray caster's box, and rays do not end at it"};
   return request;
 }
 

@@ -37,6 +37,7 @@ struct MarchContext {
   ProbeSurfaces& surfaces;
   std::array<float, 2> range;     ///< of the texels' values
   bool clipped = false;           ///< rays begin or end at clipping planes
+  bool ends_at_geometry = false;  ///< at the opaque geometry, whose depth the program fetches
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

@@ -31,11 +31,6 @@ bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
   return bits > 0;
 }
 
-bool samples_depth(const GlContext& context, const Pipeline& pipeline) {
-  return std::any_of(pipeline.others.begin(), pipeline.others.end(),
-                     [&](const SampledTexture& texture) { return is_depth_texture(*context.gl, texture); });
-}
-
 FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
                        ProbeSurfaces& surfaces)
     : gl_(*context.gl),

@@ -106,7 +106,4 @@ class FieldProbe {
 /// Whether `texture` is a 2-D texture of depths.
 bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture);
 
-/// Whether the program samples a depth texture: it ends its rays at opaque geometry.
-bool samples_depth(const GlContext& context, const Pipeline& pipeline);
-
 }  // namespace understudy::spu

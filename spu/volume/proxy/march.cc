@@ -256,7 +256,7 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::R
   march.steps = rule;
   march.steps_seen = seen;
   // The step that reaches the opaque geometry is usually taken before it is noticed.
-  march.steps.past_depth = samples_depth(measured_.context, measured_.run.pipeline()) ? 1 : 0;
+  march.steps.past_depth = measured_.ends_at_geometry ? 1 : 0;
   // Planes end rays as opaque geometry does; where no ray leaves by one, both images are alike.
   for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
     if (!measured_.clipped && past_planes != march.steps.past_depth) continue;

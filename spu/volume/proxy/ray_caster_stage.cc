@@ -153,11 +153,18 @@ struct RayCasterStage::Draw {
   std::vector<CoordinateSpace> spaces{};
   Cuts cuts{};
   bool eye_inside = false;
-  bool ends_at_geometry = false;  ///< rays end at the opaque geometry, whose depth the program samples
+  bool ends_at_geometry = false;  ///< as in MarchContext
   std::span<const std::string> tables_of_samples{};
 
   MarchContext measured() const {
-    return {context,       run, stages, known.sent.texture, surfaces, known.sent.range, !cuts.clipping.empty(),
+    return {context,
+            run,
+            stages,
+            known.sent.texture,
+            surfaces,
+            known.sent.range,
+            !cuts.clipping.empty(),
+            ends_at_geometry,
             &*seen.capture};
   }
 };

@@ -165,18 +165,18 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {
-    take_comparison(stages.verifier.verify({run, request, image.uncut_window.value_or(request.window),
-                                            image.discards_by_place, image.eye_inside, volume.frames},
-                                           shown, volume.verified, *volume.counters),
-                    volume, session_->ledger().frames());
+    auto comparison = stages.verifier.verify({run, request, image.uncut_window.value_or(request.window),
+                                              image.discards_by_place, image.eye_inside, volume.frames},
+                                             shown, volume.verified, *volume.counters);
+    if (comparison && image.background_alone) comparison->difference.anything_visible = false;
+    take_comparison(comparison, volume, session_->ledger().frames());
   };
   const auto& capture = recognised.seen.capture;
   const volume::FrameCounts counts = stages.presentation.show(
       service, {run.pipeline(), image, volume, compared_whole, capture ? &capture->polygons : nullptr}, check);
   run.shown = true;
   // Where the image replaces what is there, it is drawn with the box, and that with its depth.
-  if (!run.pipeline().blending.replaces &&
-      stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
+  if (!image.replaces_pixels && stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
     depth_watched_ = run.volume_texture();
     chain().set_phase(Phase::depth_deferred);
   }

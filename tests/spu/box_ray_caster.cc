@@ -22,7 +22,8 @@ constexpr const char* fragment_source =
     "uniform sampler3D field, gradients; uniform sampler1D table; uniform sampler2D opaque, noise;\n"
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
-    "uniform vec2 window; uniform float past_planes; uniform bool discards;\n"
+    "uniform vec2 window; uniform float past_planes; uniform bool discards, over_background;\n"
+    "uniform vec3 background;\n"
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
@@ -108,6 +109,7 @@ constexpr const char* fragment_source =
     "  if (composition == 4) sum = vec4(vec3(min(grey, 1.0)), 1.0);\n"
     "  sum.a = min(sum.a, 1.0);\n"
     "  colour = straight && sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : sum;\n"
+    "  if (over_background) colour = vec4(sum.rgb + (1.0 - sum.a) * background, 1.0);\n"
     "}\n";
 
 constexpr const char* wall_vertices =
@@ -416,6 +418,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("table"), 1);
   gl().Uniform1i(at("opaque"), 2);
   gl().Uniform1i(at("noise"), 3);
+  gl().Uniform1i(at("over_background"), style.background ? 1 : 0);
+  gl().Uniform3fv(at("background"), 1, style.background.value_or(std::array<float, 3>{}).data());
   gl().Uniform1i(at("composition"), int(style.composition));
   gl().Uniform1i(at("straight"), style.premultiplied ? 0 : 1);
   gl().Uniform1i(at("divided"), style.divided ? 1 : 0);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gl_application.h"
@@ -18,6 +19,8 @@ struct MarchStyle {
   bool premultiplied = true;  ///< what the shader writes, and the blend function
   bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha once more
   bool replaces = false;      ///< blending is disabled
+  /// The shader puts its rays over this colour, and writes an alpha of 1.
+  std::optional<std::array<float, 3>> background{};
   bool writes_depth = false;
   bool discards = true;       ///< rays without a sample
   bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length

@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "box_ray_caster.h"
 #include "spu/report/counters.h"
+#include "spu/volume/proxy/background_removal.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/sample_places.h"
 #include "spu/volume/proxy/step_density.h"
 #include "spu/volume/proxy/step_fit.h"
 #include "spu/volume/proxy/table_contents.h"
+#include "volume/matrix.h"
 #include "volume/sampling.h"
 
 namespace understudy::spu::testing {
@@ -64,6 +67,23 @@ std::vector<Kind> kinds() {
       {"over, blending disabled", {.replaces = true, .discards = false, .extent = stretched}},
       {"over, blending disabled, front and back faces",
        {.replaces = true, .writes_depth = true, .discards = false, .both_faces = true, .extent = stretched}},
+      {"over a background of the shader's own",
+       {.background = {{0.9F, 0.3F, 0.5F}}, .discards = false, .extent = stretched}},
+      {"over black in the shader, straight alpha",
+       {.premultiplied = false, .background = {{0, 0, 0}}, .discards = false, .extent = stretched}},
+      {"over white in the shader, blending disabled, front and back faces",
+       {.replaces = true,
+        .background = {{1, 1, 1}},
+        .writes_depth = true,
+        .discards = false,
+        .both_faces = true,
+        .extent = stretched}},
+      {"over a background of the shader's own, front and back faces",
+       {.background = {{0.2F, 0.7F, 0.4F}},
+        .writes_depth = true,
+        .discards = false,
+        .both_faces = true,
+        .extent = of_cubes}},
       {"maximum, blending disabled",
        {.composition = Composition::maximum, .replaces = true, .discards = false, .extent = of_cubes}},
       {"maximum", {.composition = Composition::maximum, .extent = of_cubes}},
@@ -116,6 +136,36 @@ TEST(Proxies, WithoutBlendingWhatCannotBeKnownIsNotSubstituted) {
     const auto under = scene.frame(true, 20);
     EXPECT_EQ(scene.app->substituted(), 0U) << kind.name;
     EXPECT_THAT(scene.app->last_reason(), ::testing::HasSubstr("blending is disabled")) << kind.name;
+    EXPECT_TRUE(under == scene.frame(false, 20)) << kind.name;
+  }
+}
+
+TEST(Proxies, TheShadersBackgroundMayChangeBetweenFrames) {
+  ProxyScene scene({.discards = false});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  std::optional<std::array<float, 3>>& background = scene.caster().style.background;
+  for (const auto& colour :
+       {std::optional<std::array<float, 3>>(), {{1, 1, 1}}, {{0, 0.25F, 0.5F}}, {{0, 0, 0}}}) {
+    background = colour;
+    const auto under = scene.frame(true, 20);
+    EXPECT_GE(psnr(under, scene.frame(false, 20)), 38) << (colour ? (*colour)[2] : -1);
+  }
+  scene.caster().set_table(*scene.app, 0.5F);
+  const auto under = scene.frame(true, 35);
+  EXPECT_GE(psnr(under, scene.frame(false, 35)), 38) << "another table";
+  EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
+}
+
+TEST(Proxies, OpaqueFragmentsWhoseBoxIsNotSortedAreLeft) {
+  const std::vector<Kind> left = {
+      {"both are opaque", {.background = {{1, 1, 1}}, .discards = false, .both_faces = true}},
+      {"the others are opaque", {.background = {{1, 1, 1}}}}};
+  for (const Kind& kind : left) {
+    ProxyScene scene(kind.style);
+    ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+    const auto under = scene.frame(true, 20);
+    EXPECT_EQ(scene.app->substituted(), 0U) << kind.name;
+    EXPECT_THAT(scene.app->last_reason(), ::testing::HasSubstr(kind.name));
     EXPECT_TRUE(under == scene.frame(false, 20)) << kind.name;
   }
 }
@@ -310,6 +360,70 @@ TEST(TableContents, TellACorrectedTableFromAnEditedOne) {
   EXPECT_FALSE(only_corrected(then, {}, factor));
   EXPECT_FALSE(only_corrected(std::vector{TableContents{3, {}}}, std::vector{TableContents{3, {}}}, factor))
       << "of which nothing is known";
+}
+
+/// What rays of so many samples, each of opacity `alpha`, differ from the background by.
+std::vector<volume::Vec3> differences(const volume::Vec3& contrast, double alpha,
+                                      const std::vector<double>& samples) {
+  std::vector<volume::Vec3> all;
+  for (const double n : samples) {
+    volume::Vec3 difference = contrast;
+    for (double& channel : difference) channel = double(float(channel * (1 - std::pow(1 - alpha, n))));
+    all.push_back(difference);
+  }
+  return all;
+}
+
+TEST(BackgroundRemoval, TellsTheOpacityOfSamplesFromColours) {
+  const std::vector<double> samples{1, 2, 3, 6, 14, 40};
+  for (const double alpha : {1.0, 0.999, 0.7, 0.2, 0.03, 0.004, 0.0005}) {
+    for (const volume::Vec3 full : {volume::Vec3{0.9, 0.1, -0.4}, volume::Vec3{-0.01, 0.02, 0.005}}) {
+      const BackgroundContrast contrast = contrast_of(samples, differences(full, alpha, samples));
+      // What a ray of 20 samples hides: by its opacity, and that by the contrast.
+      const auto of_twenty = differences(full, alpha, {20});
+      EXPECT_NEAR(opacity_of(contrast, of_twenty.front()), 1 - std::pow(1 - alpha, 20),
+                  0.002 + 3e-6 / (alpha * volume::length(full)))
+          << alpha << " of " << full[0];
+    }
+  }
+}
+
+TEST(BackgroundRemoval, LeavesOutRaysThatEndEarly) {
+  const std::vector<double> samples{1, 2, 3, 6, 14, 40};
+  auto seen = differences({0.5, 0.5, -0.2}, 0.3, samples);
+  seen[4] = seen[5] = seen[3];  // programs stop where little light is let through
+  const BackgroundContrast contrast = contrast_of(samples, seen);
+  EXPECT_NEAR(contrast.alpha, 0.3, 1e-3);
+  EXPECT_NEAR(contrast.full[0], 0.5, 1e-3);
+}
+
+TEST(BackgroundRemoval, GivesBackWhatWasPutOverTheBackground) {
+  const ShaderBackground background{{0.2, 0.9, 0.4}, 1};
+  const volume::Rgba ray{0.3F, 0.1F, 0.05F, 0.4F};  // of samples of the colour (0.75, 0.25, 0.125)
+  const BackgroundContrast contrast{{0.75 - 0.2, 0.25 - 0.9, 0.125 - 0.4}, 0.1};
+  const volume::Vec3 seen_difference =
+      volume::subtract(colour_of(over_background(background, ray)), background.colour);
+  const volume::Rgba seen =
+      without_background(background, opacity_of(contrast, seen_difference), over_background(background, ray));
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(seen[c], ray[c], 1e-6) << c;
+}
+
+TEST(BackgroundRemoval, TellsTheOpacityOfTwoValues) {
+  const BackgroundContrast near{{0.5, -0.2, 0.1}, 0.1};
+  const BackgroundContrast far{{-0.1, 0.6, 0.3}, 0.2};
+  // Opacity 0.4 before 0.7.
+  const volume::Vec3 seen = volume::add(volume::scale(near.full, 0.4), volume::scale(far.full, 0.6 * 0.7));
+  ASSERT_TRUE(opacity_of(near, far, seen).has_value());
+  EXPECT_NEAR(*opacity_of(near, far, seen), 1 - 0.6 * 0.3, 1e-12);
+  const BackgroundContrast nothing;
+  EXPECT_NEAR(opacity_of(nothing, far, volume::scale(far.full, 0.7)).value_or(0), 0.7, 1e-12);
+  const BackgroundContrast along_near{{0.25, -0.1, 0.05}, 0.1};
+  EXPECT_FALSE(opacity_of(near, along_near, seen).has_value());
+}
+
+TEST(BackgroundRemoval, AValueThatShowsNothingHasNoContrast) {
+  const std::vector<double> samples{1, 2, 3};
+  EXPECT_FALSE(contrast_of(samples, std::vector<volume::Vec3>(3, volume::Vec3{1e-7, 0, 0})).visible());
 }
 
 TEST(StepFit, TellsCountsFromOpacities) {

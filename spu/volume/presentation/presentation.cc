@@ -74,7 +74,7 @@ void Presentation::save(const ImageToShow& what, const volume::ImageView& shown)
 void Presentation::present(compositor::RenderService& service, const ImageToShow& what, RenderedImage& image) {
   const Blending& blending = what.pipeline.blending;
   const Target& target = what.pipeline.target;
-  if (blending.replaces) return replacer_.replace(image.shown, *what.box);
+  if (what.image.replaces_pixels) return replacer_.replace(image.shown, what.image.no_ray, *what.box);
   if (!blending.alpha_stands_apart()) return presenter_.present(image.shown, blending, target, nullptr);
   if (what.image.ray_caster) {
     const volume::Image alpha = alpha_of_fragments(image.shown, blending.alpha);

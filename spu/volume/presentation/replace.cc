@@ -19,11 +19,13 @@ constexpr const char* pixel_of_image_source =
     "uniform sampler2D image;\n"
     "uniform ivec2 origin;\n"
     "uniform ivec2 extent;\n"
+    "uniform vec4 otherwise;\n"
     "out vec4 colour;\n"
     "void main() {\n"
     "  ivec2 at = ivec2(gl_FragCoord.xy) - origin;\n"
     "  bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, extent));\n"
     "  colour = inside ? texelFetch(image, at, 0) : vec4(0.0);\n"
+    "  if (colour == vec4(0.0)) colour = otherwise;\n"
     "}\n";
 
 /// What the application has switched on and SavedState switches off, but for blending, which is disabled.
@@ -39,13 +41,14 @@ bool Replacer::prepare() {
   if (program_ == 0) return false;
   origin_ = gl.GetUniformLocation(program_, "origin");
   extent_ = gl.GetUniformLocation(program_, "extent");
+  otherwise_ = gl.GetUniformLocation(program_, "otherwise");
   gl.GenTextures(1, &texture_);
   gl.GenBuffers(1, &vertices_);
   gl.GenVertexArrays(1, &vertex_array_);
   return true;
 }
 
-void Replacer::show(const volume::ImageView& image) const {
+void Replacer::show(const volume::ImageView& image, const volume::Rgba& otherwise) const {
   const DispatchTable& gl = *context_.gl;
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, texture_);
@@ -56,6 +59,7 @@ void Replacer::show(const volume::ImageView& image) const {
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, empty ? 1 : image.rect.width, empty ? 1 : image.rect.height, 0,
                 GL_RGBA, GL_FLOAT, empty ? nothing.data() : image.rgba.data());
   gl.UseProgram(program_);
+  gl.Uniform4fv(otherwise_, 1, otherwise.data());
   gl.Uniform2i(origin_, image.rect.x, image.rect.y);
   gl.Uniform2i(extent_, empty ? 0 : image.rect.width, empty ? 0 : image.rect.height);
 }
@@ -77,7 +81,8 @@ void Replacer::draw(const ObservedPolygons& box) const {
   gl.DrawArrays(GL_TRIANGLES, 0, GLsizei(positions.size()));
 }
 
-void Replacer::replace(const volume::ImageView& image, const ObservedPolygons& box) {
+void Replacer::replace(const volume::ImageView& image, const volume::Rgba& otherwise,
+                       const ObservedPolygons& box) {
   const DispatchTable& gl = *context_.gl;
   std::array<GLboolean, 4> mask{};
   GLboolean depth_mask = GL_FALSE;
@@ -86,7 +91,7 @@ void Replacer::replace(const volume::ImageView& image, const ObservedPolygons& b
   SavedState saved(context_);
   if (!prepare()) throw Refusal{"the driver does not link the program that images are drawn with"};
   saved.borrow_texture(GL_TEXTURE_2D, 0);
-  show(image);
+  show(image, otherwise);
   for (const GLenum capability : kept) {
     if (saved.was_enabled(capability)) gl.Enable(capability);
   }

@@ -17,13 +17,13 @@ class Replacer {
   explicit Replacer(const GlContext& context) : context_(context) {}
 
   /// Draws the triangles of `box` under the application's scissor, masks, depth test and culling. A fragment
-  /// outside of `image` becomes nothing: colour and alpha 0. Throws Refusal, and has drawn nothing then, where
-  /// the driver does not link the program.
-  void replace(const volume::ImageView& image, const ObservedPolygons& box);
+  /// outside of `image`, or where that is all zero, becomes `otherwise`. Throws Refusal, and has drawn nothing
+  /// then, where the driver does not link the program.
+  void replace(const volume::ImageView& image, const volume::Rgba& otherwise, const ObservedPolygons& box);
 
  private:
   bool prepare();
-  void show(const volume::ImageView& image) const;
+  void show(const volume::ImageView& image, const volume::Rgba& otherwise) const;
   void draw(const ObservedPolygons& box) const;
 
   const GlContext& context_;
@@ -33,6 +33,7 @@ class Replacer {
   GLuint vertex_array_ = 0;
   GLint origin_ = -1;  ///< locations of the uniforms that say where the image lies, in pixels
   GLint extent_ = -1;
+  GLint otherwise_ = -1;
 };
 
 }  // namespace understudy::spu

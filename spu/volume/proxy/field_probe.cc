@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "spu/volume/context/context.h"
+#include "volume/matrix.h"
 
 namespace understudy::spu {
 namespace {
@@ -115,7 +117,53 @@ std::vector<volume::Rgba> FieldProbe::at(double x, double y, std::span<const flo
   return at_slope(x, y, values, 0);
 }
 
+void FieldProbe::remove(const ShaderBackground& background, std::vector<CountedPlace> rays) {
+  background_ = background;
+  counted_ = std::move(rays);
+  contrasts_.clear();
+}
+
+void FieldProbe::learn_contrasts(std::span<const float> values) {
+  std::vector<float> unknown;
+  for (const float value : values) {
+    if (contrasts_.try_emplace(value).second) unknown.push_back(value);
+  }
+  if (unknown.empty()) return;
+  std::vector<double> samples;
+  std::vector<std::vector<volume::Vec3>> differences(unknown.size());
+  for (const CountedPlace& ray : counted_) {
+    samples.push_back(ray.samples);
+    const std::vector<volume::Rgba> fragments = drawn_at(ray.x, ray.y, unknown, 0);
+    for (std::size_t i = 0; i < unknown.size(); ++i)
+      differences[i].push_back(volume::subtract(colour_of(fragments[i]), background_->colour));
+  }
+  for (std::size_t i = 0; i < unknown.size(); ++i)
+    contrasts_[unknown[i]] = contrast_of(samples, differences[i]);
+}
+
+void FieldProbe::remove_from(std::span<volume::Rgba> fragments, float value, float other) {
+  const std::array both{value, other};
+  learn_contrasts(both);
+  const BackgroundContrast& first = contrasts_[value];
+  const BackgroundContrast& second = contrasts_[other];
+  for (volume::Rgba& fragment : fragments) {
+    if (fragment[3] == no_fragment) continue;
+    const volume::Vec3 difference = volume::subtract(colour_of(fragment), background_->colour);
+    const auto opacity = value == other ? opacity_of(first, difference) : opacity_of(first, second, difference);
+    fragment =
+        opacity ? without_background(*background_, *opacity, fragment) : volume::Rgba{0, 0, 0, no_fragment};
+  }
+}
+
 std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<const float> values, float rise) {
+  std::vector<volume::Rgba> fragments = drawn_at(x, y, values, rise);
+  if (!background_) return fragments;
+  learn_contrasts(values);
+  for (std::size_t i = 0; i < values.size(); ++i) remove_from({&fragments[i], 1}, values[i], values[i]);
+  return fragments;
+}
+
+std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<const float> values, float rise) {
   // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all. They
   // lie in the middle of the viewport: near its rim some viewers discard fragments.
   const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
@@ -201,17 +249,25 @@ void FieldProbe::clear() {
 
 std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {
   show({value, value, value, value, value, value, value, value});
-  return in_place(0, first_row, viewport_[2], rows);
+  std::vector<volume::Rgba> fragments = in_place(0, first_row, viewport_[2], rows);
+  if (background_) remove_from(fragments, value, value);
+  return fragments;
 }
 
-std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const SplitField& field) {
+void FieldProbe::show(const SplitField& field) {
   std::array<int, 3> size{1, 1, 1};
   size[field.axis] = field_texels;
   std::vector<float> texels(field_texels, field.behind);
   const auto plane = std::clamp(std::lround(field.plane / split_unit), 0L, long{field_texels});
   std::fill_n(texels.begin(), plane, field.before);
   show(texels, size, GL_NEAREST);
-  return in_place(0, first_row, viewport_[2], rows);
+}
+
+std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const SplitField& field) {
+  show(field);
+  std::vector<volume::Rgba> fragments = in_place(0, first_row, viewport_[2], rows);
+  if (background_) remove_from(fragments, field.before, field.behind);
+  return fragments;
 }
 
 std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const RampField& field) {
@@ -227,7 +283,16 @@ std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const RampFi
 
 volume::Rgba FieldProbe::pixel(int column, int row, float value) {
   show({value, value, value, value, value, value, value, value});
-  return in_place(column, row, 1, 1).front();
+  std::vector<volume::Rgba> fragments = in_place(column, row, 1, 1);
+  if (background_) remove_from(fragments, value, value);
+  return fragments.front();
+}
+
+volume::Rgba FieldProbe::pixel(int column, int row, const SplitField& field) {
+  show(field);
+  std::vector<volume::Rgba> fragments = in_place(column, row, 1, 1);
+  if (background_) remove_from(fragments, field.before, field.behind);
+  return fragments.front();
 }
 
 std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height) {

@@ -5,11 +5,14 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "spu/volume/context/saved_state.h"
 #include "spu/volume/observation/run.h"
+#include "spu/volume/proxy/background_removal.h"
 #include "spu/volume/proxy/cuts.h"
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
@@ -30,6 +33,11 @@ class FieldProbe {
 
   /// Whether the driver offers a float framebuffer. Nothing may be drawn otherwise.
   bool complete() const { return complete_; }
+
+  /// From now on at(), at_slope(), pixel() and rows(), but for ramps, give what a fragment's samples show
+  /// without `background`, premultiplied. Contrasts are measured on `rays`, where they are not known yet. Where
+  /// those of a split field's two values cannot be told apart, it is as if there were no fragments.
+  void remove(const ShaderBackground& background, std::vector<CountedPlace> rays);
 
   /// The fragments on the ray at normalised device coordinates (x, y), over the field of each of `values`.
   std::vector<volume::Rgba> at(double x, double y, std::span<const float> values);
@@ -68,6 +76,7 @@ class FieldProbe {
 
   /// The fragment of one pixel of the application's viewport, over the field of `value`.
   volume::Rgba pixel(int column, int row, float value);
+  volume::Rgba pixel(int column, int row, const SplitField& field);
 
   /// From now on the program reads this tile of numbers from `texture`, which is 2-D; rows bottom up, repeated.
   void show_instead(const SampledTexture& texture, int width, int height, std::span<const float> texels);
@@ -84,8 +93,13 @@ class FieldProbe {
   bool of_bytes(std::span<const float> texels) const;
   void show(std::span<const float> texels, const std::array<int, 3>& size, GLint filter);
   void show(const std::array<float, 8>& corners);
+  void show(const SplitField& field);
   void clear();
   std::vector<volume::Rgba> in_place(int column, int row, int width, int height);
+  std::vector<volume::Rgba> drawn_at(double x, double y, std::span<const float> values, float rise);
+  void learn_contrasts(std::span<const float> values);
+  /// Of fragments whose samples have one of two values.
+  void remove_from(std::span<volume::Rgba> fragments, float value, float other);
 
   const DispatchTable& gl_;
   const Run& run_;
@@ -100,6 +114,9 @@ class FieldProbe {
   LiftedCuts lifted_;
   std::vector<GLuint> textures_;
   std::vector<int> tiled_units_;  ///< whose 2-D texture is borrowed for tiles
+  std::optional<ShaderBackground> background_;
+  std::vector<CountedPlace> counted_;              ///< by which contrasts are measured, shortest first
+  std::map<float, BackgroundContrast> contrasts_;  ///< by value
   bool complete_ = false;
 };
 

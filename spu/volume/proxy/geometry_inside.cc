@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "volume/matrix.h"
 #include "volume/request.h"
 
 namespace understudy::spu {

@@ -12,7 +12,9 @@
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/sample_places.h"
+#include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
@@ -46,12 +48,54 @@ std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size,
   return rules;
 }
 
+constexpr int values_tried = 128;
+
 const Refusal samples_lie_elsewhere{
     "samples do not lie on constant steps from the box's faces (jitter, cropping)"};
 
 /// Whether blending multiplies colours by alpha, after they are clamped.
 bool multiplies_by_alpha(const Pipeline& pipeline) {
   return !pipeline.blending.premultiplied && !pipeline.target.floating;
+}
+
+/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
+bool hides_what_was_there(const Pipeline& pipeline, float alpha) {
+  constexpr float opaque = 1 - 1e-6F;
+  const Blending& blending = pipeline.blending;
+  if (blending.replaces) return true;
+  return alpha >= opaque && alpha <= 1 && blending.op == volume::Operator::over &&
+         blending.front_to_back == FrontToBack::no &&
+         (blending.alpha.untouched ? pipeline.target.alpha_bits == 0
+                                   : blending.alpha.op == volume::Operator::over);
+}
+
+/// Shows `probe` the rays without the background that the program puts them over. Null: it does no such thing.
+std::optional<ShaderBackground> removed_background(const MarchContext& measured, FieldProbe& probe,
+                                                   const RaysThroughBox& rays,
+                                                   const std::vector<float>& values) {
+  volume::RaySteps texels;
+  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = measured.texture.size[k];
+  auto found = find_background(probe, rays, texels, values);
+  if (!found || !hides_what_was_there(measured.run.pipeline(), found->background.alpha)) return std::nullopt;
+  probe.remove(found->background, std::move(found->rays));
+  return found->background;
+}
+
+/// `count` values all over the range.
+std::vector<float> values_over(const std::array<float, 2>& range, int count) {
+  std::vector<float> values;
+  values.reserve(std::size_t(count));
+  for (int i = 0; i < count; ++i) values.push_back(value_at(range, double(i) / (count - 1)));
+  return values;
+}
+
+/// As it was found before; false where it is another now.
+bool removes_background(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
+                        const March& march) {
+  if (!march.background) return true;
+  constexpr double same = 1e-3;
+  const auto found = removed_background(measured, probe, rays, values_over(measured.range, values_tried));
+  return found && volume::length(volume::subtract(found->colour, march.background->colour)) < same;
 }
 
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
@@ -88,8 +132,6 @@ class MarchMeasurement {
                        const std::vector<std::optional<ProxyBox>>& boxes) const;
 
  private:
-  static constexpr int tried = 128;
-
   std::optional<Refusal> find_composition();
   std::optional<Refusal> find_translucent_value();
   void find_shown_everywhere();
@@ -116,8 +158,7 @@ class MarchMeasurement {
 };
 
 std::optional<Refusal> MarchMeasurement::find_composition() {
-  values_.reserve(tried);
-  for (int i = 0; i < tried; ++i) values_.push_back(value_at(measured_.range, double(i) / (tried - 1)));
+  values_ = values_over(measured_.range, values_tried);
   const auto middle = rays_.middle();
   through_ = probe_.at(middle[0], middle[1], values_);
   const Ray brief = ray_of_length(rays_, texels_, 3);
@@ -127,15 +168,23 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   if (!probe_.culls_faces() &&
       (blending.op == volume::Operator::min || blending.alpha.op == volume::Operator::min))
     return "front and back faces of the box are drawn under a minimum";
-  if (!only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_)) return back_faces_show;
   // Whatever the way through it, one value has one colour: samples are not composed.
   march_.extreme = volume::Operator::max;
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
-  if (!march_.extreme) march_.sum = plain_sum(through_, briefly);
-  march_.alpha_twice = !march_.extreme && !march_.sum && multiplies_by_alpha(measured_.run.pipeline()) &&
-                       grow_with_alpha(through_, briefly);
+  if (!march_.extreme && one_alpha(through_, briefly))
+    march_.background = removed_background(measured_, probe_, rays_, values_);
+  // Which face's fragment an opaque one is left of, RayCasterStage looks at.
+  if (!march_.background && !only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_))
+    return back_faces_show;
+  if (march_.background) {
+    through_ = probe_.at(middle[0], middle[1], values_);
+  } else if (!march_.extreme) {
+    march_.sum = plain_sum(through_, briefly);
+  }
+  march_.alpha_twice = !march_.extreme && !march_.sum && !march_.background &&
+                       multiplies_by_alpha(measured_.run.pipeline()) && grow_with_alpha(through_, briefly);
   const auto way = rays_.way(middle[0], middle[1]);
   if (march_.extreme && (!way || steps_of_way(texels_, *way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
@@ -144,7 +193,7 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
 
 std::optional<Refusal> MarchMeasurement::find_translucent_value() {
   const auto middle = rays_.middle();
-  TranslucentRay found{{middle[0], middle[1]}, values_[tried / 2]};
+  TranslucentRay found{{middle[0], middle[1]}, values_[values_.size() / 2]};
   if (!march_.extreme) {
     const auto translucent = translucent_ray(measured_, probe_, rays_, texels_, march_, values_);
     if (!translucent) return "no value is translucent on any ray: samples cannot be counted";
@@ -224,6 +273,8 @@ std::optional<Refusal> MarchMeasurement::measure() {
   march_.table.low = measured_.range[0];
   march_.table.high = measured_.range[1];
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
+  if (!fill_unseen(probe_, box_, rules_.front(), march_))
+    return "a value that hides what lies behind it has the colour of the shader's background";
   if (auto refusal = take_offsets()) return refusal;
   return find_places();
 }
@@ -307,7 +358,12 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   {
     FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
     if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
+    if (march.background) {
+      changed.background = removed_background(measured, probe, rays, values_over(measured.range, values_tried));
+      if (!changed.background) return std::nullopt;
+    }
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+    if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
   }
   if (march.jitter) {
     changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);
@@ -338,6 +394,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  if (!removes_background(measured, probe, rays, march)) return samples_lie_elsewhere;
   const auto counted = counted_rays(measured, probe, rays, march);
   if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
   const volume::Vec3 axes = axes_in_texels(measured.texture.size);
@@ -388,14 +445,17 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
     if (march.extreme) return largest_difference(got, sample) <= same_colour;
     // A ray whose end falls on a sample may have one more or less.
     for (const double count : {n, n - 1, n + 1}) {
-      if (count >= 1 && largest_difference(got, ray_of(march, sample, count)) <= same_colour) return true;
+      if (count < 1) continue;
+      const Rgba ray = ray_of(march, sample, count);
+      const Rgba shown = march.background ? over_background(*march.background, ray) : ray;
+      if (largest_difference(got, shown) <= same_colour) return true;
     }
     return false;
   };
   const auto shows_table = [&](const Ray& ray) {
     const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
     const auto fragments = probe.at(ray.x, ray.y, values);
-    if (!only_nearest_shows(measured, probe, ray, values, fragments)) return false;
+    if (!march.background && !only_nearest_shows(measured, probe, ray, values, fragments)) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!expected(fragments[i], values[i], samples)) return false;
     }
@@ -426,8 +486,9 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
-  std::vector<float> values{march.translucent};
-  for (int i = 0; i < tried; ++i) values.push_back(value_at(measured.range, double(i) / (tried - 1)));
+  if (!removes_background(measured, probe, rays, march)) return false;
+  std::vector<float> values = values_over(measured.range, tried);
+  values.push_back(march.translucent);
   const auto middle = rays.middle();
   const auto split =
       split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));

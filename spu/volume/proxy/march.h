@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "spu/volume/proxy/background_removal.h"
 #include "spu/volume/proxy/coordinate_space.h"
 #include "spu/volume/proxy/jitter.h"
 #include "spu/volume/refusal/refusal.h"
@@ -41,6 +42,9 @@ struct March {
   /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
   bool steps_seen = true;
   std::optional<PlainSum> sum;
+  /// The program puts what it has composed by over onto a colour of its own: every fragment replaces what is
+  /// there.
+  std::optional<ShaderBackground> background;
   /// Of samples that are composed by over: the program writes colours that are multiplied by alpha, and
   /// blending multiplies them by it once more.
   bool alpha_twice = false;

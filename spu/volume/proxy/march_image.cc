@@ -44,10 +44,11 @@ void ask_nodes(const March& march, volume::RenderRequest& request) {
 }
 
 bool needs_finish(const March& march) {
-  return march.extreme || march.sum || march.alpha_twice;
+  return march.extreme || march.sum || march.alpha_twice || march.background;
 }
 
 void finish_image(const March& march, volume::Image& image) {
+  if (march.background) return;  // which only pixels have that the box covers
   if (march.alpha_twice) return multiply_by_alpha(image);
   const volume::TransferFunction& table = march.table;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {

@@ -127,13 +127,34 @@ bool fetches_depth(const GlContext& context, const Pipeline& pipeline, const pro
 /// Why fragments that replace what is there may leave another image than the nodes'; null: they leave theirs.
 std::optional<Refusal> refusal_of_replacing(const GlContext& context, const Pipeline& pipeline,
                                             const ProgramFindings& says) {
-  if (!pipeline.blending.replaces) return std::nullopt;
   // Where both were drawn, what is left must be the nearer one.
   const bool nearest_is_left =
       context.gl->IsEnabled(GL_CULL_FACE) || (pipeline.depth_test && pipeline.depth_write);
-  if (!nearest_is_left) return "front and back faces of the box are drawn, and blending is disabled";
-  if (!says.facts.discards.empty()) return "fragments are discarded, and blending is disabled";
+  const bool blends = !pipeline.blending.replaces;
+  if (!nearest_is_left) {
+    return blends ? "front and back faces of the box are drawn, and both are opaque"
+                  : "front and back faces of the box are drawn, and blending is disabled";
+  }
+  if (!says.facts.discards.empty()) {
+    return blends ? "fragments are discarded, and the others are opaque"
+                  : "fragments are discarded, and blending is disabled";
+  }
+  if (blends && !context.core && context.gl->IsEnabled(GL_ALPHA_TEST))
+    return "an alpha test is enabled, and fragments are opaque";
   return std::nullopt;
+}
+
+bool shows_something(const volume::Image& image) {
+  constexpr float least_visible = 0.5F / 255;
+  for (std::size_t alpha = 3; alpha < image.rgba.size(); alpha += 4) {
+    if (image.rgba[alpha] > least_visible) return true;
+  }
+  return false;
+}
+
+/// Whether the application's fragments take the place of what is there, and so does the image.
+bool replaces_pixels(const Pipeline& pipeline, const March& march) {
+  return pipeline.blending.replaces || march.background;
 }
 
 Refusal no_coordinate() {
@@ -251,7 +272,9 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const auto values = fragment_uniform_values(context_, pipeline.program, draw.stages);
   const ProgramFindings& says = programs_.findings(pipeline, values, Subject::ray_caster);
   if (auto refusal = refusal_of_ray_caster(says)) throw Refusal{std::move(*refusal)};
-  if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
+  if (pipeline.blending.replaces) {
+    if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
+  }
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
   ProxyBox box = find_box(draw);
@@ -266,9 +289,13 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
+  if (known.march.march->background) {
+    if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
+  }
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, turned);
   known.march.inputs = std::move(inputs);
-  RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, box)), box.camera};
+  RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, *known.march.march, box)),
+                         box.camera};
   asked.image.inputs = std::move(depends_on);
   // How a ray ends at a plane shows in few pixels, and in some views in none.
   asked.image.unproven = known.frames == 0 && known.march.march->clipped;
@@ -288,13 +315,13 @@ void RayCasterStage::keep_window(const Draw& draw, bool turned, ImageRequest& im
   image.unproven = true;
 }
 
-volume::RenderRequest RayCasterStage::compose(const Draw& draw, const ProxyBox& box) {
+volume::RenderRequest RayCasterStage::compose(const Draw& draw, const March& march, const ProxyBox& box) {
   const Pipeline& pipeline = draw.run.pipeline();
   const SentVolume& sent = draw.known.sent;
   volume::RenderRequest request =
       composer_.compose(pipeline, box.camera, box.region, sent.description, sent.texture.filter);
   // The box that an image replaces its pixels by is tested against depth itself.
-  if (pipeline.blending.replaces && !draw.ends_at_geometry) return request;
+  if (replaces_pixels(pipeline, march) && !draw.ends_at_geometry) return request;
   composer_.hide_behind_geometry(pipeline, request);
   const volume::Matrix4& texture_to_clip = box.camera.texture_to_clip;
   if (!draw.ends_at_geometry &&
@@ -308,6 +335,8 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   ImageRequest image;
   image.request = std::move(composed);
   image.ray_caster = true;
+  image.replaces_pixels = replaces_pixels(draw.run.pipeline(), march);
+  if (march.background) image.no_ray = over_background(*march.background, {});
   image.eye_inside = draw.eye_inside;
   image.opaque = image.request.depth;
   image.parts = draw.cuts.parts;
@@ -347,6 +376,9 @@ void RayCasterStage::complete_image(const March& march, ImageRequest& asked, com
   request.depth = asked.opaque;
   if (needs_finish(march)) finish_image(march, image);
   if (march.sum && march.sum->everywhere) cover_entered(asked.ray_ends, request, march.sum->alpha, image);
+  if (!march.background) return;
+  asked.background_alone = !shows_something(image);
+  fill_behind_entered(asked.ray_ends, request, *march.background, image);
 }
 
 March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& service,
@@ -357,7 +389,7 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
   for (const March& march : marches) {
     const auto box = proxy_box(draw.measured(), march.space);
     if (!box) continue;
-    volume::RenderRequest composed = compose(draw, *box);
+    volume::RenderRequest composed = compose(draw, march, *box);
     if (!looked_at) {
       const auto drawn =
           native_image(context_, draw.run, composed, volume::footprint(composed, composed.region));

@@ -72,7 +72,7 @@ class RayCasterStage {
                                 bool turned) const;
   ProxyBox measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                    compositor::RenderService& service);
-  volume::RenderRequest compose(const Draw& draw, const ProxyBox& box);
+  volume::RenderRequest compose(const Draw& draw, const March& march, const ProxyBox& box);
   ImageRequest ask(const Draw& draw, const March& march, const ProxyBox& box,
                    volume::RenderRequest composed) const;
   void keep_window(const Draw& draw, bool turned, ImageRequest& image) const;

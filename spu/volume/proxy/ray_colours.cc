@@ -26,7 +26,7 @@ Rgba premultiplied(Rgba fragment, bool already) {
 }
 
 bool premultiplied_already(const MarchContext& measured, const March& march) {
-  return measured.run.pipeline().blending.premultiplied || march.alpha_twice;
+  return measured.run.pipeline().blending.premultiplied || march.alpha_twice || march.background;
 }
 
 bool grow_with_alpha(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
@@ -77,7 +77,7 @@ float amount(const March& march, const Rgba& ray) {
   return march.sum ? brightest_channel(ray) / std::min(1.0F, march.sum->ceiling) : ray[3];
 }
 
-std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
+std::optional<float> one_alpha(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
   constexpr float same = 1e-3F;
   const float alpha = through.front()[3];
   if (!(alpha > 0)) return std::nullopt;
@@ -86,7 +86,13 @@ std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::v
       if (!(std::abs(ray[3] - alpha) <= same)) return std::nullopt;
     }
   }
-  PlainSum sum{alpha, false};
+  return alpha;
+}
+
+std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
+  const auto alpha = one_alpha(through, briefly);
+  if (!alpha) return std::nullopt;
+  PlainSum sum{*alpha, false};
   float largest = 0;
   for (const Rgba& ray : through) largest = std::max(largest, brightest_channel(ray));
   // A sum that several values reach is where the program stops counting.

@@ -35,6 +35,10 @@ volume::Rgba ray_of(const March& march, const volume::Rgba& sample, double n);
 /// How much of a ray's samples is seen: between nothing and 1, but for sums that shine brighter.
 float amount(const March& march, const volume::Rgba& ray);
 
+/// The alpha that all these fragments have, above 0; null where they differ.
+std::optional<float> one_alpha(const std::vector<volume::Rgba>& through,
+                               const std::vector<volume::Rgba>& briefly);
+
 /// Samples that are added up under one opacity, as `through` and `briefly`, a long ray and a short one over the
 /// same fields, show them.
 std::optional<PlainSum> plain_sum(const std::vector<volume::Rgba>& through,

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "spu/volume/proxy/background_removal.h"
 #include "volume/image.h"
 #include "volume/texture_space.h"
 
@@ -22,5 +23,9 @@ void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_plane
 /// Gives `alpha` to the pixels without it whose rays enter the box, between the planes, before opaque geometry.
 void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
                    float alpha, volume::Image& image);
+
+/// Puts `background` behind these pixels, and behind others that show something.
+void fill_behind_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
+                         const ShaderBackground& background, volume::Image& image);
 
 }  // namespace understudy::spu

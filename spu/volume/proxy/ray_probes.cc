@@ -120,7 +120,11 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   if (counts.empty()) return "the samples of a ray are not composed by over (a plain sum, or lighting)";
   // Colour over opacity stays what it is for one sample.
   const std::size_t longest = std::size_t(most - amounts.begin());
-  const float most_off = 0.01F * brightest_channel(colours[longest]);
+  float brightest = brightest_channel(colours[longest]);
+  // Colours that are seen over a background are as exact as that is bright.
+  if (march.background)
+    brightest = std::max(brightest, brightest_channel(over_background(*march.background, Rgba{})));
+  const float most_off = 0.01F * brightest;
   for (std::size_t i = 0; i < counted.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double expected = double(colours[longest][c]) / *most * amounts[i];

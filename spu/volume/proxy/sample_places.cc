@@ -8,6 +8,7 @@
 
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
 
 namespace understudy::spu {
 
@@ -35,6 +36,16 @@ struct Contrast {
   Additive amount;
 };
 
+BackgroundContrast contrast_by(const ShaderBackground& background, const Rgba& ray) {
+  if (!(ray[3] > 0)) return {};
+  return {volume::subtract(volume::scale(colour_of(ray), 1 / double(ray[3])), background.colour), 0};
+}
+
+/// Whether colours tell the opacity of a ray that has samples of both.
+bool told_apart(const ShaderBackground& background, const Rgba& a, const Rgba& b) {
+  return opacity_of(contrast_by(background, a), contrast_by(background, b), {}).has_value();
+}
+
 std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
                                     const std::vector<SeenValue>& values) {
   constexpr double least_told = 0.25;  // of what the translucent one adds
@@ -47,6 +58,7 @@ std::optional<Contrast> contrast_to(const Rgba& translucent, const March& march,
     for (const SeenValue& seen : values) {
       const auto other = amount.of(seen.ray);
       if (!other || *other > 2 * *own) continue;
+      if (march.background && !told_apart(*march.background, translucent, seen.ray)) continue;
       const double told = std::abs(*other - *own);
       if (told < least_told * *own || told <= most) continue;
       most = told;

@@ -16,7 +16,12 @@ struct ImageRequest {
 
   // Of a ray caster.
   bool ray_caster = false;
-  bool eye_inside = false;         ///< its box has been cut before the eye
+  volume::Rgba
+      no_ray{};  ///< what fragments show, where they replace pixels, whose ray misses the box for rounding
+  bool replaces_pixels = false;  ///< its fragments take the place of what is there
+  bool eye_inside = false;       ///< its box has been cut before the eye
+  /// No ray of its image has a visible sample: the program's own background, which it shows, proves nothing.
+  bool background_alone = false;
   bool unproven = false;           ///< measured for this image, and perhaps right in this view alone
   bool discards_by_place = false;  ///< its program may discard fragments by gl_FragCoord
   /// What it draws into, where `request.window` is cut to where its program keeps fragments.

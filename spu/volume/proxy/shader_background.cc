@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/shader_background.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "spu/volume/classification/table_lookup.h"
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/sample_places.h"
+#include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+using volume::Vec3;
+
+namespace {
+
+constexpr double float_rounding = 2e-7;  ///< of a colour up to 1
+
+double distance(const Vec3& a, const Vec3& b) {
+  return volume::length(volume::subtract(a, b));
+}
+
+/// Rays that have the same number of samples, told by their colour.
+struct Level {
+  Ray ray;
+  Vec3 colour;
+  double along = 0;  ///< from the colour of the shortest ray towards that of the longest
+};
+
+class BackgroundSearch {
+ public:
+  BackgroundSearch(FieldProbe& probe, const RaysThroughBox& rays, const volume::RaySteps& texels,
+                   const std::vector<float>& values)
+      : probe_(probe), rays_(rays), texels_(texels), values_(values) {}
+
+  std::optional<FoundBackground> found();
+
+ private:
+  /// Colours of all values on a ray; none where a fragment is missing or has another alpha.
+  std::optional<std::vector<Vec3>> colours_on(const Ray& ray);
+  std::vector<std::size_t> clearest_values();
+  std::vector<Level> levels_of(float value);
+  bool take_levels(const std::vector<Level>& levels);
+  bool take_background();
+  void add_longer_rays();
+  /// How many samples a longer ray has, by the values that tell best; null where none does.
+  std::optional<double> samples_on(const std::vector<Vec3>& colours) const;
+  BackgroundContrast contrast(std::size_t value) const;
+
+  FieldProbe& probe_;
+  const RaysThroughBox& rays_;
+  const volume::RaySteps& texels_;
+  const std::vector<float>& values_;
+  std::optional<float> alpha_;
+  std::vector<Vec3> longest_;  ///< colours of all values on the longest ray
+  std::optional<Ray> empty_;   ///< one without samples
+  std::vector<Ray> places_;
+  std::vector<double> samples_;             ///< of each place, in ascending order
+  std::vector<std::vector<Vec3>> colours_;  ///< of each place, those of all values
+  ShaderBackground background_;
+};
+
+std::optional<std::vector<Vec3>> BackgroundSearch::colours_on(const Ray& ray) {
+  constexpr float same_alpha = 1e-6F;
+  const std::vector<Rgba> fragments = probe_.at(ray.x, ray.y, values_);
+  if (!finite(fragments)) return std::nullopt;
+  std::vector<Vec3> colours;
+  colours.reserve(fragments.size());
+  for (const Rgba& fragment : fragments) {
+    if (!alpha_) alpha_ = fragment[3];
+    if (!(*alpha_ > 0) || std::abs(fragment[3] - *alpha_) > same_alpha) return std::nullopt;
+    colours.push_back(colour_of(fragment));
+  }
+  return colours;
+}
+
+/// Those whose colour goes on growing where rays are short, spread over how clearly it does.
+std::vector<std::size_t> BackgroundSearch::clearest_values() {
+  const auto shorter = colours_on(ray_of_length(rays_, texels_, 1.5));
+  const auto longer = colours_on(ray_of_length(rays_, texels_, 12));
+  if (!shorter || !longer) return {};
+  std::vector<std::size_t> order(values_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    return distance((*longer)[a], (*shorter)[a]) > distance((*longer)[b], (*shorter)[b]);
+  });
+  return {order[0], order[order.size() / 16], order[order.size() / 4]};
+}
+
+std::vector<Level> BackgroundSearch::levels_of(float value) {
+  constexpr double shortest = 0.03;  // in texels
+  constexpr double longest = 40;
+  constexpr double growth = 1.1;
+  const std::array one{value};
+  std::vector<Level> seen;
+  for (double length = shortest; length < longest; length *= growth) {
+    const Ray ray = ray_of_length(rays_, texels_, length);
+    const Rgba fragment = probe_.at(ray.x, ray.y, one).front();
+    if (reached(fragment)) seen.push_back({ray, colour_of(fragment)});
+  }
+  if (seen.empty()) return {};
+  const Vec3 base = seen.front().colour;
+  const Vec3 all = volume::subtract(seen.back().colour, base);
+  const double reach = volume::length(all);
+  if (reach < 1e-3) return {};
+  for (Level& level : seen) level.along = volume::dot(volume::subtract(level.colour, base), all) / reach;
+  std::ranges::stable_sort(seen, {}, &Level::along);
+  const double apart = std::max(10 * float_rounding, 1e-3 * reach);
+  std::vector<Level> levels;
+  for (const Level& level : seen) {
+    if (levels.empty() || level.along - levels.back().along > apart) levels.push_back(level);
+  }
+  return levels;
+}
+
+/// Three steps between four levels, each the shorter by the same factor. Of a sum they are of one length.
+bool BackgroundSearch::take_levels(const std::vector<Level>& levels) {
+  if (levels.size() < 4) return false;
+  std::array<double, 3> steps{};
+  for (std::size_t i = 0; i < 3; ++i) steps[i] = levels[i + 1].along - levels[i].along;
+  const double rounding = 4 * float_rounding / steps[2];
+  const double transparency = steps[1] / steps[0];
+  if (std::abs(steps[2] / steps[1] - transparency) > 2e-3 + rounding) return false;
+  if (!(transparency < 1 - 1e-4 - rounding)) return false;
+  places_.clear();
+  samples_.clear();
+  colours_.clear();
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto colours = colours_on(levels[i].ray);
+    if (!colours) return false;
+    places_.push_back(levels[i].ray);
+    samples_.push_back(double(i + 1));
+    colours_.push_back(std::move(*colours));
+  }
+  // Where all values look alike there was no sample yet.
+  const bool begins_empty = std::ranges::all_of(colours_.front(), [&](const Vec3& colour) {
+    return distance(colour, colours_.front().front()) <= 10 * float_rounding;
+  });
+  if (begins_empty) {
+    empty_ = places_.front();
+    background_.colour = colours_.front().front();
+    places_.erase(places_.begin());
+    colours_.erase(colours_.begin());
+    samples_.pop_back();
+  }
+  return true;
+}
+
+/// The background is one step before the colour of one sample, whatever the value.
+bool BackgroundSearch::take_background() {
+  constexpr double clear = 0.01;
+  constexpr double same = 5e-3;
+  std::vector<Vec3> backgrounds;
+  double clearest = 0;
+  Vec3 best{};
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const Vec3 first = volume::subtract(colours_[1][i], colours_[0][i]);
+    const Vec3 second = volume::subtract(colours_[2][i], colours_[1][i]);
+    const double square = volume::dot(first, first);
+    const double transparency = square > 0 ? volume::dot(second, first) / square : 0;
+    if (square < clear * clear || transparency < 0.1 || transparency > 1) continue;
+    backgrounds.push_back(volume::subtract(colours_[0][i], volume::scale(first, 1 / transparency)));
+    if (square * transparency <= clearest) continue;
+    clearest = square * transparency;
+    best = backgrounds.back();
+  }
+  if (empty_) best = background_.colour;
+  if (backgrounds.empty() && !empty_) return false;
+  // A first ray of more than one sample shows another background with every value.
+  const auto others =
+      std::ranges::count_if(backgrounds, [&](const Vec3& one) { return distance(one, best) > same; });
+  if (others > std::ptrdiff_t(backgrounds.size() / 10)) return false;
+  background_.colour = best;
+  if (empty_) return true;
+  // A value that shows nothing tells it exactly.
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (distance(longest_[i], best) > same || distance(longest_[i], colours_[0][i]) > 10 * float_rounding)
+      continue;
+    background_.colour = longest_[i];
+    break;
+  }
+  return true;
+}
+
+BackgroundContrast BackgroundSearch::contrast(std::size_t value) const {
+  std::vector<Vec3> differences;
+  differences.reserve(colours_.size());
+  for (const std::vector<Vec3>& colours : colours_)
+    differences.push_back(volume::subtract(colours[value], background_.colour));
+  return contrast_of(samples_, differences);
+}
+
+std::optional<double> BackgroundSearch::samples_on(const std::vector<Vec3>& colours) const {
+  constexpr double least = 0.05;
+  constexpr double most = 0.9;
+  constexpr double whole = 0.15;
+  std::optional<double> samples;
+  double nearest = 1;
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const BackgroundContrast known = contrast(i);
+    const double opacity = opacity_of(known, volume::subtract(colours[i], background_.colour));
+    if (opacity < least || opacity > most || known.alpha >= 1) continue;
+    // What one sample shows must stand out of rounding, as the count goes by it.
+    if (known.alpha * volume::length(known.full) < 1e-3 || std::abs(opacity - 0.5) >= nearest) continue;
+    const double count = std::log1p(-opacity) / std::log1p(-known.alpha);
+    if (std::abs(count - std::round(count)) > whole) continue;
+    nearest = std::abs(opacity - 0.5);
+    samples = std::round(count);
+  }
+  return samples;
+}
+
+void BackgroundSearch::add_longer_rays() {
+  for (const double length : {6.0, 12.0, 24.0, 48.0, 96.0}) {
+    const Ray ray = ray_of_length(rays_, texels_, length);
+    auto colours = colours_on(ray);
+    if (!colours) continue;
+    const auto samples = samples_on(*colours);
+    if (!samples || *samples <= samples_.back()) continue;
+    places_.push_back(ray);
+    samples_.push_back(*samples);
+    colours_.push_back(std::move(*colours));
+  }
+}
+
+std::optional<FoundBackground> BackgroundSearch::found() {
+  const auto middle = rays_.middle();
+  auto longest = colours_on({middle[0], middle[1]});
+  if (!longest) return std::nullopt;
+  longest_ = std::move(*longest);
+  for (const std::size_t value : clearest_values()) {
+    empty_.reset();
+    if (!take_levels(levels_of(values_[value])) || !take_background()) continue;
+    background_.alpha = *alpha_;
+    add_longer_rays();
+    FoundBackground found{background_, {}};
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      found.rays.push_back({places_[i].x, places_[i].y, samples_[i]});
+    return found;
+  }
+  return std::nullopt;
+}
+
+/// A ray through the middle of the box whose far part is opaque: what is put before that may hide it.
+class HiddenBehind {
+ public:
+  /// Null where no plane of a field lies in the box.
+  static std::optional<HiddenBehind> in_middle_of(FieldProbe& probe, const ProxyBox& box,
+                                                  const volume::RaySteps& steps, const March& march);
+
+  bool hides(FieldProbe& probe, float value) const {
+    FieldProbe::SplitField field = opaque_;
+    (forwards_ ? field.before : field.behind) = value;
+    const Rgba seen = probe.pixel(column_, row_, field);
+    return reached(seen) && seen[3] < least_;
+  }
+
+ private:
+  int column_ = 0;
+  int row_ = 0;
+  FieldProbe::SplitField opaque_;
+  bool forwards_ = true;  ///< the ray goes along the axis of the field
+  float least_ = 0;       ///< opacity of what lies behind
+};
+
+std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const ProxyBox& box,
+                                                       const volume::RaySteps& steps, const March& march) {
+  constexpr float visible = 0.02F;
+  constexpr double part_behind = 0.3;  // of the samples, at least: the plane lies at 0.37 of the box
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  const auto middle = rays.middle();
+  HiddenBehind ray;
+  ray.column_ = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
+  ray.row_ = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
+  const auto way =
+      rays.way(2 * (ray.column_ + 0.5) / probe.width() - 1, 2 * (ray.row_ + 0.5) / probe.height() - 1);
+  if (!way) return std::nullopt;
+  const double samples = part_behind * samples_of_length(steps, steps_of_way(steps, *way));
+  const std::vector<Rgba>& entries = march.table.entries;
+  const auto most = std::ranges::max_element(entries, {}, [](const Rgba& entry) { return entry[3]; });
+  const float opaque = value_at({march.table.low, march.table.high},
+                                double(most - entries.begin()) / double(entries.size() - 1));
+  const auto fields = split_fields(box.region, *way, opaque, opaque);
+  if (fields.empty()) return std::nullopt;
+  ray.opaque_ = fields.front();
+  ray.forwards_ = (*way)[ray.opaque_.axis] > 0;
+  ray.least_ = ray_of(march, *most, samples)[3] - visible;
+  return ray;
+}
+
+/// Entries from `first` up to `end`, linear between their neighbours.
+void fill_between(std::vector<Rgba>& entries, std::size_t first, std::size_t end) {
+  const Rgba low = entries[first - 1];
+  const Rgba high = entries[end];
+  for (std::size_t i = first; i < end; ++i) {
+    const float part = float(i - first + 1) / float(end - first + 1);
+    for (std::size_t c = 0; c < 4; ++c) entries[i][c] = low[c] + part * (high[c] - low[c]);
+  }
+}
+
+}  // namespace
+
+std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThroughBox& rays,
+                                               const volume::RaySteps& texels,
+                                               const std::vector<float>& values) {
+  return BackgroundSearch(probe, rays, texels, values).found();
+}
+
+bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march) {
+  constexpr std::size_t longest_filled = 4;  // a value of 8 bits has as many entries
+  constexpr std::size_t tested_apart = 8;
+  if (!march.background || !box.cuts.empty()) return true;
+  const auto hidden_behind = HiddenBehind::in_middle_of(probe, box, steps, march);
+  if (!hidden_behind) return true;
+  std::vector<Rgba>& entries = march.table.entries;
+  const std::array range{march.table.low, march.table.high};
+  const auto hides = [&](std::size_t entry) {
+    return hidden_behind->hides(probe, value_at(range, double(entry) / double(entries.size() - 1)));
+  };
+  for (std::size_t first = 0; first < entries.size(); ++first) {
+    if (entries[first][3] > 0) continue;
+    std::size_t end = first;
+    while (end < entries.size() && !(entries[end][3] > 0)) ++end;
+    const std::size_t count = end - first;
+    const bool between = first > 0 && end < entries.size();
+    if (between && count <= longest_filled) {
+      if (hides(first + count / 2)) fill_between(entries, first, end);
+    } else {
+      for (std::size_t entry = first; entry < end; entry += tested_apart) {
+        if (hides(entry)) return false;
+      }
+    }
+    first = end;
+  }
+  return true;
+}
+
+}  // namespace understudy::spu

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "spu/volume/classification/table_lookup.h"
+#include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march_table.h"
@@ -96,6 +97,12 @@ bool removes_background(const MarchContext& measured, FieldProbe& probe, const R
   constexpr double same = 1e-3;
   const auto found = removed_background(measured, probe, rays, values_over(measured.range, values_tried));
   return found && volume::length(volume::subtract(found->colour, march.background->colour)) < same;
+}
+
+/// Counted from where the rays leave the box, all over the application's viewport.
+volume::RaySteps from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays, const FieldProbe& probe) {
+  const volume::Rect viewport{probe.left(), probe.bottom(), probe.width(), probe.height()};
+  return counted_from_exit(steps, rays, viewport, viewport);
 }
 
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
@@ -296,6 +303,10 @@ std::optional<Refusal> MarchMeasurement::find_places() {
     return misplaced_part(split_, rays_, rule) <= most_misplaced;
   });
   if (explained || march_.jitter) return std::nullopt;
+  march_.from_exit = std::ranges::any_of(rules_, [&](const volume::RaySteps& rule) {
+    return !rule.divided && misplaced_part(split_, rays_, from_exit(rule, rays_, probe_)) <= most_misplaced;
+  });
+  if (march_.from_exit) return std::nullopt;
   march_.jitter = find_moving_jitter(measured_.context, measured_.run, probe_, split, rays_, rules_);
   return take_offsets();
 }
@@ -328,7 +339,9 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
-      if (misplaced_part(split_, rays, rules_[r]) <= most_misplaced)
+      if (march_.from_exit && rules_[r].divided) continue;
+      const volume::RaySteps placed = march_.from_exit ? from_exit(rules_[r], rays, probe_) : rules_[r];
+      if (misplaced_part(split_, rays, placed) <= most_misplaced)
         add_marches(spaces[i], rules_[r], seen, marches);
     }
   }
@@ -492,7 +505,8 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   const auto middle = rays.middle();
   const auto split =
       split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));
-  return misplaced_part(split, rays, march.steps) <= most_misplaced;
+  const volume::RaySteps placed = march.from_exit ? from_exit(march.steps, rays, probe) : march.steps;
+  return misplaced_part(split, rays, placed) <= most_misplaced;
 }
 
 }  // namespace understudy::spu

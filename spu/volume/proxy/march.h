@@ -52,6 +52,7 @@ struct March {
   volume::TransferFunction table;  ///< premultiplied; of one sample
   float translucent = 0;           ///< a value whose field lets light through a ray, the longest that does
   bool clipped = false;            ///< whether there were clipping planes
+  bool from_exit = false;          ///< `steps` are counted from where rays leave the box (exit_steps.h)
   bool from_inside = false;        ///< whether the steps were measured with the eye inside
   double past_planes = 0;          ///< samples up to so many steps behind one by which a ray leaves still count
 };

@@ -12,6 +12,7 @@
 #include "compositor/service.h"
 #include "compositor/service/limits.h"
 #include "spu/report/optimization.h"
+#include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/geometry_inside.h"
 #include "spu/volume/proxy/ray_ends.h"
@@ -350,10 +351,21 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
     throw Refusal{"planes cut a ray caster's box whose samples are moved by noise"};
   // One number a pixel travels to the nodes.
   const std::size_t pixels = volume::footprint(image.request, image.request.region).pixels();
-  if (!image.ray_ends.empty() && pixels > std::size_t(compositor::limits::max_ray_offsets))
-    throw Refusal{"planes cut a ray caster's box in more pixels than rays may start in separately",
-                  fmt::format("{} pixels, {} are taken", pixels, compositor::limits::max_ray_offsets),
-                  "make the window smaller"};
+  const auto refuse_more = [&](const char* reason) {
+    if (pixels > std::size_t(compositor::limits::max_ray_offsets))
+      throw Refusal{reason, fmt::format("{} pixels, {} are taken", pixels, compositor::limits::max_ray_offsets),
+                    "make the window smaller"};
+  };
+  if (march.from_exit) {
+    if (cut) throw Refusal{"planes cut a ray caster's box whose rays begin at its back"};
+    if (draw.ends_at_geometry) throw Refusal{"rays that begin at the back of the box end at opaque geometry"};
+    refuse_more("rays begin at the back of the box in more pixels than may start separately");
+    const volume::RenderRequest& request = image.request;
+    image.request.steps = counted_from_exit(march.steps, {request.texture_to_clip, request.region},
+                                            request.viewport, volume::footprint(request, request.region));
+  }
+  if (!image.ray_ends.empty())
+    refuse_more("planes cut a ray caster's box in more pixels than rays may start in separately");
   end_rays_at(image.ray_ends, march.past_planes, image.request);
   return image;
 }

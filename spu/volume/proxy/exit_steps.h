@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Programs that march from the back of the volume towards the eye: their samples lie on steps from where a ray
+// leaves the box. Nodes count from where it enters, so every pixel's ray gets an offset of its own.
+#pragma once
+
+#include "spu/volume/proxy/box.h"
+#include "volume/rect.h"
+#include "volume/sampling.h"
+
+namespace understudy::spu {
+
+/// The places of `steps`, which are not divided, counted from the exits of the rays through the pixels of
+/// `rect`.
+volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
+                                   const volume::Rect& viewport, const volume::Rect& rect);
+
+}  // namespace understudy::spu

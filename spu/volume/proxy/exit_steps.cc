@@ -35,4 +35,10 @@ volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThro
   return counted;
 }
 
+volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
+                                   const FieldProbe& probe) {
+  const volume::Rect viewport{probe.left(), probe.bottom(), probe.width(), probe.height()};
+  return counted_from_exit(steps, rays, viewport, viewport);
+}
+
 }  // namespace understudy::spu

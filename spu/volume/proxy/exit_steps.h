@@ -4,6 +4,7 @@
 #pragma once
 
 #include "spu/volume/proxy/box.h"
+#include "spu/volume/proxy/field_probe.h"
 #include "volume/rect.h"
 #include "volume/sampling.h"
 
@@ -13,5 +14,9 @@ namespace understudy::spu {
 /// `rect`.
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
                                    const volume::Rect& viewport, const volume::Rect& rect);
+
+/// The same all over the application's viewport.
+volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
+                                   const FieldProbe& probe);
 
 }  // namespace understudy::spu

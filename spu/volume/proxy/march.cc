@@ -24,14 +24,6 @@ using volume::Rgba;
 
 namespace {
 
-/// Whether the samples of an extreme lie where `march` says; empty where no field tells.
-std::optional<bool> extreme_lies_as_said(const MarchContext& measured, const March& march,
-                                         const ProxyBox& box) {
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
-  if (!probe.complete()) return std::nullopt;
-  return extremes_lie_on(march.steps, measured, probe, march.table, box);
-}
-
 /// For an extreme value, which does not tell how many samples it was taken of: one or two a texel, or one for
 /// each length of the shortest ray that has any.
 std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size, double shortest) {
@@ -49,75 +41,10 @@ std::vector<volume::RaySteps> rules_for_extremes(const std::array<int, 3>& size,
   return rules;
 }
 
-constexpr int values_tried = 128;
-
 const Refusal samples_lie_elsewhere{
     "samples do not lie on constant steps from the box's faces (jitter, cropping)"};
 
-/// Whether blending multiplies colours by alpha, after they are clamped.
-bool multiplies_by_alpha(const Pipeline& pipeline) {
-  return !pipeline.blending.premultiplied && !pipeline.target.floating;
-}
-
-/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
-bool hides_what_was_there(const Pipeline& pipeline, float alpha) {
-  constexpr float opaque = 1 - 1e-6F;
-  const Blending& blending = pipeline.blending;
-  if (blending.replaces) return true;
-  return alpha >= opaque && alpha <= 1 && blending.op == volume::Operator::over &&
-         blending.front_to_back == FrontToBack::no &&
-         (blending.alpha.untouched ? pipeline.target.alpha_bits == 0
-                                   : blending.alpha.op == volume::Operator::over);
-}
-
-/// Shows `probe` the rays without the background that the program puts them over. Null: it does no such thing.
-std::optional<ShaderBackground> removed_background(const MarchContext& measured, FieldProbe& probe,
-                                                   const RaysThroughBox& rays,
-                                                   const std::vector<float>& values) {
-  volume::RaySteps texels;
-  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = measured.texture.size[k];
-  auto found = find_background(probe, rays, texels, values);
-  if (!found || !hides_what_was_there(measured.run.pipeline(), found->background.alpha)) return std::nullopt;
-  probe.remove(found->background, std::move(found->rays));
-  return found->background;
-}
-
-/// `count` values all over the range.
-std::vector<float> values_over(const std::array<float, 2>& range, int count) {
-  std::vector<float> values;
-  values.reserve(std::size_t(count));
-  for (int i = 0; i < count; ++i) values.push_back(value_at(range, double(i) / (count - 1)));
-  return values;
-}
-
-/// As it was found before; false where it is another now.
-bool removes_background(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
-                        const March& march) {
-  if (!march.background) return true;
-  constexpr double same = 1e-3;
-  const auto found = removed_background(measured, probe, rays, values_over(measured.range, values_tried));
-  return found && volume::length(volume::subtract(found->colour, march.background->colour)) < same;
-}
-
-/// Counted from where the rays leave the box, all over the application's viewport.
-volume::RaySteps from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays, const FieldProbe& probe) {
-  const volume::Rect viewport{probe.left(), probe.bottom(), probe.width(), probe.height()};
-  return counted_from_exit(steps, rays, viewport, viewport);
-}
-
 constexpr const char* back_faces_show = "rays that begin at the back faces of the box show something, too";
-
-/// Whether all fragments of a ray add up to the nearest one: if faces are not culled, the front and the back
-/// fragment are blended. Where fragments replace what is there, the nearest one is left (RayCasterStage).
-bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
-                        const std::vector<float>& values, const std::vector<Rgba>& nearest) {
-  if (measured.run.pipeline().blending.replaces) return true;
-  const auto sums = probe.sums_at(ray.x, ray.y, values);
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (!(largest_difference(sums[i], reached(nearest[i]) ? nearest[i] : Rgba{}) <= 1e-6F)) return false;
-  }
-  return true;
-}
 
 /// One measurement, from the composition of samples to their places and colours. Each step fills in its part of
 /// the march, or says why there is none.
@@ -147,6 +74,8 @@ class MarchMeasurement {
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
+  /// Of the rules, counted from where rays enter or leave the box, that which explains most rays.
+  double least_misplaced(bool from_exit);
   void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                    std::vector<March>& marches) const;
 
@@ -165,7 +94,7 @@ class MarchMeasurement {
 };
 
 std::optional<Refusal> MarchMeasurement::find_composition() {
-  values_ = values_over(measured_.range, values_tried);
+  values_ = values_over(measured_.range);
   const auto middle = rays_.middle();
   through_ = probe_.at(middle[0], middle[1], values_);
   const Ray brief = ray_of_length(rays_, texels_, 3);
@@ -181,7 +110,7 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
   if (!march_.extreme && one_alpha(through_, briefly))
-    march_.background = removed_background(measured_, probe_, rays_, values_);
+    march_.background = remove_background(measured_, probe_, rays_);
   // Which face's fragment an opaque one is left of, RayCasterStage looks at.
   if (!march_.background && !only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_))
     return back_faces_show;
@@ -286,6 +215,16 @@ std::optional<Refusal> MarchMeasurement::measure() {
   return find_places();
 }
 
+double MarchMeasurement::least_misplaced(bool from_exit) {
+  double least = 1;
+  for (const volume::RaySteps& rule : rules_) {
+    if (from_exit && rule.divided) continue;
+    const volume::RaySteps placed = from_exit ? counted_from_exit(rule, rays_, probe_) : rule;
+    least = std::min(least, misplaced_part(split_, rays_, placed));
+  }
+  return least;
+}
+
 std::optional<Refusal> MarchMeasurement::find_places() {
   if (march_.extreme) {
     const auto steps = extreme_steps(measured_, probe_, march_.table, box_);
@@ -299,14 +238,13 @@ std::optional<Refusal> MarchMeasurement::find_places() {
   const std::vector<SeenValue> seen = seen_values(values_, through_);
   const auto split = [&] { return split_rays(measured_, probe_, march_, box_, seen); };
   split_ = split();
-  const bool explained = std::ranges::any_of(rules_, [&](const volume::RaySteps& rule) {
-    return misplaced_part(split_, rays_, rule) <= most_misplaced;
-  });
-  if (explained || march_.jitter) return std::nullopt;
-  march_.from_exit = std::ranges::any_of(rules_, [&](const volume::RaySteps& rule) {
-    return !rule.divided && misplaced_part(split_, rays_, from_exit(rule, rays_, probe_)) <= most_misplaced;
-  });
-  if (march_.from_exit) return std::nullopt;
+  const double misplaced = least_misplaced(false);
+  constexpr double rounding = 0.02;
+  if (misplaced <= rounding || march_.jitter) return std::nullopt;
+  // A way that is divided evenly comes close to steps from its end. In views in which both ends of rays are
+  // alike neither explains much more than the other.
+  march_.from_exit = least_misplaced(true) <= std::min(misplaced / 3, most_misplaced);
+  if (march_.from_exit || misplaced <= most_misplaced) return std::nullopt;
   march_.jitter = find_moving_jitter(measured_.context, measured_.run, probe_, split, rays_, rules_);
   return take_offsets();
 }
@@ -340,7 +278,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
       if (march_.from_exit && rules_[r].divided) continue;
-      const volume::RaySteps placed = march_.from_exit ? from_exit(rules_[r], rays, probe_) : rules_[r];
+      const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       if (misplaced_part(split_, rays, placed) <= most_misplaced)
         add_marches(spaces[i], rules_[r], seen, marches);
     }
@@ -360,153 +298,6 @@ MarchFinding measure_march(const MarchContext& measured, const std::vector<Coord
   MarchMeasurement measurement(measured, box);
   if (auto refusal = measurement.measure()) return *std::move(refusal);
   return measurement.marches(spaces, boxes);
-}
-
-std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
-  if (march.alpha_twice && !multiplies_by_alpha(measured.run.pipeline())) return std::nullopt;
-  March changed = march;
-  changed.table.low = measured.range[0];
-  changed.table.high = measured.range[1];
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  {
-    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
-    if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
-    if (march.background) {
-      changed.background = removed_background(measured, probe, rays, values_over(measured.range, values_tried));
-      if (!changed.background) return std::nullopt;
-    }
-    if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
-    if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
-  }
-  if (march.jitter) {
-    changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);
-    if (!changed.steps.offsets) return std::nullopt;
-  }
-  const auto middle = rays.middle();
-  const auto way = rays.way(middle[0], middle[1]);
-  if (!way) return std::nullopt;
-  float nearest = 0.48F;
-  const auto& table = changed.table;
-  for (std::size_t i = 0; i < table.entries.size() && !march.extreme; ++i) {
-    const float through = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, *way)));
-    if (std::abs(through - 0.5F) >= nearest) continue;
-    nearest = std::abs(through - 0.5F);
-    changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
-  }
-  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, {.values = 16}))
-    return std::nullopt;
-  return changed;
-}
-
-std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
-                                            const ProxyBox& box) {
-  March changed = march;
-  changed.from_inside = true;
-  if (march.extreme) return changed;  // whose steps only rays from outside tell
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
-  if (!probe.complete() || !held_still(measured, probe, march))
-    return "the driver offers no float framebuffer to probe with";
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  if (!removes_background(measured, probe, rays, march)) return samples_lie_elsewhere;
-  const auto counted = counted_rays(measured, probe, rays, march);
-  if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
-  const volume::Vec3 axes = axes_in_texels(measured.texture.size);
-  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), axes)) {
-    const volume::RaySteps rule = rules_of(fit).front();
-    if (fit.unexplained > most_unexplained || rule.first != march.steps.first) continue;
-    changed.steps.metric = rule.metric;
-    return changed;
-  }
-  return "the steps of rays are others where the eye is inside";
-}
-
-std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
-                                       double factor) {
-  // The table is not measured otherwise.
-  constexpr RaysLookedAt looked_at{.values = 64};
-  if (march.sum || march.steps.divided) return std::nullopt;
-  March longer = march;
-  for (double& number : longer.steps.metric) number /= factor;
-  if (march.extreme) {
-    // Its rays look alike whatever the number of their samples.
-    longer.steps_seen = extreme_lies_as_said(measured, longer, box).value_or(false);
-    if (!longer.steps_seen || !still_marches(measured, longer, box, looked_at)) return std::nullopt;
-    return longer;
-  }
-  March corrected = longer;
-  for (Rgba& entry : corrected.table.entries) entry = ray_of(march, entry, factor);
-  for (const March& candidate : {corrected, longer}) {
-    if (still_marches(measured, candidate, box, looked_at)) return candidate;
-  }
-  return std::nullopt;
-}
-
-bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
-                   const RaysLookedAt& looked_at) {
-  constexpr float same_colour = 5e-3F;
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
-  if (!probe.complete() || !held_still(measured, probe, march)) return false;
-  const bool already = premultiplied_already(measured, march);
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  std::vector<float> values;
-  values.reserve(std::size_t(looked_at.values));
-  for (int i = 0; i < looked_at.values; ++i)
-    values.push_back(value_at({march.table.low, march.table.high}, (i + looked_at.offset) / looked_at.values));
-  const auto expected = [&](const Rgba& fragment, float value, double n) {
-    const Rgba sample = table_at(march.table, value);
-    const Rgba got = premultiplied(fragment, already);
-    if (march.extreme) return largest_difference(got, sample) <= same_colour;
-    // A ray whose end falls on a sample may have one more or less.
-    for (const double count : {n, n - 1, n + 1}) {
-      if (count < 1) continue;
-      const Rgba ray = ray_of(march, sample, count);
-      const Rgba shown = march.background ? over_background(*march.background, ray) : ray;
-      if (largest_difference(got, shown) <= same_colour) return true;
-    }
-    return false;
-  };
-  const auto shows_table = [&](const Ray& ray) {
-    const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
-    const auto fragments = probe.at(ray.x, ray.y, values);
-    if (!march.background && !only_nearest_shows(measured, probe, ray, values, fragments)) return false;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!expected(fragments[i], values[i], samples)) return false;
-    }
-    return true;
-  };
-  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample.
-  constexpr std::array short_lengths{2.5, 4.5, 7.5};
-  const double first = march.steps.divided ? 0.5 : march.steps.first;
-  if (looked_at.values > 0 && std::ranges::none_of(short_lengths, [&](double length) {
-        return shows_table(ray_of_length(rays, march.steps, march.extreme ? length + 1 : length + first));
-      }))
-    return false;
-  if (march.extreme || !looked_at.long_ray) return true;
-  // A long ray: its step may have another length in another direction.
-  const auto middle = rays.middle();
-  const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
-  const int row = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
-  const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
-  if (!way) return true;
-  return expected(probe.pixel(column, row, march.translucent), march.translucent,
-                  samples_of_length(march.steps, steps_of_way(march.steps, *way)));
-}
-
-bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
-  constexpr int tried = 32;
-  if (!box.cuts.empty()) return true;
-  if (march.extreme) return !march.steps_seen || extreme_lies_as_said(measured, march, box).value_or(true);
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
-  if (!probe.complete()) return false;
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
-  if (!removes_background(measured, probe, rays, march)) return false;
-  std::vector<float> values = values_over(measured.range, tried);
-  values.push_back(march.translucent);
-  const auto middle = rays.middle();
-  const auto split =
-      split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));
-  const volume::RaySteps placed = march.from_exit ? from_exit(march.steps, rays, probe) : march.steps;
-  return misplaced_part(split, rays, placed) <= most_misplaced;
 }
 
 }  // namespace understudy::spu

@@ -15,6 +15,7 @@
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/geometry_inside.h"
+#include "spu/volume/proxy/march_changes.h"
 #include "spu/volume/proxy/ray_ends.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"

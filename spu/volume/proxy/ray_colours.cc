@@ -15,6 +15,13 @@ float value_at(const std::array<float, 2>& range, double place) {
   return float(range[0] + place * (double(range[1]) - range[0]));
 }
 
+std::vector<float> values_over(const std::array<float, 2>& range, int count) {
+  std::vector<float> values;
+  values.reserve(std::size_t(count));
+  for (int i = 0; i < count; ++i) values.push_back(value_at(range, double(i) / (count - 1)));
+  return values;
+}
+
 bool reached(const Rgba& fragment) {
   return fragment[3] != no_fragment;
 }
@@ -27,6 +34,10 @@ Rgba premultiplied(Rgba fragment, bool already) {
 
 bool premultiplied_already(const MarchContext& measured, const March& march) {
   return measured.run.pipeline().blending.premultiplied || march.alpha_twice || march.background;
+}
+
+bool multiplies_by_alpha(const Pipeline& pipeline) {
+  return !pipeline.blending.premultiplied && !pipeline.target.floating;
 }
 
 bool grow_with_alpha(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {

@@ -15,6 +15,9 @@ namespace understudy::spu {
 /// The value at `place` of a range, in [0,1].
 float value_at(const std::array<float, 2>& range, double place);
 
+/// `count` values, all over the range.
+std::vector<float> values_over(const std::array<float, 2>& range, int count = 128);
+
 /// Whether there was a fragment.
 bool reached(const volume::Rgba& fragment);
 
@@ -22,6 +25,9 @@ bool reached(const volume::Rgba& fragment);
 volume::Rgba premultiplied(volume::Rgba fragment, bool already);
 /// Whether the program's fragments are multiplied by alpha.
 bool premultiplied_already(const MarchContext& measured, const March& march);
+
+/// Whether blending multiplies colours by alpha, after they are clamped.
+bool multiplies_by_alpha(const Pipeline& pipeline);
 
 /// Whether colours grow in proportion to alpha from a short ray (`briefly`) to a long one (`through`) over the
 /// same fields, each of one value.

@@ -64,6 +64,16 @@ bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const 
   return !(largest_difference(flat, sloping) <= same_but_for_rounding);
 }
 
+bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
+                        const std::vector<float>& values, const std::vector<Rgba>& nearest) {
+  if (measured.run.pipeline().blending.replaces) return true;
+  const auto sums = probe.sums_at(ray.x, ray.y, values);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (!(largest_difference(sums[i], reached(nearest[i]) ? nearest[i] : Rgba{}) <= 1e-6F)) return false;
+  }
+  return true;
+}
+
 std::optional<TranslucentRay> translucent_ray(const MarchContext& measured, FieldProbe& probe,
                                               const RaysThroughBox& rays, const volume::RaySteps& texels,
                                               const March& march, const std::vector<float>& values) {

@@ -27,6 +27,12 @@ Ray ray_of_length(const RaysThroughBox& rays, const volume::RaySteps& steps, dou
 /// Whether the colour of a ray changes when the field of `value` gets the slightest slope, as lighting would.
 bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const Ray& ray, float value);
 
+/// Whether all fragments of a ray over the fields of `values` add up to the nearest ones: where faces are not
+/// culled, the front and the back fragment are blended. Where fragments replace what is there, the nearest one
+/// is left (RayCasterStage).
+bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
+                        const std::vector<float>& values, const std::vector<volume::Rgba>& nearest);
+
 /// A value whose field lets about half of the light through a ray.
 struct TranslucentRay {
   Ray ray;

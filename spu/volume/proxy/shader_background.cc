@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -247,6 +248,17 @@ std::optional<FoundBackground> BackgroundSearch::found() {
   return std::nullopt;
 }
 
+/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
+bool hides_what_was_there(const Pipeline& pipeline, float alpha) {
+  constexpr float opaque = 1 - 1e-6F;
+  const Blending& blending = pipeline.blending;
+  if (blending.replaces) return true;
+  return alpha >= opaque && alpha <= 1 && blending.op == volume::Operator::over &&
+         blending.front_to_back == FrontToBack::no &&
+         (blending.alpha.untouched ? pipeline.target.alpha_bits == 0
+                                   : blending.alpha.op == volume::Operator::over);
+}
+
 /// A ray through the middle of the box whose far part is opaque: what is put before that may hide it.
 class HiddenBehind {
  public:
@@ -310,6 +322,24 @@ std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThro
                                                const volume::RaySteps& texels,
                                                const std::vector<float>& values) {
   return BackgroundSearch(probe, rays, texels, values).found();
+}
+
+std::optional<ShaderBackground> remove_background(const MarchContext& measured, FieldProbe& probe,
+                                                  const RaysThroughBox& rays) {
+  volume::RaySteps texels;
+  for (std::size_t k = 0; k < 3; ++k) texels.metric[4 * k] = measured.texture.size[k];
+  auto found = find_background(probe, rays, texels, values_over(measured.range));
+  if (!found || !hides_what_was_there(measured.run.pipeline(), found->background.alpha)) return std::nullopt;
+  probe.remove(found->background, std::move(found->rays));
+  return found->background;
+}
+
+bool remove_known_background(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
+                             const March& march) {
+  constexpr double same = 1e-3;
+  if (!march.background) return true;
+  const auto found = remove_background(measured, probe, rays);
+  return found && distance(found->colour, march.background->colour) < same;
 }
 
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march) {

@@ -25,6 +25,15 @@ std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThro
                                                const volume::RaySteps& texels,
                                                const std::vector<float>& values);
 
+/// Shows `probe` the rays without the background that the program puts them over. Null: it does no such thing,
+/// or its fragments do not replace what was there.
+std::optional<ShaderBackground> remove_background(const MarchContext& measured, FieldProbe& probe,
+                                                  const RaysThroughBox& rays);
+
+/// The same of the background of `march`, where it has one; false where it is another now.
+bool remove_known_background(const MarchContext& measured, FieldProbe& probe, const RaysThroughBox& rays,
+                             const March& march);
+
 /// Values that have the colour of the program's background look as if they showed nothing, but may hide what
 /// lies behind them, as fields tell that are opaque behind a plane. A few entries of march.table between others
 /// that are seen are filled in; false where there are more. `probe` shows rays without their background, whose

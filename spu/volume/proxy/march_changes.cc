@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/march_changes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "spu/volume/classification/table_lookup.h"
+#include "spu/volume/proxy/exit_steps.h"
+#include "spu/volume/proxy/extreme_steps.h"
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march_table.h"
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/ray_probes.h"
+#include "spu/volume/proxy/sample_places.h"
+#include "spu/volume/proxy/shader_background.h"
+#include "spu/volume/proxy/step_fit.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+namespace {
+
+/// Whether the samples of an extreme lie where `march` says; empty where no field tells.
+std::optional<bool> extreme_lies_as_said(const MarchContext& measured, const March& march,
+                                         const ProxyBox& box) {
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete()) return std::nullopt;
+  return extremes_lie_on(march.steps, measured, probe, march.table, box);
+}
+
+}  // namespace
+
+std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  if (march.alpha_twice && !multiplies_by_alpha(measured.run.pipeline())) return std::nullopt;
+  March changed = march;
+  changed.table.low = measured.range[0];
+  changed.table.high = measured.range[1];
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  {
+    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+    if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
+    if (march.background) {
+      changed.background = remove_background(measured, probe, rays);
+      if (!changed.background) return std::nullopt;
+    }
+    if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+    if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
+  }
+  if (march.jitter) {
+    changed.steps.offsets = ray_offsets(measured.context, measured.run, *march.jitter);
+    if (!changed.steps.offsets) return std::nullopt;
+  }
+  const auto middle = rays.middle();
+  const auto way = rays.way(middle[0], middle[1]);
+  if (!way) return std::nullopt;
+  float nearest = 0.48F;
+  const auto& table = changed.table;
+  for (std::size_t i = 0; i < table.entries.size() && !march.extreme; ++i) {
+    const float through = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, *way)));
+    if (std::abs(through - 0.5F) >= nearest) continue;
+    nearest = std::abs(through - 0.5F);
+    changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
+  }
+  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, {.values = 16}))
+    return std::nullopt;
+  return changed;
+}
+
+std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
+                                            const ProxyBox& box) {
+  March changed = march;
+  changed.from_inside = true;
+  if (march.extreme) return changed;  // whose steps only rays from outside tell
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete() || !held_still(measured, probe, march))
+    return "the driver offers no float framebuffer to probe with";
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  if (!remove_known_background(measured, probe, rays, march))
+    return "the steps of rays are others where the eye is inside";
+  const auto counted = counted_rays(measured, probe, rays, march);
+  if (const auto* reason = std::get_if<std::string>(&counted)) return *reason;
+  const volume::Vec3 axes = axes_in_texels(measured.texture.size);
+  for (const StepFit& fit : fit_steps(std::get<std::vector<CountedRay>>(counted), axes)) {
+    const volume::RaySteps rule = rules_of(fit).front();
+    if (fit.unexplained > most_unexplained || rule.first != march.steps.first) continue;
+    changed.steps.metric = rule.metric;
+    return changed;
+  }
+  return "the steps of rays are others where the eye is inside";
+}
+
+std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
+                                       double factor) {
+  // The table is not measured otherwise.
+  constexpr RaysLookedAt looked_at{.values = 64};
+  if (march.sum || march.steps.divided) return std::nullopt;
+  March longer = march;
+  for (double& number : longer.steps.metric) number /= factor;
+  if (march.extreme) {
+    // Its rays look alike whatever the number of their samples.
+    longer.steps_seen = extreme_lies_as_said(measured, longer, box).value_or(false);
+    if (!longer.steps_seen || !still_marches(measured, longer, box, looked_at)) return std::nullopt;
+    return longer;
+  }
+  March corrected = longer;
+  for (Rgba& entry : corrected.table.entries) entry = ray_of(march, entry, factor);
+  for (const March& candidate : {corrected, longer}) {
+    if (still_marches(measured, candidate, box, looked_at)) return candidate;
+  }
+  return std::nullopt;
+}
+
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
+                   const RaysLookedAt& looked_at) {
+  constexpr float same_colour = 5e-3F;
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete() || !held_still(measured, probe, march)) return false;
+  const bool already = premultiplied_already(measured, march);
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  std::vector<float> values;
+  values.reserve(std::size_t(looked_at.values));
+  for (int i = 0; i < looked_at.values; ++i)
+    values.push_back(value_at({march.table.low, march.table.high}, (i + looked_at.offset) / looked_at.values));
+  const auto expected = [&](const Rgba& fragment, float value, double n) {
+    const Rgba sample = table_at(march.table, value);
+    const Rgba got = premultiplied(fragment, already);
+    if (march.extreme) return largest_difference(got, sample) <= same_colour;
+    // A ray whose end falls on a sample may have one more or less.
+    for (const double count : {n, n - 1, n + 1}) {
+      if (count < 1) continue;
+      const Rgba ray = ray_of(march, sample, count);
+      const Rgba shown = march.background ? over_background(*march.background, ray) : ray;
+      if (largest_difference(got, shown) <= same_colour) return true;
+    }
+    return false;
+  };
+  const auto shows_table = [&](const Ray& ray) {
+    const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
+    const auto fragments = probe.at(ray.x, ray.y, values);
+    if (!march.background && !only_nearest_shows(measured, probe, ray, values, fragments)) return false;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!expected(fragments[i], values[i], samples)) return false;
+    }
+    return true;
+  };
+  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample.
+  constexpr std::array short_lengths{2.5, 4.5, 7.5};
+  const double first = march.steps.divided ? 0.5 : march.steps.first;
+  if (looked_at.values > 0 && std::ranges::none_of(short_lengths, [&](double length) {
+        return shows_table(ray_of_length(rays, march.steps, march.extreme ? length + 1 : length + first));
+      }))
+    return false;
+  if (march.extreme || !looked_at.long_ray) return true;
+  // A long ray: its step may have another length in another direction.
+  const auto middle = rays.middle();
+  const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
+  const int row = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
+  const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+  if (!way) return true;
+  return expected(probe.pixel(column, row, march.translucent), march.translucent,
+                  samples_of_length(march.steps, steps_of_way(march.steps, *way)));
+}
+
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
+  constexpr int tried = 32;
+  if (!box.cuts.empty()) return true;
+  if (march.extreme) return !march.steps_seen || extreme_lies_as_said(measured, march, box).value_or(true);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  if (!probe.complete()) return false;
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
+  if (!remove_known_background(measured, probe, rays, march)) return false;
+  std::vector<float> values = values_over(measured.range, tried);
+  values.push_back(march.translucent);
+  const auto middle = rays.middle();
+  const auto split =
+      split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));
+  const volume::RaySteps placed = march.from_exit ? counted_from_exit(march.steps, rays, probe) : march.steps;
+  return misplaced_part(split, rays, placed) <= most_misplaced;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a march that was measured still holds, and the march with what has changed: its table, its steps. A
+// few rays tell, where measuring everything again takes hundreds.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "spu/volume/proxy/march.h"
+
+namespace understudy::spu {
+
+/// The march with the transfer function that the program has now; null when more than that has changed.
+std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
+
+/// The march with steps that are `factor` times as long, whose samples are corrected for their length, as is
+/// usual, or are what they were; null when neither is what the program shows, as far as fields tell.
+std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
+                                       double factor);
+
+/// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
+std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,
+                                            const ProxyBox& box);
+
+/// What still_marches() looks at.
+struct RaysLookedAt {
+  int values = 8;  ///< evenly spread over the table, each on a short ray
+  double offset =
+      0.5;  ///< 0 to 1: of the space between two values, how far the first lies behind the beginning
+  bool long_ray = true;
+};
+
+/// Whether a few rays through constant fields still are as `march` says.
+bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
+                   const RaysLookedAt& looked_at);
+
+/// Whether samples still lie on rays where `march` says, as far as fields tell.
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box);
+
+}  // namespace understudy::spu

@@ -161,6 +161,8 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   ImageRequest& image = recognised.image;
   volume::RenderRequest& request = image.request;
   if (volume.colours.rounding.rounds()) round_samples(request);
+  // Whatever was right before was right of something else, where a ray caster has been measured anew.
+  if (volume.frames == 0) volume.verified.schedule.ask_for_whole();
   if (image.unproven) volume.verified.schedule.ask_for_several();
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);

@@ -405,7 +405,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().DepthMask(style.writes_depth ? GL_TRUE : GL_FALSE);
   if (!style.both_faces) gl().Enable(GL_CULL_FACE);
   if (!style.replaces) gl().Enable(GL_BLEND);
-  gl().BlendFunc(style.premultiplied && !style.alpha_twice ? GL_ONE : GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  gl().BlendFunc(style.premultiplied && !style.alpha_twice ? GL_ONE : GL_SRC_ALPHA,
+                 style.adds ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
   gl().UseProgram(program_);
   const auto at = [&](const char* name) { return gl().GetUniformLocation(program_, name); };
   set_matrix(gl(), program_, "camera", camera.forward);

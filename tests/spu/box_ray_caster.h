@@ -19,6 +19,7 @@ struct MarchStyle {
   bool premultiplied = true;  ///< what the shader writes, and the blend function
   bool alpha_twice = false;   ///< with `premultiplied`: the blend function multiplies by alpha once more
   bool replaces = false;      ///< blending is disabled
+  bool adds = false;          ///< blending adds what is drawn to what is there
   /// The shader puts its rays over this colour, and writes an alpha of 1.
   std::optional<std::array<float, 3>> background{};
   bool writes_depth = false;

@@ -156,6 +156,17 @@ TEST(Proxies, TheShadersBackgroundMayChangeBetweenFrames) {
   EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
 }
 
+TEST(Proxies, AShadersBackgroundThatIsAddedToWhatIsThereIsLeft) {
+  ProxyScene scene({.background = {{0.3F, 0.2F, 0.1F}}, .discards = false});
+  ASSERT_NE(scene.app, nullptr) << "no EGL context here";
+  scene.frame(true, 20);
+  ASSERT_EQ(scene.app->substituted(), 1U) << scene.app->last_reason();
+  scene.caster().style.adds = true;
+  const auto under = scene.frame(true, 20);
+  EXPECT_EQ(scene.app->substituted(), 1U);
+  EXPECT_TRUE(under == scene.frame(false, 20));
+}
+
 TEST(Proxies, OpaqueFragmentsWhoseBoxIsNotSortedAreLeft) {
   const std::vector<Kind> left = {
       {"both are opaque", {.background = {{1, 1, 1}}, .discards = false, .both_faces = true}},

@@ -10,12 +10,21 @@
 #include "volume/raycast/ray_caster.h"
 
 namespace understudy::spu {
+namespace {
+
+/// In steps: the sample at the exit itself is not lost to rounding.
+constexpr double exit_rounding = 1e-3;
+
+}  // namespace
+
+bool may_be_counted_from_exit(const volume::RaySteps& steps) {
+  return !steps.divided && steps.first < 1 - 2 * exit_rounding;
+}
 
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,
                                    const volume::Rect& viewport, const volume::Rect& rect) {
   constexpr auto no_sample = float(volume::max_planes);  // begins behind the end of every ray
-  // The sample at the exit itself is not lost to rounding.
-  constexpr double rounding = 1e-3;
+  if (rect.empty()) return steps;
   volume::RaySteps counted = steps;
   counted.first = 0;
   volume::RayOffsets offsets{rect.width, rect.height, std::vector<float>(rect.pixels(), no_sample)};
@@ -28,7 +37,7 @@ volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThro
       const auto column = std::size_t((x % rect.width + rect.width) % rect.width);
       const auto row = std::size_t((y % rect.height + rect.height) % rect.height);
       offsets.steps[row * std::size_t(rect.width) + column] =
-          float(std::max(0.0, to_last - std::floor(to_last) - rounding));
+          float(std::max(0.0, to_last - std::floor(to_last) - exit_rounding));
     }
   }
   counted.offsets = std::move(offsets);

@@ -10,6 +10,10 @@
 
 namespace understudy::spu {
 
+/// Not where they are divided evenly, or where the first sample lies a whole step from the exit: nodes would
+/// take one more, at the exit itself.
+bool may_be_counted_from_exit(const volume::RaySteps& steps);
+
 /// The places of `steps`, which are not divided, counted from the exits of the rays through the pixels of
 /// `rect`.
 volume::RaySteps counted_from_exit(const volume::RaySteps& steps, const RaysThroughBox& rays,

@@ -109,8 +109,9 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!(largest_difference(through_[i], briefly[i]) <= 2e-3F)) march_.extreme.reset();
   }
-  if (!march_.extreme && one_alpha(through_, briefly))
-    march_.background = remove_background(measured_, probe_, rays_);
+  // Of samples that are nearly opaque a few look like any number of them: shorter rays tell.
+  if (one_alpha(through_, briefly)) march_.background = remove_background(measured_, probe_, rays_);
+  if (march_.background) march_.extreme.reset();
   // Which face's fragment an opaque one is left of, RayCasterStage looks at.
   if (!march_.background && !only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_))
     return back_faces_show;
@@ -210,7 +211,7 @@ std::optional<Refusal> MarchMeasurement::measure() {
   march_.table.high = measured_.range[1];
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
-    return "a value that hides what lies behind it has the colour of the shader's background";
+    return "a value that may hide what lies behind it has the colour of the shader's background";
   if (auto refusal = take_offsets()) return refusal;
   return find_places();
 }
@@ -218,7 +219,7 @@ std::optional<Refusal> MarchMeasurement::measure() {
 double MarchMeasurement::least_misplaced(bool from_exit) {
   double least = 1;
   for (const volume::RaySteps& rule : rules_) {
-    if (from_exit && rule.divided) continue;
+    if (from_exit && !may_be_counted_from_exit(rule)) continue;
     const volume::RaySteps placed = from_exit ? counted_from_exit(rule, rays_, probe_) : rule;
     least = std::min(least, misplaced_part(split_, rays_, placed));
   }
@@ -277,7 +278,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
-      if (march_.from_exit && rules_[r].divided) continue;
+      if (march_.from_exit && !may_be_counted_from_exit(rules_[r])) continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       if (misplaced_part(split_, rays, placed) <= most_misplaced)
         add_marches(spaces[i], rules_[r], seen, marches);

@@ -17,6 +17,7 @@
 #include "spu/volume/proxy/geometry_inside.h"
 #include "spu/volume/proxy/march_changes.h"
 #include "spu/volume/proxy/ray_ends.h"
+#include "spu/volume/proxy/shader_background.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
 #include "spu/volume/verification/tile_comparison.h"
@@ -291,11 +292,13 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
-  if (known.march.march->background) {
-    if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
-  }
   VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, turned);
   known.march.inputs = std::move(inputs);
+  if (const auto& background = known.march.march->background) {
+    if (!hides_what_was_there(pipeline, background->alpha))
+      throw Refusal{"the shader's background is blended with what is there"};
+    if (auto refusal = refusal_of_replacing(context_, pipeline, says)) throw Refusal{std::move(*refusal)};
+  }
   RayCasterRequest asked{ask(draw, *known.march.march, box, compose(draw, *known.march.march, box)),
                          box.camera};
   asked.image.inputs = std::move(depends_on);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "spu/volume/proxy/step_fit.h"
 #include "volume/footprint.h"
@@ -98,20 +99,30 @@ volume::DepthImage depths_over(const volume::Rect& rect, const volume::RenderReq
   return image;
 }
 
-/// Row by row, which pixels' rays enter the box, between the planes, before opaque geometry: 1, others 0.
-std::vector<char> entered_pixels(const std::vector<volume::HalfSpace>& planes,
-                                 const volume::RenderRequest& request, const volume::Rect& rect) {
-  std::vector<char> entered(rect.pixels(), 0);
-  const auto back = volume::inverse(request.texture_to_clip);
-  if (!back) return entered;
-  const volume::DepthImage depth = depths_over(rect, request);
-  std::size_t pixel = 0;
-  for (int y = rect.y; y < rect.y + rect.height; ++y) {
-    for (int x = rect.x; x < rect.x + rect.width; ++x, ++pixel)
-      entered[pixel] = PixelRay(request, *back, planes, x, y).enters_before(depth.depth[pixel]) ? 1 : 0;
+/// Which pixels' rays enter the box, between the planes, before opaque geometry.
+class EnteringRays {
+ public:
+  EnteringRays(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
+               const volume::Rect& rect)
+      : planes_(planes),
+        request_(request),
+        depth_(depths_over(rect, request)),
+        clip_to_texture_(volume::inverse(request.texture_to_clip)) {}
+
+  /// Of a pixel of the rectangle, in the window.
+  bool at(int x, int y) const {
+    if (!clip_to_texture_) return false;
+    const volume::Rect& rect = depth_.rect;
+    const auto pixel = std::size_t(y - rect.y) * std::size_t(rect.width) + std::size_t(x - rect.x);
+    return PixelRay(request_, *clip_to_texture_, planes_, x, y).enters_before(depth_.depth[pixel]);
   }
-  return entered;
-}
+
+ private:
+  const std::vector<volume::HalfSpace>& planes_;
+  const volume::RenderRequest& request_;
+  const volume::DepthImage depth_;
+  const std::optional<volume::Matrix4> clip_to_texture_;
+};
 
 }  // namespace
 
@@ -149,21 +160,24 @@ void end_rays_at(const std::vector<volume::HalfSpace>& planes, double past_plane
 
 void cover_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
                    float alpha, volume::Image& image) {
-  const std::vector<char> entered = entered_pixels(planes, request, image.rect);
-  for (std::size_t pixel = 0; pixel < entered.size(); ++pixel) {
-    float& covered = image.rgba[4 * pixel + 3];
-    if (covered == 0 && entered[pixel] != 0) covered = alpha;
+  const EnteringRays entering(planes, request, image.rect);
+  auto pixel = image.rgba.begin();
+  for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y) {
+    for (int x = image.rect.x; x < image.rect.x + image.rect.width; ++x, pixel += 4) {
+      if (pixel[3] == 0 && entering.at(x, y)) pixel[3] = alpha;
+    }
   }
 }
 
 void fill_behind_entered(const std::vector<volume::HalfSpace>& planes, const volume::RenderRequest& request,
                          const ShaderBackground& background, volume::Image& image) {
-  const std::vector<char> entered = entered_pixels(planes, request, image.rect);
+  const EnteringRays entering(planes, request, image.rect);
   auto pixel = image.rgba.begin();
-  for (const char inside : entered) {
-    if (inside != 0 || pixel[3] > 0)
-      std::ranges::copy(over_background(background, {pixel[0], pixel[1], pixel[2], pixel[3]}), pixel);
-    pixel += 4;
+  for (int y = image.rect.y; y < image.rect.y + image.rect.height; ++y) {
+    for (int x = image.rect.x; x < image.rect.x + image.rect.width; ++x, pixel += 4) {
+      if (pixel[3] > 0 || entering.at(x, y))
+        std::ranges::copy(over_background(background, {pixel[0], pixel[1], pixel[2], pixel[3]}), pixel);
+    }
   }
 }
 

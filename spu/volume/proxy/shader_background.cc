@@ -248,21 +248,10 @@ std::optional<FoundBackground> BackgroundSearch::found() {
   return std::nullopt;
 }
 
-/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
-bool hides_what_was_there(const Pipeline& pipeline, float alpha) {
-  constexpr float opaque = 1 - 1e-6F;
-  const Blending& blending = pipeline.blending;
-  if (blending.replaces) return true;
-  return alpha >= opaque && alpha <= 1 && blending.op == volume::Operator::over &&
-         blending.front_to_back == FrontToBack::no &&
-         (blending.alpha.untouched ? pipeline.target.alpha_bits == 0
-                                   : blending.alpha.op == volume::Operator::over);
-}
-
 /// A ray through the middle of the box whose far part is opaque: what is put before that may hide it.
 class HiddenBehind {
  public:
-  /// Null where no plane of a field lies in the box.
+  /// Null where the eye is inside the box, its middle out of view, or no plane of a field in it.
   static std::optional<HiddenBehind> in_middle_of(FieldProbe& probe, const ProxyBox& box,
                                                   const volume::RaySteps& steps, const March& march);
 
@@ -285,6 +274,7 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
                                                        const volume::RaySteps& steps, const March& march) {
   constexpr float visible = 0.02F;
   constexpr double part_behind = 0.3;  // of the samples, at least: the plane lies at 0.37 of the box
+  if (!box.cuts.empty()) return std::nullopt;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   const auto middle = rays.middle();
   HiddenBehind ray;
@@ -324,6 +314,16 @@ std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThro
   return BackgroundSearch(probe, rays, texels, values).found();
 }
 
+bool hides_what_was_there(const Pipeline& pipeline, float alpha) {
+  constexpr float opaque = 1 - 1e-6F;
+  const Blending& blending = pipeline.blending;
+  if (blending.replaces) return true;
+  return alpha >= opaque && alpha <= 1 && blending.op == volume::Operator::over &&
+         blending.front_to_back == FrontToBack::no &&
+         (blending.alpha.untouched ? pipeline.target.alpha_bits == 0
+                                   : blending.alpha.op == volume::Operator::over);
+}
+
 std::optional<ShaderBackground> remove_background(const MarchContext& measured, FieldProbe& probe,
                                                   const RaysThroughBox& rays) {
   volume::RaySteps texels;
@@ -344,10 +344,10 @@ bool remove_known_background(const MarchContext& measured, FieldProbe& probe, co
 
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march) {
   constexpr std::size_t longest_filled = 4;  // a value of 8 bits has as many entries
-  constexpr std::size_t tested_apart = 8;
-  if (!march.background || !box.cuts.empty()) return true;
+  constexpr std::size_t tested_apart = longest_filled;
+  if (!march.background) return true;
   const auto hidden_behind = HiddenBehind::in_middle_of(probe, box, steps, march);
-  if (!hidden_behind) return true;
+  if (!hidden_behind) return false;
   std::vector<Rgba>& entries = march.table.entries;
   const std::array range{march.table.low, march.table.high};
   const auto hides = [&](std::size_t entry) {

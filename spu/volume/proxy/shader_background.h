@@ -25,6 +25,9 @@ std::optional<FoundBackground> find_background(FieldProbe& probe, const RaysThro
                                                const volume::RaySteps& texels,
                                                const std::vector<float>& values);
 
+/// Whether fragments of this alpha leave the program's own colour and nothing of what was there before.
+bool hides_what_was_there(const Pipeline& pipeline, float alpha);
+
 /// Shows `probe` the rays without the background that the program puts them over. Null: it does no such thing,
 /// or its fragments do not replace what was there.
 std::optional<ShaderBackground> remove_background(const MarchContext& measured, FieldProbe& probe,
@@ -36,8 +39,8 @@ bool remove_known_background(const MarchContext& measured, FieldProbe& probe, co
 
 /// Values that have the colour of the program's background look as if they showed nothing, but may hide what
 /// lies behind them, as fields tell that are opaque behind a plane. A few entries of march.table between others
-/// that are seen are filled in; false where there are more. `probe` shows rays without their background, whose
-/// samples lie on `steps`.
+/// that are seen are filled in; false where there are more, or where that cannot be looked at. `probe` shows
+/// rays without their background, whose samples lie on `steps`.
 bool fill_unseen(FieldProbe& probe, const ProxyBox& box, const volume::RaySteps& steps, March& march);
 
 }  // namespace understudy::spu

@@ -67,7 +67,7 @@ std::string sampling_of(const volume::RenderRequest& request, const std::array<i
   }
   const std::string_view jitter = !steps.offsets ? ""
                                   : cut_rays     ? ", every ray from the planes that cut the box"
-                                                 : ", every ray later by a texture of the program";
+                                                 : ", every ray later by a number of its own";
   return fmt::format("a ray caster's box, {:.3f} x {:.3f} x {:.3f} {} a texel, the first sample {} in{}{}",
                      a_texel[0], a_texel[1], a_texel[2], steps.divided ? "equal parts" : "steps", steps.first,
                      jitter,

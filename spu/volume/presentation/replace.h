@@ -6,6 +6,7 @@
 #include "dispatch/table.h"
 #include "spu/volume/geometry/polygon.h"
 #include "volume/image.h"
+#include "volume/rgba.h"
 
 namespace understudy::spu {
 

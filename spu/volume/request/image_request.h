@@ -7,6 +7,7 @@
 
 #include "spu/volume/verification/schedule.h"
 #include "volume/request.h"
+#include "volume/rgba.h"
 
 namespace understudy::spu {
 

@@ -107,7 +107,7 @@ struct Unlikeness {
       : severity(std::max(difference.worst.severity(), rounding)),
         guessed(!march.steps_seen),
         mean_square(difference.mean_square) {}
-  auto operator<=>(const Unlikeness&) const = default;
+  auto operator<=>(const Unlikeness&) const = default;  // NOLINT(modernize-use-nullptr): there is no pointer
 
   double severity = 0;
   bool guessed = false;

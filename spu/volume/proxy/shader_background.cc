@@ -96,11 +96,12 @@ std::vector<std::size_t> BackgroundSearch::clearest_values() {
 
 std::vector<Level> BackgroundSearch::levels_of(float value) {
   constexpr double shortest = 0.03;  // in texels
-  constexpr double longest = 40;
+  constexpr int lengths = 75;        // up to 35 texels
   constexpr double growth = 1.1;
   const std::array one{value};
   std::vector<Level> seen;
-  for (double length = shortest; length < longest; length *= growth) {
+  double length = shortest;
+  for (int i = 0; i < lengths; ++i, length *= growth) {
     const Ray ray = ray_of_length(rays_, texels_, length);
     const Rgba fragment = probe_.at(ray.x, ray.y, one).front();
     if (reached(fragment)) seen.push_back({ray, colour_of(fragment)});

@@ -167,9 +167,9 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {
-    auto comparison = stages.verifier.verify({run, request, image.uncut_window.value_or(request.window),
-                                              image.discards_by_place, image.eye_inside, volume.frames},
-                                             shown, volume.verified, *volume.counters);
+    auto comparison = stages.verifier.verify(
+        {run, request, image.uncut_window.value_or(request.window), image.eye_inside, volume.frames}, shown,
+        volume.verified, *volume.counters);
     if (comparison && image.background_alone) comparison->difference.anything_visible = false;
     take_comparison(comparison, volume, session_->ledger().frames());
   };

@@ -23,7 +23,7 @@ constexpr const char* fragment_source =
     "uniform mat4 inverse_camera; uniform vec4 eye; uniform vec3 extent; uniform float one_step;\n"
     "uniform int composition; uniform bool straight, divided, lit, whole_rays, jittered, noisy, reads_depth;\n"
     "uniform vec2 window; uniform float past_planes; uniform bool discards, over_background;\n"
-    "uniform vec3 background;\n"
+    "uniform vec3 background; uniform vec4 shown; uniform float shown_radius;\n"
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
@@ -51,7 +51,9 @@ constexpr const char* fragment_source =
     "  return in_croppingFlags[region] != 0;\n"
     "}\n"
     "void main() {\n"
-    "  if (discards && (gl_FragCoord.x < 1.0 || gl_FragCoord.y < 1.0)) discard;\n"
+    "  vec2 here = gl_FragCoord.xy;\n"
+    "  if (discards && (any(lessThan(here, shown.xy)) || any(greaterThan(here, shown.zw)))) discard;\n"
+    "  if (shown_radius > 0.0 && distance(here, 0.5 * window) > shown_radius) discard;\n"
     "  vec3 place = corner_between;\n"
     "  vec3 along = eye.w != 0.0 ? place - eye.xyz : eye.xyz;\n"
     "  if (whole_rays) {\n"
@@ -428,6 +430,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
   gl().Uniform1i(at("discards"), style.discards ? 1 : 0);
+  gl().Uniform4fv(at("shown"), 1, style.shown.data());
+  gl().Uniform1f(at("shown_radius"), style.shown_radius);
   gl().Uniform1i(at("noisy"), style.noisy ? 1 : 0);
   gl().Uniform1i(at("reads_depth"), style.reads_depth ? 1 : 0);
   set_cuts(gl(), style, program_);

@@ -23,7 +23,11 @@ struct MarchStyle {
   /// The shader puts its rays over this colour, and writes an alpha of 1.
   std::optional<std::array<float, 3>> background{};
   bool writes_depth = false;
-  bool discards = true;       ///< rays without a sample
+  bool discards = true;  ///< rays without a sample, and fragments outside of `shown`
+  /// Lower left and upper right corner, in pixels of the window: as vispy clips its views, and takes an edge
+  /// off.
+  std::array<float, 4> shown{1, 1, 1000, 1000};
+  float shown_radius = 0;     ///< fragments are discarded that are farther from the window's middle; 0: none
   bool divided = false;       ///< the way through the box in equal parts, instead of steps of one length
   bool parallel = false;      ///< the projection
   bool both_faces = false;    ///< neither front nor back faces of the box are culled

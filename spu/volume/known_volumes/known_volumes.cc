@@ -24,19 +24,7 @@ std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) 
 }
 
 /// What the next image is tried with, after one was wrong; empty: nothing is left to try.
-std::string_view another_explanation(const Comparison& lost, KnownVolume& volume) {
-  KnownMarch& march = volume.march;
-  if (lost.kept) {
-    // An edge that the volume had not crossed before: vispy takes a pixel from all four.
-    KeptWindow kept = *lost.kept;
-    if (march.kept && march.kept->viewport == kept.viewport)
-      kept.kept = intersection(kept.kept, march.kept->kept);
-    if (march.kept != kept) {
-      march.kept = kept;
-      march.views_to_prove = right_after_loss;
-      return "within the part of the window where its program keeps fragments";
-    }
-  }
+std::string_view another_explanation(KnownVolume& volume) {
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) return "with samples rounded to 8 bits";
   return {};
 }
@@ -149,7 +137,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
     return;
   }
   Refusal refusal = refusal_of(comparison->difference);
-  if (const std::string_view how = another_explanation(*comparison, volume); !how.empty()) {
+  if (const std::string_view how = another_explanation(volume); !how.empty()) {
     volume.refusals.pause(frame, 1);
     volume.speed.allow_another();
     schedule.ask_for_whole();
@@ -160,7 +148,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   volume.counters->verify_lost.fetch_add(1, std::memory_order_relaxed);
   volume.colours.probed.reset();
   volume.march.march.reset();
-  volume.march.kept.reset();
+  volume.march.kept.clear();
   const auto in_a_row = std::min(std::size_t(schedule.lost_in_a_row()), pauses.size());
   volume.refusals.pause(frame, pauses[in_a_row - 1]);
   if (schedule.gives_up()) volume.refusals.handed_back = refusal.reason;

@@ -11,6 +11,7 @@
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
+#include "volume/image.h"
 
 namespace understudy::spu {
 
@@ -38,6 +39,8 @@ struct MarchContext {
   std::array<float, 2> range;     ///< of the texels' values
   bool clipped = false;           ///< rays begin or end at clipping planes
   bool ends_at_geometry = false;  ///< at the opaque geometry, whose depth the program fetches
+  /// Pixels of the window where the program keeps fragments, where it discards others by their place.
+  std::optional<volume::Rect> kept{};
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

@@ -34,7 +34,7 @@ bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
 }
 
 FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
-                       ProbeSurfaces& surfaces)
+                       ProbeSurfaces& surfaces, const std::optional<volume::Rect>& kept)
     : gl_(*context.gl),
       run_(run),
       texture_(texture),
@@ -43,12 +43,13 @@ FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDe
       scissor_(rectangle(gl_, GL_SCISSOR_BOX)),
       saved_(context),
       lifted_(context, run.pipeline().program) {
-  std::array<GLint, 2> largest{};
-  gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data());
+  gl_.GetIntegerv(GL_MAX_VIEWPORT_DIMS, largest_viewport_.data());
   GLint longest = 0;
   gl_.GetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &longest);
   ramp_texels_ = std::clamp(longest, field_texels, most_ramp_texels);
-  fine_ = std::min({finest_viewport, int(largest[0]), int(largest[1])});
+  fine_ = std::min({finest_viewport, int(largest_viewport_[0]), int(largest_viewport_[1])});
+  const volume::Rect all{viewport_[0], viewport_[1], viewport_[2], viewport_[3]};
+  free_ = kept ? intersection(all, *kept) : all;
   const int width = std::max(1, viewport_[0] + viewport_[2]);
   const int height = std::max(1, viewport_[1] + viewport_[3]);
 
@@ -164,14 +165,13 @@ std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<con
 }
 
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<const float> values, float rise) {
-  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all. They
-  // lie in the middle of the viewport: near its rim some viewers discard fragments.
+  // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
   const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
   const int py = std::clamp(int(std::floor((y + 1) / 2 * fine_)), 0, fine_ - 1);
-  const int columns = std::max(1, viewport_[2] / 2);
-  const int most_rows = std::max(1, viewport_[3] / 2);
-  const int left = viewport_[0] + viewport_[2] / 4;
-  const int bottom = viewport_[1] + viewport_[3] / 4;
+  const int columns = std::max(1, free_.width);
+  const int most_rows = std::max(1, free_.height);
+  const int left = free_.x;
+  const int bottom = free_.y;
   std::vector<volume::Rgba> colours;
   while (colours.size() < values.size()) {
     const std::size_t count =
@@ -295,16 +295,27 @@ volume::Rgba FieldProbe::pixel(int column, int row, const SplitField& field) {
   return fragments.front();
 }
 
+std::vector<bool> FieldProbe::kept_in(const volume::Rect& pixels, const volume::Rect& viewport, float value) {
+  show({value, value, value, value, value, value, value, value});
+  std::vector<bool> kept;
+  for (const volume::Rgba& fragment : drawn_into(viewport, pixels)) kept.push_back(fragment[3] != no_fragment);
+  return kept;
+}
+
 std::vector<volume::Rgba> FieldProbe::in_place(int column, int row, int width, int height) {
   // At its own place, so that whatever depends on the place of a fragment is as it will be.
-  const int x = viewport_[0] + column;
-  const int y = viewport_[1] + row;
-  gl_.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-  gl_.Scissor(x, y, width, height);
+  return drawn_into({viewport_[0], viewport_[1], viewport_[2], viewport_[3]}, {column, row, width, height});
+}
+
+std::vector<volume::Rgba> FieldProbe::drawn_into(const volume::Rect& viewport, const volume::Rect& pixels) {
+  const int x = viewport_[0] + pixels.x;
+  const int y = viewport_[1] + pixels.y;
+  gl_.Viewport(viewport.x, viewport.y, viewport.width, viewport.height);
+  gl_.Scissor(x, y, pixels.width, pixels.height);
   clear();
   run_.replay(gl_);
-  std::vector<volume::Rgba> colours(std::size_t(width) * std::size_t(height));
-  gl_.ReadPixels(x, y, width, height, GL_RGBA, GL_FLOAT, colours.data());
+  std::vector<volume::Rgba> colours(pixels.pixels());
+  gl_.ReadPixels(x, y, pixels.width, pixels.height, GL_RGBA, GL_FLOAT, colours.data());
   return colours;
 }
 

@@ -17,6 +17,7 @@
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
 #include "volume/classification.h"
+#include "volume/image.h"
 
 namespace understudy::spu {
 
@@ -25,8 +26,9 @@ constexpr float no_fragment = -1;
 
 class FieldProbe {
  public:
+  /// `kept`: the pixels of the window where the program keeps fragments; null: all of the viewport's.
   FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
-             ProbeSurfaces& surfaces);
+             ProbeSurfaces& surfaces, const std::optional<volume::Rect>& kept);
   ~FieldProbe();
   FieldProbe(const FieldProbe&) = delete;
   FieldProbe& operator=(const FieldProbe&) = delete;
@@ -78,6 +80,10 @@ class FieldProbe {
   volume::Rgba pixel(int column, int row, float value);
   volume::Rgba pixel(int column, int row, const SplitField& field);
 
+  /// Which of `pixels`, which count from the application's viewport, have a fragment where the application
+  /// draws into `viewport` of the window instead, over the field of `value`.
+  std::vector<bool> kept_in(const volume::Rect& pixels, const volume::Rect& viewport, float value);
+
   /// From now on the program reads this tile of numbers from `texture`, which is 2-D; rows bottom up, repeated.
   void show_instead(const SampledTexture& texture, int width, int height, std::span<const float> texels);
   /// It reads its own again.
@@ -88,6 +94,8 @@ class FieldProbe {
   int bottom() const { return viewport_[1]; }
   int width() const { return viewport_[2]; }
   int height() const { return viewport_[3]; }
+  /// Width and height.
+  const std::array<GLint, 2>& largest_viewport() const { return largest_viewport_; }
 
  private:
   bool of_bytes(std::span<const float> texels) const;
@@ -96,6 +104,7 @@ class FieldProbe {
   void show(const SplitField& field);
   void clear();
   std::vector<volume::Rgba> in_place(int column, int row, int width, int height);
+  std::vector<volume::Rgba> drawn_into(const volume::Rect& viewport, const volume::Rect& pixels);
   std::vector<volume::Rgba> drawn_at(double x, double y, std::span<const float> values, float rise);
   void learn_contrasts(std::span<const float> values);
   /// Of fragments whose samples have one of two values.
@@ -108,6 +117,8 @@ class FieldProbe {
   int ramp_texels_ = field_texels;   ///< the more, the nearer to the box's faces does a ramp go on
   std::array<GLint, 4> viewport_{};  ///< the application's
   std::array<GLint, 4> scissor_{};
+  std::array<GLint, 2> largest_viewport_{};
+  volume::Rect free_{};       ///< pixels of the window where chosen rays are drawn
   int fine_ = 0;              ///< edge of the viewport that rays are picked from
   GLint depth_function_ = 0;  ///< the application's
   SavedState saved_;

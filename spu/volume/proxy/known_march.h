@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "spu/volume/proxy/kept_window.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/march_inputs.h"
 #include "spu/volume/proxy/table_contents.h"
-#include "spu/volume/verification/kept_window.h"
 
 namespace understudy::spu {
 
@@ -18,8 +18,8 @@ struct KnownMarch {
   MarchInputs inputs;                 ///< what the march was measured under
   std::vector<TableContents> tables;  ///< of samples, as the march was measured with
   volume::Matrix4 camera{};           ///< of its last image, from texture to clip coordinates
-  std::optional<KeptWindow> kept;  ///< where its program keeps fragments, where it discards any by their place
-  int views_to_prove = 0;          ///< in which `kept` must be right yet
+  /// Where its program keeps fragments, where it discards any by their place; the last one measured last.
+  std::vector<KeptWindow> kept;
 };
 
 /// The input of the fragment stage that addressed the volume; empty: none is known.

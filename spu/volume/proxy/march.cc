@@ -53,7 +53,7 @@ class MarchMeasurement {
   MarchMeasurement(const MarchContext& measured, const ProxyBox& box)
       : measured_(measured),
         box_(box),
-        probe_(measured.context, measured.run, measured.texture, measured.surfaces),
+        probe_(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept),
         rays_(box.camera.texture_to_clip, box.region, box.cuts) {
     for (std::size_t k = 0; k < 3; ++k) texels_.metric[4 * k] = measured.texture.size[k];
     march_.clipped = measured.clipped;

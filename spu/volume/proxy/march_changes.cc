@@ -26,7 +26,7 @@ namespace {
 /// Whether the samples of an extreme lie where `march` says; empty where no field tells.
 std::optional<bool> extreme_lies_as_said(const MarchContext& measured, const March& march,
                                          const ProxyBox& box) {
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return std::nullopt;
   return extremes_lie_on(march.steps, measured, probe, march.table, box);
 }
@@ -40,7 +40,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   changed.table.high = measured.range[1];
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   {
-    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+    FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
     if (!probe.complete() || !held_still(measured, probe, march)) return std::nullopt;
     if (march.background) {
       changed.background = remove_background(measured, probe, rays);
@@ -74,7 +74,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
   March changed = march;
   changed.from_inside = true;
   if (march.extreme) return changed;  // whose steps only rays from outside tell
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -116,7 +116,7 @@ std::optional<March> with_longer_steps(const MarchContext& measured, const March
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at) {
   constexpr float same_colour = 5e-3F;
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const bool already = premultiplied_already(measured, march);
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
@@ -168,7 +168,7 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   constexpr int tried = 32;
   if (!box.cuts.empty()) return true;
   if (march.extreme) return !march.steps_seen || extreme_lies_as_said(measured, march, box).value_or(true);
-  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces);
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   if (!remove_known_background(measured, probe, rays, march)) return false;

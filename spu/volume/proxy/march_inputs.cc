@@ -45,6 +45,17 @@ std::size_t components(GLenum type) {
   }
 }
 
+/// Of a uniform that the program still has.
+void append_value(const MarchContext& measured, const StageUniform& uniform, std::vector<float>& values) {
+  const DispatchTable& gl = *measured.context.gl;
+  const GLuint program = measured.run.pipeline().program;
+  const GLint location = gl.GetUniformLocation(program, uniform.name.c_str());
+  if (location < 0) return;
+  std::array<GLfloat, 16> value{};
+  gl.GetUniformfv(program, location, value.data());
+  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
+}
+
 /// Whether the uniform reaches where samples lie and when a ray ends, and decides about no fragment or colour.
 /// It may reach colours as a number: programs correct opacity by the step.
 bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
@@ -82,14 +93,11 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
     if (tells_cuts(uniform.name)) continue;  // measured without
-    const GLint location = gl.GetUniformLocation(pipeline.program, uniform.name.c_str());
-    if (location < 0) continue;
-    std::array<GLfloat, 16> value{};
-    gl.GetUniformfv(pipeline.program, location, value.data());
-    if (uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
-      inputs.steps.push_back(inputs.fixed.size());
-    auto& to = is_scalar(uniform.type) ? inputs.fixed : inputs.varying;
-    to.insert(to.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
+    const std::size_t before = inputs.fixed.size();
+    append_value(measured, uniform, is_scalar(uniform.type) ? inputs.fixed : inputs.varying);
+    const bool in_use = inputs.fixed.size() > before;
+    if (in_use && uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
+      inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
     if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
@@ -104,6 +112,23 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
     inputs.fixed.push_back(float(group.texture_version(other.texture)));
   }
   return inputs;
+}
+
+std::vector<float> discard_inputs(const MarchContext& measured, const MarchInputs& inputs,
+                                  const ProgramFindings& says) {
+  const auto source = [&](const auto& use) -> const program::Source& { return says.facts.sources[use.source]; };
+  std::vector<float> depends = inputs.fixed;
+  const bool on_texels = std::ranges::any_of(says.ray->discards, [&](const program::Influence& influence) {
+    return source(influence).kind == program::SourceKind::texel;
+  });
+  if (measured.stages.uniform_blocks || on_texels) depends.push_back(never_equal);
+  for (const StageUniform& uniform : measured.stages.uniforms) {
+    const bool decides = std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
+      return use.discard && source(use).name == uniform.name;
+    });
+    if (decides) append_value(measured, uniform, depends);
+  }
+  return depends;
 }
 
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now) {

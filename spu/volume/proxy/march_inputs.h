@@ -27,6 +27,11 @@ struct MarchInputs {
 /// `says` has a finding about ray casters.
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says);
 
+/// What decides, with the place in the window, which fragments the program discards. Never equal to another
+/// where that cannot be told.
+std::vector<float> discard_inputs(const MarchContext& measured, const MarchInputs& inputs,
+                                  const ProgramFindings& says);
+
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);
 

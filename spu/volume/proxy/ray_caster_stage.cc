@@ -179,6 +179,8 @@ struct RayCasterStage::Draw {
   bool eye_inside = false;
   bool ends_at_geometry = false;  ///< as in MarchContext
   std::span<const std::string> tables_of_samples{};
+  std::optional<volume::Rect>
+      kept{};  ///< part of the window where fragments are, where some are discarded by place
 
   MarchContext measured() const {
     return {context,
@@ -189,6 +191,7 @@ struct RayCasterStage::Draw {
             known.sent.range,
             !cuts.clipping.empty(),
             ends_at_geometry,
+            kept,
             &*seen.capture};
   }
 };
@@ -288,6 +291,7 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;
   known.march.camera = box.camera.texture_to_clip;
+  if (says.ray->discards_by_place) draw.kept = kept_window(draw, box, inputs, says);
   follow_inside(draw, box, inputs);
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
@@ -304,20 +308,30 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   asked.image.inputs = std::move(depends_on);
   // How a ray ends at a plane shows in few pixels, and in some views in none.
   asked.image.unproven = known.frames == 0 && known.march.march->clipped;
-  asked.image.discards_by_place = says.ray->discards_by_place;
-  keep_window(draw, turned, asked.image);
+  if (draw.kept) {
+    asked.image.uncut_window = asked.image.request.window;
+    asked.image.request.window = intersection(asked.image.request.window, *draw.kept);
+  }
   return asked;
 }
 
-void RayCasterStage::keep_window(const Draw& draw, bool turned, ImageRequest& image) const {
-  KnownMarch& known = draw.known.march;
-  if (!known.kept || known.kept->viewport != image.request.viewport) return;
-  image.uncut_window = image.request.window;
-  image.request.window = intersection(image.request.window, known.kept->kept);
-  // What a clipping plane took in one view looks the same.
-  if (known.views_to_prove == 0 || !turned) return;
-  --known.views_to_prove;
-  image.unproven = true;
+volume::Rect RayCasterStage::kept_window(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                                         const ProgramFindings& says) const {
+  constexpr std::size_t most_kept = 4;  // a window, an image that is saved of it, …
+  std::array<GLint, 4> viewport{};
+  context_.gl->GetIntegerv(GL_VIEWPORT, viewport.data());
+  KeptWindow asked{
+      {viewport[0], viewport[1], viewport[2], viewport[3]}, discard_inputs(draw.measured(), inputs, says), {}};
+  std::vector<KeptWindow>& known = draw.known.march.kept;
+  for (const KeptWindow& window : known) {
+    if (window.viewport == asked.viewport && window.depends == asked.depends) return window.kept;
+  }
+  const auto finding = kept_rect(draw.measured(), box);
+  if (const auto* refusal = std::get_if<Refusal>(&finding)) throw Refusal{*refusal};
+  asked.kept = std::get<volume::Rect>(finding);
+  if (known.size() == most_kept) known.erase(known.begin());
+  known.push_back(std::move(asked));
+  return known.back().kept;
 }
 
 volume::RenderRequest RayCasterStage::compose(const Draw& draw, const March& march, const ProxyBox& box) {
@@ -413,6 +427,7 @@ March RayCasterStage::choose_march(Draw& draw, compositor::RenderService& servic
       looked_at = fullest_part(*drawn);
     }
     composed.window = intersection(composed.window, looked_at->rect);
+    if (draw.kept) composed.window = intersection(composed.window, *draw.kept);
     ImageRequest image = ask(draw, march, *box, std::move(composed));
     const compositor::Rendered rendered = service.render(image.request);
     volume::Image shown = copy_of(rendered.image);

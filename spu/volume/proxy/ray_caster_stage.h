@@ -75,7 +75,8 @@ class RayCasterStage {
   volume::RenderRequest compose(const Draw& draw, const March& march, const ProxyBox& box);
   ImageRequest ask(const Draw& draw, const March& march, const ProxyBox& box,
                    volume::RenderRequest composed) const;
-  void keep_window(const Draw& draw, bool turned, ImageRequest& image) const;
+  volume::Rect kept_window(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                           const ProgramFindings& says) const;
   /// The march whose image is most like the application's.
   March choose_march(Draw& draw, compositor::RenderService& service, const std::vector<March>& marches);
 

@@ -23,8 +23,7 @@ struct ImageRequest {
   bool eye_inside = false;       ///< its box has been cut before the eye
   /// No ray of its image has a visible sample: the program's own background, which it shows, proves nothing.
   bool background_alone = false;
-  bool unproven = false;           ///< measured for this image, and perhaps right in this view alone
-  bool discards_by_place = false;  ///< its program may discard fragments by gl_FragCoord
+  bool unproven = false;  ///< measured for this image, and perhaps right in this view alone
   /// What it draws into, where `request.window` is cut to where its program keeps fragments.
   std::optional<volume::Rect> uncut_window;
   /// Convex parts of the volume that cropping has left, nearest to the eye first; `request` asks for the first.

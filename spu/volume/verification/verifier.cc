@@ -70,19 +70,14 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
                   "move the eye out of the volume"};
   }
   volume.inside = what.eye_inside;
-  Comparison comparison = judge(difference, native_ms, counters);
-  if (!comparison.right && what.discards_by_place) {
-    if (const auto kept = kept_rect(pipeline, native, image))
-      comparison.kept = KeptWindow{what.request.viewport, *kept};
-  }
-  return comparison;
+  return judge(difference, native_ms, counters);
 }
 
 Comparison Verifier::judge(const ImageDifference& difference, double native_ms, VolumeCounters& counters) {
   count(difference, counters);
   account_.note([&](FrameRecord& frame) { frame.error_rms = std::sqrt(difference.mean_square); });
   const double asked_psnr = session_.options().verify_psnr;
-  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms, {}};
+  return {difference, difference.worst.within_bound() && !(difference.psnr() < asked_psnr), native_ms};
 }
 
 void Verifier::count(const ImageDifference& difference, VolumeCounters& counters) {
@@ -134,7 +129,7 @@ std::optional<Comparison> Verifier::compare_sentinels(const ImageToVerify& what,
       counters.verify_worst_tile = difference.worst.severity();
       counters.verify_worst_frame = account_.frames() + 1;
     }
-    if (!difference.worst.within_bound()) return Comparison{difference, false, {}, {}};
+    if (!difference.worst.within_bound()) return Comparison{difference, false, {}};
   }
   volume.schedule.sentinels_took(tiles, milliseconds_since(start));
   return std::nullopt;

@@ -13,7 +13,6 @@
 #include "spu/volume/refusal/refusal.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
-#include "spu/volume/verification/kept_window.h"
 #include "spu/volume/verification/native_image.h"
 #include "spu/volume/verification/tile_comparison.h"
 #include "spu/volume/verification/verified_volume.h"
@@ -25,7 +24,6 @@ struct Comparison {
   ImageDifference difference;
   bool right = false;               ///< within the bound
   std::optional<double> native_ms;  ///< of a whole image: what the application's own drawing took; 0: not known
-  std::optional<KeptWindow> kept;   ///< of a wrong image: within it, it is right
 };
 
 /// The sentence for a comparison that was lost.
@@ -35,8 +33,7 @@ Refusal refusal_of(const ImageDifference& difference);
 struct ImageToVerify {
   const Run& run;
   const volume::RenderRequest& request;
-  volume::Rect window;             ///< that the application draws into: its viewport and scissor
-  bool discards_by_place = false;  ///< the program may discard fragments by gl_FragCoord
+  volume::Rect window;  ///< that the application draws into: its viewport and scissor
   bool eye_inside = false;
   std::uint64_t frames = 0;  ///< of the volume, before this one
 };

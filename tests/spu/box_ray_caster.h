@@ -13,7 +13,7 @@ namespace understudy::spu::testing {
 
 /// How it marches.
 struct MarchStyle {
-  enum class Composition { over, maximum, sum, minimum, grey_sum };
+  enum class Composition { over, maximum, sum, minimum, grey_sum, mean_of_colours, mean_of_values };
 
   Composition composition = Composition::over;
   bool premultiplied = true;  ///< what the shader writes, and the blend function

@@ -281,6 +281,15 @@ std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const RampFi
   return in_place(0, first_row, viewport_[2], rows);
 }
 
+std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const LayerField& field) {
+  std::array<int, 3> size{1, 1, 1};
+  size[field.axis] = ramp_texels_;
+  std::vector<float> texels(std::size_t(ramp_texels_), field.outside);
+  texels[std::size_t(std::clamp(int(field.place * ramp_texels_), 0, ramp_texels_ - 1))] = field.within;
+  show(texels, size, GL_NEAREST);
+  return in_place(0, first_row, viewport_[2], rows);
+}
+
 volume::Rgba FieldProbe::pixel(int column, int row, float value) {
   show({value, value, value, value, value, value, value, value});
   std::vector<volume::Rgba> fragments = in_place(column, row, 1, 1);

@@ -36,9 +36,9 @@ class FieldProbe {
   /// Whether the driver offers a float framebuffer. Nothing may be drawn otherwise.
   bool complete() const { return complete_; }
 
-  /// From now on at(), at_slope(), pixel() and rows(), but for ramps, give what a fragment's samples show
-  /// without `background`, premultiplied. Contrasts are measured on `rays`, where they are not known yet. Where
-  /// those of a split field's two values cannot be told apart, it is as if there were no fragments.
+  /// From now on at(), at_slope(), pixel() and rows(), but for ramps and layers, give what a fragment's samples
+  /// show without `background`, premultiplied. Contrasts are measured on `rays`, where they are not known yet.
+  /// Where those of a split field's two values cannot be told apart, it is as if there were no fragments.
   void remove(const ShaderBackground& background, std::vector<CountedPlace> rays);
 
   /// The fragments on the ray at normalised device coordinates (x, y), over the field of each of `values`.
@@ -75,6 +75,16 @@ class FieldProbe {
     float to = 1;
   };
   std::vector<volume::Rgba> rows(int first_row, int rows, const RampField& field);
+
+  /// The same over a field that is `within` in a layer across the texture coordinate `axis`, as thin as can be,
+  /// and `outside` elsewhere.
+  struct LayerField {
+    std::size_t axis = 0;
+    double place = 0.5;
+    float within = 1;
+    float outside = 0;
+  };
+  std::vector<volume::Rgba> rows(int first_row, int rows, const LayerField& field);
 
   /// The fragment of one pixel of the application's viewport, over the field of `value`.
   volume::Rgba pixel(int column, int row, float value);

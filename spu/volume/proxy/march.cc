@@ -10,6 +10,7 @@
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march_table.h"
+#include "spu/volume/proxy/mean_steps.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -68,9 +69,10 @@ class MarchMeasurement {
  private:
   std::optional<Refusal> find_composition();
   std::optional<Refusal> find_translucent_value();
-  void find_shown_everywhere();
+  void find_alpha_of_shortest_rays();
   double shortest_with_sample();
   std::optional<Refusal> find_steps();
+  bool find_steps_of_mean();
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
@@ -89,7 +91,8 @@ class MarchMeasurement {
   March march_;
   std::vector<volume::RaySteps> rules_;
   std::size_t extremes_seen_ =
-      0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
+      0;                  ///< so many first ones of `rules_` were seen of an extreme, in the first space
+  bool counted_ = false;  ///< the samples of a mean
   std::vector<SplitRays> split_;
 };
 
@@ -112,18 +115,22 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
   // Of samples that are nearly opaque a few look like any number of them: shorter rays tell.
   if (one_alpha(through_, briefly)) march_.background = remove_background(measured_, probe_, rays_);
   if (march_.background) march_.extreme.reset();
+  if (march_.extreme && shows_mean(probe_, box_, values_, through_)) {
+    march_.extreme.reset();
+    march_.mean = one_alpha(through_, briefly) ? Mean::of_colours : Mean::of_values;
+  }
   // Which face's fragment an opaque one is left of, RayCasterStage looks at.
   if (!march_.background && !only_nearest_shows(measured_, probe_, {middle[0], middle[1]}, values_, through_))
     return back_faces_show;
   if (march_.background) {
     through_ = probe_.at(middle[0], middle[1], values_);
-  } else if (!march_.extreme) {
+  } else if (!march_.shows_one_colour()) {
     march_.sum = plain_sum(through_, briefly);
   }
-  march_.alpha_twice = !march_.extreme && !march_.sum && !march_.background &&
+  march_.alpha_twice = !march_.shows_one_colour() && !march_.sum && !march_.background &&
                        multiplies_by_alpha(measured_.run.pipeline()) && grow_with_alpha(through_, briefly);
   const auto way = rays_.way(middle[0], middle[1]);
-  if (march_.extreme && (!way || steps_of_way(texels_, *way) < 2 * brief.length))
+  if (march_.shows_one_colour() && (!way || steps_of_way(texels_, *way) < 2 * brief.length))
     return "rays of one length alone do not tell the step";
   return std::nullopt;
 }
@@ -131,7 +138,7 @@ std::optional<Refusal> MarchMeasurement::find_composition() {
 std::optional<Refusal> MarchMeasurement::find_translucent_value() {
   const auto middle = rays_.middle();
   TranslucentRay found{{middle[0], middle[1]}, values_[values_.size() / 2]};
-  if (!march_.extreme) {
+  if (!march_.shows_one_colour()) {
     const auto translucent = translucent_ray(measured_, probe_, rays_, texels_, march_, values_);
     if (!translucent) return "no value is translucent on any ray: samples cannot be counted";
     found = *translucent;
@@ -142,14 +149,14 @@ std::optional<Refusal> MarchMeasurement::find_translucent_value() {
   return std::nullopt;
 }
 
-void MarchMeasurement::find_shown_everywhere() {
-  if (!march_.sum) return;
+void MarchMeasurement::find_alpha_of_shortest_rays() {
+  if (!march_.sum && march_.mean != Mean::of_colours) return;
   constexpr double none = 0.02;  // of a texel
   const auto dark = std::find_if(through_.begin(), through_.end(),
                                  [](const Rgba& ray) { return brightest_channel(ray) == 0; });
   if (dark == through_.end()) return;
   const float value = values_[std::size_t(dark - through_.begin())];
-  march_.sum->everywhere = shortest_seen(probe_, rays_, texels_, value, *dark) < none;
+  if (shortest_seen(probe_, rays_, texels_, value, *dark) < none) march_.shortest_alpha = (*dark)[3];
 }
 
 double MarchMeasurement::shortest_with_sample() {
@@ -161,7 +168,8 @@ double MarchMeasurement::shortest_with_sample() {
 
 std::optional<Refusal> MarchMeasurement::find_steps() {
   const auto& size = measured_.texture.size;
-  if (march_.extreme) {
+  if (march_.mean && find_steps_of_mean()) return std::nullopt;
+  if (march_.shows_one_colour()) {
     rules_ = rules_for_extremes(size, shortest_with_sample());
     return std::nullopt;
   }
@@ -179,6 +187,15 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   }
   take_rules(fits);
   return std::nullopt;
+}
+
+bool MarchMeasurement::find_steps_of_mean() {
+  const auto counted = counted_by_means(probe_, box_, values_, through_);
+  const auto fits = fit_steps(counted, axes_in_texels(measured_.texture.size));
+  if (fits.empty() || fits.front().unexplained > most_unexplained) return false;
+  take_rules(fits);
+  counted_ = true;
+  return true;
 }
 
 void MarchMeasurement::take_rules(const std::vector<StepFit>& fits) {
@@ -205,7 +222,7 @@ std::optional<Refusal> MarchMeasurement::measure() {
   if (!probe_.complete()) return "the driver offers no float framebuffer to probe with";
   if (auto refusal = find_composition()) return refusal;
   if (auto refusal = find_translucent_value()) return refusal;
-  find_shown_everywhere();
+  find_alpha_of_shortest_rays();
   if (auto refusal = find_steps()) return refusal;
   march_.table.low = measured_.range[0];
   march_.table.high = measured_.range[1];
@@ -234,7 +251,7 @@ std::optional<Refusal> MarchMeasurement::find_places() {
     return std::nullopt;
   }
   // Where the eye is inside, rays of all directions begin at one place.
-  if (!box_.cuts.empty()) return std::nullopt;
+  if (march_.mean || !box_.cuts.empty()) return std::nullopt;
   if (march_.jitter && !show_own_noise(measured_.run, probe_, *march_.jitter)) return std::nullopt;
   const std::vector<SeenValue> seen = seen_values(values_, through_);
   const auto split = [&] { return split_rays(measured_, probe_, march_, box_, seen); };
@@ -263,10 +280,14 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::R
     if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
     march.past_planes = past_planes;
     marches.push_back(march);
-    // Fields of one value do not tell which extreme it is.
-    if (!march.extreme) continue;
-    marches.push_back(march);
-    marches.back().extreme = volume::Operator::min;
+    // Fields of one value do not tell which extreme it is, or of what the mean.
+    if (march.extreme) {
+      marches.push_back(march);
+      marches.back().extreme = volume::Operator::min;
+    } else if (march.mean == Mean::of_colours) {
+      marches.push_back(march);
+      marches.back().mean = Mean::of_values;
+    }
   }
 }
 
@@ -277,7 +298,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     if (!boxes[i]) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
-      const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
+      const bool seen = march_.mean ? counted_ : !march_.extreme || (i == 0 && r < extremes_seen_);
       if (march_.from_exit && !may_be_counted_from_exit(rules_[r])) continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       if (misplaced_part(split_, rays, placed) <= most_misplaced)

@@ -28,9 +28,14 @@ namespace understudy::spu {
 
 /// Samples that are added up, where opacity says no more than that there are any.
 struct PlainSum {
-  float alpha = 1;          ///< of every ray
-  bool everywhere = false;  ///< rays so short that they have no sample show it too
+  float alpha = 1;                                         ///< of every ray
   float ceiling = std::numeric_limits<float>::infinity();  ///< the largest sum that is shown
+};
+
+/// Of what the mean over a ray is shown.
+enum class Mean {
+  of_colours,  ///< every sample has a colour
+  of_values    ///< the mean has one
 };
 
 struct March {
@@ -39,9 +44,14 @@ struct March {
   /// Operator::max or Operator::min: samples are not composed, the largest (least) value of the ray is
   /// classified by `table`.
   std::optional<volume::Operator> extreme;
-  /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
+  std::optional<Mean> mean;
+  /// Whether a field of one value has one colour, however long its rays are.
+  bool shows_one_colour() const { return extreme || mean; }
+  /// Whether fields have shown that samples lie on `steps`; those of an extreme or a mean may only be likely.
   bool steps_seen = true;
   std::optional<PlainSum> sum;
+  /// Of a sum or a mean: the alpha of rays so short that no sample lies on them; null: they show nothing.
+  std::optional<float> shortest_alpha;
   /// The program puts what it has composed by over onto a colour of its own: every fragment replaces what is
   /// there.
   std::optional<ShaderBackground> background;

@@ -11,6 +11,7 @@
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march_table.h"
+#include "spu/volume/proxy/mean_steps.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -23,12 +24,16 @@ using volume::Rgba;
 
 namespace {
 
-/// Whether the samples of an extreme lie where `march` says; empty where no field tells.
-std::optional<bool> extreme_lies_as_said(const MarchContext& measured, const March& march,
-                                         const ProxyBox& box) {
+/// Whether the samples of an extreme or of a mean lie where `march` says; empty where no field tells.
+std::optional<bool> samples_lie_as_said(const MarchContext& measured, const March& march, const ProxyBox& box) {
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return std::nullopt;
-  return extremes_lie_on(march.steps, measured, probe, march.table, box);
+  if (march.extreme) return extremes_lie_on(march.steps, measured, probe, march.table, box);
+  const std::vector<float> values = values_over(measured.range);
+  const auto middle = RaysThroughBox(box.camera.texture_to_clip, box.region, box.cuts).middle();
+  const auto counted = counted_by_means(probe, box, values, probe.at(middle[0], middle[1], values));
+  if (counted.empty()) return std::nullopt;
+  return have_as_many(counted, march.steps);
 }
 
 }  // namespace
@@ -58,13 +63,13 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   if (!way) return std::nullopt;
   float nearest = 0.48F;
   const auto& table = changed.table;
-  for (std::size_t i = 0; i < table.entries.size() && !march.extreme; ++i) {
+  for (std::size_t i = 0; i < table.entries.size() && !march.shows_one_colour(); ++i) {
     const float through = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, *way)));
     if (std::abs(through - 0.5F) >= nearest) continue;
     nearest = std::abs(through - 0.5F);
     changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
   }
-  if ((nearest == 0.48F && !march.extreme) || !still_marches(measured, changed, box, {.values = 16}))
+  if ((nearest == 0.48F && !march.shows_one_colour()) || !still_marches(measured, changed, box, {.values = 16}))
     return std::nullopt;
   return changed;
 }
@@ -73,7 +78,7 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
                                             const ProxyBox& box) {
   March changed = march;
   changed.from_inside = true;
-  if (march.extreme) return changed;  // whose steps only rays from outside tell
+  if (march.shows_one_colour()) return changed;  // whose steps only rays from outside tell
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete() || !held_still(measured, probe, march))
     return "the driver offers no float framebuffer to probe with";
@@ -99,9 +104,9 @@ std::optional<March> with_longer_steps(const MarchContext& measured, const March
   if (march.sum || march.steps.divided) return std::nullopt;
   March longer = march;
   for (double& number : longer.steps.metric) number /= factor;
-  if (march.extreme) {
+  if (march.shows_one_colour()) {
     // Its rays look alike whatever the number of their samples.
-    longer.steps_seen = extreme_lies_as_said(measured, longer, box).value_or(false);
+    longer.steps_seen = samples_lie_as_said(measured, longer, box).value_or(false);
     if (!longer.steps_seen || !still_marches(measured, longer, box, looked_at)) return std::nullopt;
     return longer;
   }
@@ -127,7 +132,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const auto expected = [&](const Rgba& fragment, float value, double n) {
     const Rgba sample = table_at(march.table, value);
     const Rgba got = premultiplied(fragment, already);
-    if (march.extreme) return largest_difference(got, sample) <= same_colour;
+    if (march.shows_one_colour()) return largest_difference(got, sample) <= same_colour;
     // A ray whose end falls on a sample may have one more or less.
     for (const double count : {n, n - 1, n + 1}) {
       if (count < 1) continue;
@@ -138,7 +143,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
     return false;
   };
   const auto shows_table = [&](const Ray& ray) {
-    const double samples = march.extreme ? 1 : samples_of_length(march.steps, ray.length);
+    const double samples = march.shows_one_colour() ? 1 : samples_of_length(march.steps, ray.length);
     const auto fragments = probe.at(ray.x, ray.y, values);
     if (!march.background && !only_nearest_shows(measured, probe, ray, values, fragments)) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -150,10 +155,11 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   constexpr std::array short_lengths{2.5, 4.5, 7.5};
   const double first = march.steps.divided ? 0.5 : march.steps.first;
   if (looked_at.values > 0 && std::ranges::none_of(short_lengths, [&](double length) {
-        return shows_table(ray_of_length(rays, march.steps, march.extreme ? length + 1 : length + first));
+        return shows_table(
+            ray_of_length(rays, march.steps, march.shows_one_colour() ? length + 1 : length + first));
       }))
     return false;
-  if (march.extreme || !looked_at.long_ray) return true;
+  if (march.shows_one_colour() || !looked_at.long_ray) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();
   const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
@@ -167,7 +173,8 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr int tried = 32;
   if (!box.cuts.empty()) return true;
-  if (march.extreme) return !march.steps_seen || extreme_lies_as_said(measured, march, box).value_or(true);
+  if (march.shows_one_colour())
+    return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);

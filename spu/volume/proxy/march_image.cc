@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What nodes are asked to show for a march, and what their image becomes.
 #include <algorithm>
+#include <utility>
 
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/march.h"
@@ -21,30 +22,49 @@ void multiply_by_alpha(volume::Image& image) {
   }
 }
 
+/// The value travels in the first channel; alpha counts samples. Where the lowest one is invisible, blocks of
+/// nothing else add nothing to a maximum; to a minimum and a sum they do, and all values are `visible`.
+volume::TransferFunction ramp_over(const volume::TransferFunction& table, bool visible) {
+  const Rgba& lowest = table.entries.front();
+  visible |= std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
+  volume::TransferFunction ramp;
+  ramp.low = table.low;
+  ramp.high = table.high;
+  ramp.entries = {{0, 0, 0, visible ? 1.0F : 0.0F}, {1, 0, 0, 1}};
+  return ramp;
+}
+
+/// Of `sampled` samples whose colours, or values in the first channel, add up to `sum`.
+Rgba mean_of(const March& march, const Rgba& sum, float sampled) {
+  const volume::TransferFunction& table = march.table;
+  if (march.mean == Mean::of_values)
+    return table_at(table, table.low + sum[0] / sampled * (table.high - table.low));
+  // Which all colours have.
+  const float alpha = table.entries.front()[3];
+  return {sum[0] / sampled, sum[1] / sampled, sum[2] / sampled, alpha};
+}
+
 }  // namespace
 
 void ask_nodes(const March& march, volume::RenderRequest& request) {
   request.steps = march.steps;
-  if (!march.extreme) {
-    request.op = march.sum ? volume::Operator::add : volume::Operator::over;
-    request.classification = march.table;
-    return;
+  if (march.extreme) {
+    request.op = *march.extreme;
+    request.classification = ramp_over(march.table, march.extreme == volume::Operator::min);
+  } else if (march.mean == Mean::of_values) {
+    request.op = volume::Operator::add;
+    request.classification = ramp_over(march.table, true);
+  } else {
+    request.op = march.sum || march.mean ? volume::Operator::add : volume::Operator::over;
+    volume::TransferFunction table = march.table;
+    // Alpha counts the samples of a mean.
+    for (Rgba& entry : table.entries) entry[3] = march.mean ? 1 : entry[3];
+    request.classification = std::move(table);
   }
-  request.op = *march.extreme;
-  // The value travels in the first channel. Where the lowest one is invisible, blocks of nothing else add
-  // nothing to a maximum; to a minimum they do.
-  const Rgba& lowest = march.table.entries.front();
-  const bool all_visible = march.extreme == volume::Operator::min ||
-                           std::any_of(lowest.begin(), lowest.end(), [](float x) { return x > 0; });
-  volume::TransferFunction ramp;
-  ramp.low = march.table.low;
-  ramp.high = march.table.high;
-  ramp.entries = {{0, 0, 0, all_visible ? 1.0F : 0.0F}, {1, 0, 0, 1}};
-  request.classification = ramp;
 }
 
 bool needs_finish(const March& march) {
-  return march.extreme || march.sum || march.alpha_twice || march.background;
+  return march.shows_one_colour() || march.sum || march.alpha_twice || march.background;
 }
 
 void finish_image(const March& march, volume::Image& image) {
@@ -55,7 +75,10 @@ void finish_image(const March& march, volume::Image& image) {
     Rgba colour{};
     // Pixels without samples hold what changes no extreme.
     const float sampled = image.rgba[i + 3];
-    if (march.sum) {
+    if (march.mean) {
+      if (sampled > 0)
+        colour = mean_of(march, {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], sampled}, sampled);
+    } else if (march.sum) {
       // Alpha counts samples.
       if (sampled > 0) colour = ray_of(march, {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], 1}, 1);
     } else if (sampled > 0 && sampled <= 1) {

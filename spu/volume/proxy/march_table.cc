@@ -55,12 +55,12 @@ class TableRays {
     // An extreme is the same on every ray that has a sample, and a short one may have none: its step is
     // unknown.
     const auto middle = rays_.middle();
-    const Ray ray = march_.extreme ? Ray{middle[0], middle[1]} : ray_of_length(rays_, rule_, wanted);
-    RayOfTable seen{march_.extreme ? 1 : samples_of_length(rule_, ray.length), {}};
+    const Ray ray = march_.shows_one_colour() ? Ray{middle[0], middle[1]} : ray_of_length(rays_, rule_, wanted);
+    RayOfTable seen{march_.shows_one_colour() ? 1 : samples_of_length(rule_, ray.length), {}};
     if (seen.samples < 1) return no_short_ray;
     const auto fragments = probe_.at(ray.x, ray.y, values_);
     if (!finite(fragments)) return Refusal{"the fragment stage gives colours that are not finite"};
-    if (march_.extreme && !std::ranges::all_of(fragments, reached)) return no_short_ray;
+    if (march_.shows_one_colour() && !std::ranges::all_of(fragments, reached)) return no_short_ray;
     for (const Rgba& fragment : fragments) seen.colours.push_back(premultiplied(fragment, premultiplied_));
     return seen;
   }
@@ -116,7 +116,7 @@ std::variant<RayOfTable, Refusal> shortest_ray(TableRays& table, const March& ma
        {Length{1, 0.5}, Length{1, 0.35}, Length{1, 0.65}, Length{2, 0.5}, Length{3, 0.5}}) {
     auto seen = table.of_samples(length.samples, length.within);
     const auto* ray = std::get_if<RayOfTable>(&seen);
-    if (ray == nullptr || march.extreme) return seen;
+    if (ray == nullptr || march.shows_one_colour()) return seen;
     const bool nothing_to_see = std::ranges::none_of(longer, &RayOfTable::shows_anything) && !longer.empty();
     if (!ray->shows_anything() && !nothing_to_see) continue;
     std::vector<double> counts;
@@ -139,7 +139,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   TableRays table(measured, probe, rays, rule, march);
   std::vector<RayOfTable> longer;
   for (const double samples : {6.0, 40.0}) {
-    if (march.extreme) break;
+    if (march.shows_one_colour()) break;
     auto seen = table.of_samples(samples);
     auto* const ray = std::get_if<RayOfTable>(&seen);
     if (ray == nullptr) return std::get<Refusal>(seen);
@@ -153,7 +153,7 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   for (const Rgba& colour : shortest.colours) {
     // Whatever more a sample had, a ray of many would look alike.
     if (shortest.samples > most_samples_of_shortest && amount(march, colour) > saturated) return no_short_ray;
-    entries.push_back(march.extreme ? colour : sample_of(march, colour, shortest.samples));
+    entries.push_back(march.shows_one_colour() ? colour : sample_of(march, colour, shortest.samples));
   }
   for (const RayOfTable& ray : longer) {
     for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -92,7 +92,7 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame
   if (!turned) return {};
   constexpr double golden_section = 0.618033988749895;  // no two of many frames come close to each other
   const double turns = double(frame) * golden_section;
-  const bool values = march.extreme || frame % 2 == 0;
+  const bool values = march.shows_one_colour() || frame % 2 == 0;
   return {.values = values ? 3 : 0, .offset = turns - std::floor(turns), .long_ray = !values};
 }
 
@@ -247,8 +247,8 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
       again = with_longer_steps(draw.measured(), *march, box, factor);
   }
   known.tables = std::move(tables);
-  // Fields of one value, by which a table is measured, do not see the step of an extreme.
-  const bool step_unknown = march && march->extreme && steps_differ(known.inputs, inputs);
+  // Fields of one value, by which a table is measured, do not see the step of an extreme or a mean.
+  const bool step_unknown = march && march->shows_one_colour() && steps_differ(known.inputs, inputs);
   if (march && !again && !step_unknown) again = with_new_table(draw.measured(), *march, box);
   // What counts samples does not see noise that was turned on.
   if (again && !only_tables_differ(known.inputs, inputs) && !still_placed(draw.measured(), *again, box))
@@ -405,7 +405,7 @@ void RayCasterStage::complete_image(const March& march, ImageRequest& asked, com
   }
   request.depth = asked.opaque;
   if (needs_finish(march)) finish_image(march, image);
-  if (march.sum && march.sum->everywhere) cover_entered(asked.ray_ends, request, march.sum->alpha, image);
+  if (march.shortest_alpha) cover_entered(asked.ray_ends, request, *march.shortest_alpha, image);
   if (!march.background) return;
   asked.background_alone = !shows_something(image);
   fill_behind_entered(asked.ray_ends, request, *march.background, image);

@@ -103,7 +103,7 @@ std::optional<float> one_alpha(const std::vector<Rgba>& through, const std::vect
 std::optional<PlainSum> plain_sum(const std::vector<Rgba>& through, const std::vector<Rgba>& briefly) {
   const auto alpha = one_alpha(through, briefly);
   if (!alpha) return std::nullopt;
-  PlainSum sum{*alpha, false};
+  PlainSum sum{*alpha};
   float largest = 0;
   for (const Rgba& ray : through) largest = std::max(largest, brightest_channel(ray));
   // A sum that several values reach is where the program stops counting.

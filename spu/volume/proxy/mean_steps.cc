@@ -72,7 +72,7 @@ class LayerCounting {
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!reached(fragments[i])) continue;
       const double part = contrast_.part_of_one(colours_, fragments[i]);
-      if (part * most_samples < 1) continue;  // no sample lies in it
+      if (!(part * most_samples >= 1)) continue;  // no sample lies in it
       const int column = int(i) % probe_.width();
       const int row = first_row + int(i) / probe_.width();
       const auto way =

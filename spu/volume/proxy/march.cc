@@ -72,7 +72,7 @@ class MarchMeasurement {
   void find_alpha_of_shortest_rays();
   double shortest_with_sample();
   std::optional<Refusal> find_steps();
-  bool find_steps_of_mean();
+  std::optional<Refusal> find_steps_of_mean();
   void take_rules(const std::vector<StepFit>& fits);
   std::optional<Refusal> take_offsets();
   std::optional<Refusal> find_places();
@@ -91,8 +91,7 @@ class MarchMeasurement {
   March march_;
   std::vector<volume::RaySteps> rules_;
   std::size_t extremes_seen_ =
-      0;                  ///< so many first ones of `rules_` were seen of an extreme, in the first space
-  bool counted_ = false;  ///< the samples of a mean
+      0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
   std::vector<SplitRays> split_;
 };
 
@@ -168,8 +167,8 @@ double MarchMeasurement::shortest_with_sample() {
 
 std::optional<Refusal> MarchMeasurement::find_steps() {
   const auto& size = measured_.texture.size;
-  if (march_.mean && find_steps_of_mean()) return std::nullopt;
-  if (march_.shows_one_colour()) {
+  if (march_.mean) return find_steps_of_mean();
+  if (march_.extreme) {
     rules_ = rules_for_extremes(size, shortest_with_sample());
     return std::nullopt;
   }
@@ -189,13 +188,17 @@ std::optional<Refusal> MarchMeasurement::find_steps() {
   return std::nullopt;
 }
 
-bool MarchMeasurement::find_steps_of_mean() {
-  const auto counted = counted_by_means(probe_, box_, values_, through_);
-  const auto fits = fit_steps(counted, axes_in_texels(measured_.texture.size));
-  if (fits.empty() || fits.front().unexplained > most_unexplained) return false;
-  take_rules(fits);
-  counted_ = true;
-  return true;
+std::optional<Refusal> MarchMeasurement::find_steps_of_mean() {
+  for (const Mean mean : {Mean::of_colours, Mean::of_values}) {
+    if (mean == Mean::of_colours && march_.mean != mean) continue;
+    const auto counted = counted_by_means(probe_, box_, mean, values_, through_);
+    const auto fits = fit_steps(counted, axes_in_texels(measured_.texture.size));
+    if (fits.empty() || fits.front().unexplained > most_unexplained) continue;
+    march_.mean = mean;
+    take_rules(fits);
+    return std::nullopt;
+  }
+  return "the samples that a mean is taken of cannot be counted";
 }
 
 void MarchMeasurement::take_rules(const std::vector<StepFit>& fits) {
@@ -298,7 +301,7 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
     if (!boxes[i]) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
-      const bool seen = march_.mean ? counted_ : !march_.extreme || (i == 0 && r < extremes_seen_);
+      const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);
       if (march_.from_exit && !may_be_counted_from_exit(rules_[r])) continue;
       const volume::RaySteps placed = march_.from_exit ? counted_from_exit(rules_[r], rays, probe_) : rules_[r];
       if (misplaced_part(split_, rays, placed) <= most_misplaced)

@@ -47,7 +47,7 @@ struct March {
   std::optional<Mean> mean;
   /// Whether a field of one value has one colour, however long its rays are.
   bool shows_one_colour() const { return extreme || mean; }
-  /// Whether fields have shown that samples lie on `steps`; those of an extreme or a mean may only be likely.
+  /// Whether fields have shown that samples lie on `steps`; those of an extreme may only be likely.
   bool steps_seen = true;
   std::optional<PlainSum> sum;
   /// Of a sum or a mean: the alpha of rays so short that no sample lies on them; null: they show nothing.

@@ -31,7 +31,8 @@ std::optional<bool> samples_lie_as_said(const MarchContext& measured, const Marc
   if (march.extreme) return extremes_lie_on(march.steps, measured, probe, march.table, box);
   const std::vector<float> values = values_over(measured.range);
   const auto middle = RaysThroughBox(box.camera.texture_to_clip, box.region, box.cuts).middle();
-  const auto counted = counted_by_means(probe, box, values, probe.at(middle[0], middle[1], values));
+  const auto counted =
+      counted_by_means(probe, box, *march.mean, values, probe.at(middle[0], middle[1], values));
   if (counted.empty()) return std::nullopt;
   return have_as_many(counted, march.steps);
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/sample_places.h"
@@ -41,16 +43,84 @@ Contrast greatest_contrast(const std::vector<Rgba>& colours) {
   return greatest;
 }
 
+/// How many samples a fragment's ray has, of which one lies in a layer of another value. None where none does;
+/// 0 where that is no whole number.
+class SamplesByColours {
+ public:
+  SamplesByColours(const Contrast& contrast, const std::vector<Rgba>& colours)
+      : contrast_(contrast), colours_(colours) {}
+
+  std::optional<double> operator()(const Rgba& fragment) const {
+    constexpr double most_samples = 4096;
+    constexpr double whole = 0.1;
+    const double part = contrast_.part_of_one(colours_, fragment);
+    if (!(part * most_samples >= 1)) return std::nullopt;
+    const double samples = std::round(1 / part);
+    return std::abs(1 / part - samples) <= whole ? samples : 0;
+  }
+
+ private:
+  Contrast contrast_;
+  const std::vector<Rgba>& colours_;
+};
+
+/// The same of a mean of values, which is drawn for every number of samples: as the field of that one value.
+class SamplesByValues {
+ public:
+  /// Between `fewest` samples and 32 times as many the mean goes from `within` nearly to `outside`.
+  SamplesByValues(FieldProbe& probe, const std::array<double, 2>& ray, float within, float outside, int fewest)
+      : fewest_(fewest) {
+    std::vector<float> means{outside};
+    for (int n = fewest; n <= 32 * fewest; ++n)
+      means.push_back(float(outside + (double(within) - outside) * fewest / n));
+    by_samples_ = probe.at(ray[0], ray[1], means);
+  }
+
+  std::optional<double> operator()(const Rgba& fragment) const {
+    constexpr float nearly = 0.25F;  // of the difference between two numbers of samples
+    const float to_none = largest_difference(fragment, by_samples_.front());
+    if (!(to_none > largest_difference(by_samples_.back(), by_samples_.front()) / 2)) return std::nullopt;
+    std::size_t told = 0;
+    for (std::size_t i = 2; i + 1 < by_samples_.size(); ++i) {
+      const float apart = std::min(largest_difference(by_samples_[i], by_samples_[i - 1]),
+                                   largest_difference(by_samples_[i], by_samples_[i + 1]));
+      if (!(largest_difference(fragment, by_samples_[i]) < nearly * apart)) continue;
+      if (told != 0) return 0;  // one colour, and several numbers
+      told = i;
+    }
+    return told == 0 ? 0 : double(fewest_) + double(told) - 1;
+  }
+
+ private:
+  int fewest_;
+  std::vector<Rgba> by_samples_;  ///< of no sample in the layer, of the fewest, of one more, …
+};
+
 /// Counts the samples of rays that have one in a layer of another value.
 class LayerCounting {
  public:
-  LayerCounting(FieldProbe& probe, const ProxyBox& box, const Contrast& contrast,
-                const std::vector<Rgba>& colours)
-      : probe_(probe),
-        rays_(box.camera.texture_to_clip, box.region, box.cuts),
-        contrast_(contrast),
-        colours_(colours) {}
+  using Samples = std::function<std::optional<double>(const Rgba&)>;
 
+  LayerCounting(FieldProbe& probe, const ProxyBox& box, Samples samples)
+      : probe_(probe), rays_(box.camera.texture_to_clip, box.region, box.cuts), samples_(std::move(samples)) {}
+
+  /// Through layers at several places, across each axis, until enough rays are counted: through a small window
+  /// few have a sample in one.
+  std::vector<CountedRay> count(const volume::Box& region, float within, float outside) {
+    constexpr std::size_t enough = 512;
+    constexpr double most_broken = 0.1;
+    for (const double part : {0.45, 0.55, 0.37, 0.62, 0.51, 0.41, 0.58, 0.34, 0.66, 0.48, 0.53, 0.39}) {
+      for (const std::size_t axis : {0U, 1U, 2U}) {
+        const double place = (1 - part) * region.low[axis] + part * region.high[axis];
+        add({axis, place, within, outside});
+      }
+      if (counted_.size() + broken_ >= enough) break;
+    }
+    if (double(broken_) > most_broken * double(counted_.size())) counted_.clear();
+    return std::move(counted_);
+  }
+
+ private:
   void add(const FieldProbe::LayerField& field) {
     constexpr int bands = 16;  // of two rows each
     for (int band = 0; band < bands; ++band) {
@@ -59,37 +129,31 @@ class LayerCounting {
     }
   }
 
-  std::vector<CountedRay> counted;
-  std::size_t broken = 0;  ///< rays whose number of samples is no whole one
-
- private:
   void add_rows(int first_row, const FieldProbe::LayerField& field) {
-    constexpr double most_samples = 4096;
-    constexpr double whole = 0.1;
     constexpr double least_across =
         0.3;  // of a ray's way: several samples of one that grazes the layer lie in it
     const auto fragments = probe_.rows(first_row, 2, field);
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!reached(fragments[i])) continue;
-      const double part = contrast_.part_of_one(colours_, fragments[i]);
-      if (!(part * most_samples >= 1)) continue;  // no sample lies in it
+      const auto samples = samples_(fragments[i]);
+      if (!samples) continue;
       const int column = int(i) % probe_.width();
       const int row = first_row + int(i) / probe_.width();
       const auto way =
           rays_.way(2 * (column + 0.5) / probe_.width() - 1, 2 * (row + 0.5) / probe_.height() - 1);
       if (!way || std::abs((*way)[field.axis]) < least_across * volume::length(*way)) continue;
-      const double samples = std::round(1 / part);
-      if (std::abs(1 / part - samples) > whole)
-        ++broken;
+      if (*samples < 1)
+        ++broken_;
       else
-        counted.push_back({*way, samples, probe_.left() + column, probe_.bottom() + row});
+        counted_.push_back({*way, *samples, probe_.left() + column, probe_.bottom() + row});
     }
   }
 
   FieldProbe& probe_;
   RaysThroughBox rays_;
-  Contrast contrast_;
-  const std::vector<Rgba>& colours_;
+  Samples samples_;
+  std::vector<CountedRay> counted_;
+  std::size_t broken_ = 0;  ///< rays whose number of samples is no whole one
 };
 
 }  // namespace
@@ -115,23 +179,22 @@ bool shows_mean(FieldProbe& probe, const ProxyBox& box, const std::vector<float>
   return false;
 }
 
-std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box,
+std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box, Mean mean,
                                          const std::vector<float>& values, const std::vector<Rgba>& colours) {
-  constexpr std::size_t enough = 512;
-  constexpr double most_broken = 0.1;
+  constexpr std::size_t fewest_rays = 64;
   const Contrast contrast = greatest_contrast(colours);
   if (!(contrast.difference > 0)) return {};
-  LayerCounting counting(probe, box, contrast, colours);
-  // Through a small window few rays have a sample in a layer.
-  for (const double part : {0.45, 0.55, 0.37, 0.62, 0.51, 0.41, 0.58, 0.34, 0.66, 0.48, 0.53, 0.39}) {
-    for (const std::size_t axis : {0U, 1U, 2U}) {
-      const double place = (1 - part) * box.region.low[axis] + part * box.region.high[axis];
-      counting.add({axis, place, values[contrast.one], values[contrast.other]});
-    }
-    if (counting.counted.size() + counting.broken >= enough) break;
+  const float within = values[contrast.one], outside = values[contrast.other];
+  if (mean == Mean::of_colours)
+    return LayerCounting(probe, box, SamplesByColours(contrast, colours)).count(box.region, within, outside);
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  for (const int fewest : {16, 4, 64}) {
+    LayerCounting counting(probe, box, SamplesByValues(probe, rays.middle(), within, outside, fewest));
+    // One sample in the layer takes the mean as far as that many of the value `within` would.
+    auto counted = counting.count(box.region, outside + float(fewest) * (within - outside), outside);
+    if (counted.size() >= fewest_rays) return counted;
   }
-  if (double(counting.broken) > most_broken * double(counting.counted.size())) return {};
-  return std::move(counting.counted);
+  return {};
 }
 
 bool have_as_many(const std::vector<CountedRay>& rays, const volume::RaySteps& steps) {

@@ -16,9 +16,9 @@ namespace understudy::spu {
 bool shows_mean(FieldProbe& probe, const ProxyBox& box, const std::vector<float>& values,
                 const std::vector<volume::Rgba>& colours);
 
-/// Rays all over the box with the number of their samples, where the mean is of colours; none where colours do
-/// not tell.
-std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box,
+/// Rays all over the box with the number of their samples, where the mean is of colours or of values; none
+/// where colours do not tell.
+std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box, Mean mean,
                                          const std::vector<float>& values,
                                          const std::vector<volume::Rgba>& colours);
 

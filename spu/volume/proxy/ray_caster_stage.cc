@@ -221,6 +221,12 @@ void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchI
   march = std::get<March>(std::move(again));
 }
 
+void RayCasterStage::refuse_again(const Draw& draw) const {
+  const RefusalHistory& refusals = draw.known.refusals;
+  if (refusals.in_a_row >= patient_refusals && account_.frames() % refused_retry_frames != 0)
+    throw Refusal{refusals.last_reason};
+}
+
 std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                               bool turned) const {
   const KnownMarch& known = draw.known.march;
@@ -255,9 +261,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     again.reset();
   march = again;
   if (!again) {
-    const RefusalHistory& refusals = draw.known.refusals;
-    if (refusals.in_a_row >= patient_refusals && account_.frames() % refused_retry_frames != 0)
-      throw Refusal{refusals.last_reason};
+    refuse_again(draw);
     draw.spaces = coordinate_spaces(draw.measured());
     if (draw.spaces.empty()) throw no_coordinate();
     const ProxyBox first = box_in(draw.measured(), draw.spaces.front());
@@ -326,6 +330,7 @@ volume::Rect RayCasterStage::kept_window(const Draw& draw, const ProxyBox& box, 
   for (const KeptWindow& window : known) {
     if (window.viewport == asked.viewport && window.depends == asked.depends) return window.kept;
   }
+  refuse_again(draw);
   const auto finding = kept_rect(draw.measured(), box);
   if (const auto* refusal = std::get_if<Refusal>(&finding)) throw Refusal{*refusal};
   asked.kept = std::get<volume::Rect>(finding);

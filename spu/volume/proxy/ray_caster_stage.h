@@ -67,6 +67,8 @@ class RayCasterStage {
   struct Draw;
 
   ProxyBox find_box(Draw& draw);
+  /// Throws the last refusal before what was refused several times is measured once more, but in some frames.
+  void refuse_again(const Draw& draw) const;
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                 bool turned) const;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "box_ray_caster.h"
+#include "ray_caster_scene.h"
 #include "spu/volume/proxy/cut_box.h"
 #include "spu/volume/proxy/cuts.h"
 #include "volume/matrix.h"
@@ -21,34 +21,11 @@ constexpr double another = 35;       // dB; below, an image is another one
 constexpr double another_grey = 46;  // dB; of means, which are dark
 constexpr std::uint32_t middle_region = 1U << 13U;
 
-class CutScene {
- public:
-  explicit CutScene(const MarchStyle& style) : app(GlApplication::start(Profile::core)), caster(style) {
-    if (app) caster.set_up(*app);
-  }
-
-  std::vector<float> frame(bool under, double angle) {
-    app->use_chain(under);
-    caster.draw(*app, angle, 0);
-    app->end_frame();
-    return app->read_pixels();
-  }
-
-  /// Substituted, and like the application's own; that image.
+struct CutScene : RayCasterScene {
+  using RayCasterScene::RayCasterScene;
   std::vector<float> expect_alike(double angle, const std::string& what, double least = alike) {
-    const auto before = app->substituted();
-    const auto under = frame(true, angle);
-    EXPECT_EQ(app->substituted(), before + 1) << what << ": " << app->last_reason();
-    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR)) << what;
-    auto bare = frame(false, angle);
-    const double likeness = psnr(under, bare);
-    std::printf("%s, %g degrees: %.1f dB\n", what.c_str(), angle, likeness);
-    EXPECT_GE(likeness, least) << what << ", " << angle << " degrees";
-    return bare;
+    return RayCasterScene::expect_alike(angle, what, least);
   }
-
-  std::unique_ptr<GlApplication> app;
-  BoxRayCaster caster;
 };
 
 constexpr std::array<float, 3> stretched{1.0F, 1.3F, 0.7F};

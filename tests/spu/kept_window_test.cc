@@ -5,44 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
-#include <memory>
 #include <string>
 
-#include "box_ray_caster.h"
+#include "ray_caster_scene.h"
 
 namespace understudy::spu::testing {
 namespace {
 
 constexpr float window_edge = GlApplication::size;
 constexpr double least_psnr = 50;  // dB
-
-class ShownPart {
- public:
-  explicit ShownPart(const MarchStyle& style) : app(GlApplication::start(Profile::core)), caster(style) {
-    if (app) caster.set_up(*app);
-  }
-
-  std::vector<float> frame(bool under, double angle) {
-    app->use_chain(under);
-    caster.draw(*app, angle, 0);
-    app->end_frame();
-    return app->read_pixels();
-  }
-
-  void expect_alike(double angle, const std::string& what) {
-    const auto before = app->substituted();
-    const auto under = frame(true, angle);
-    EXPECT_EQ(app->substituted(), before + 1) << what << ": " << app->last_reason();
-    EXPECT_EQ(app->error(), GLenum(GL_NO_ERROR)) << what;
-    const double likeness = psnr(under, frame(false, angle));
-    std::printf("%s, %g degrees: %.3f dB\n", what.c_str(), angle, likeness);
-    EXPECT_GE(likeness, least_psnr) << what << ", " << angle << " degrees";
-  }
-
-  std::unique_ptr<GlApplication> app;
-  BoxRayCaster caster;
-};
 
 struct Part {
   const char* name;
@@ -59,27 +30,27 @@ constexpr std::array<Part, 6> parts{
 
 TEST(KeptWindow, IsMeasuredBeforeTheFirstImage) {
   for (const Part& part : parts) {
-    ShownPart scene({.shown = part.corners, .distance = 1.45});
+    RayCasterScene scene(MarchStyle{.shown = part.corners, .distance = 1.45});
     if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
-    for (const double angle : {20.0, 65.0, -40.0}) scene.expect_alike(angle, part.name);
+    for (const double angle : {20.0, 65.0, -40.0}) scene.expect_alike(angle, part.name, least_psnr);
   }
 }
 
 TEST(KeptWindow, IsMeasuredAgainWhereTheProgramMovesIt) {
-  ShownPart scene({.shown = parts[0].corners, .distance = 1.45});
+  RayCasterScene scene(MarchStyle{.shown = parts[0].corners, .distance = 1.45});
   if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
   for (const Part& part : parts) {
     scene.caster.style.shown = part.corners;
-    scene.expect_alike(20, part.name);
+    scene.expect_alike(20, part.name, least_psnr);
   }
   for (const Part& part : parts) {
     scene.caster.style.shown = part.corners;
-    scene.expect_alike(-30, std::string(part.name) + ", again");
+    scene.expect_alike(-30, std::string(part.name) + ", again", least_psnr);
   }
 }
 
 TEST(KeptWindow, IsARectangle) {
-  ShownPart scene({.shown_radius = 0.4F * window_edge, .distance = 1.45});
+  RayCasterScene scene(MarchStyle{.shown_radius = 0.4F * window_edge, .distance = 1.45});
   if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
   const auto under = scene.frame(true, 20);
   EXPECT_EQ(scene.app->substituted(), 0U);

@@ -8,7 +8,7 @@
 #include <optional>
 #include <random>
 
-#include "box_ray_caster.h"
+#include "ray_caster_scene.h"
 #include "spu/report/counters.h"
 #include "spu/volume/proxy/background_removal.h"
 #include "spu/volume/proxy/box.h"
@@ -23,27 +23,6 @@ namespace understudy::spu::testing {
 namespace {
 
 using Composition = MarchStyle::Composition;
-
-class ProxyScene {
- public:
-  explicit ProxyScene(const MarchStyle& style) : app(GlApplication::start(Profile::core)), caster_(style) {
-    if (app) caster_.set_up(*app);
-  }
-
-  std::vector<float> frame(bool under, double angle, float wall = 0) {
-    app->use_chain(under);
-    caster_.draw(*app, angle, wall);
-    app->end_frame();
-    return app->read_pixels();
-  }
-
-  BoxRayCaster& caster() { return caster_; }
-
-  std::unique_ptr<GlApplication> app;
-
- private:
-  BoxRayCaster caster_;
-};
 
 struct Kind {
   const char* name;
@@ -94,7 +73,7 @@ std::vector<Kind> kinds() {
 
 TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
   for (const Kind& kind : kinds()) {
-    ProxyScene scene(kind.style);
+    RayCasterScene scene(kind.style);
     if (!scene.app) GTEST_SKIP() << "no EGL context of this profile here; install libegl1 and libgl1-mesa-dri";
     for (const double angle : {20.0, 35.0, -50.0, 110.0}) {
       const auto before = scene.app->substituted();
@@ -111,7 +90,7 @@ TEST(Proxies, GiveTheApplicationsImageFromEveryAngle) {
 }
 
 TEST(Proxies, WithoutBlendingDepthIsThatOfTheBox) {
-  ProxyScene scene({.replaces = true, .writes_depth = true, .discards = false});
+  RayCasterScene scene({.replaces = true, .writes_depth = true, .discards = false});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
   const auto depth_after = [&](bool under) {
     scene.frame(under, 20, 0.99F);
@@ -131,7 +110,7 @@ TEST(Proxies, WithoutBlendingWhatCannotBeKnownIsNotSubstituted) {
       {"whichever face is drawn last is left", {.replaces = true, .discards = false, .both_faces = true}},
       {"what is discarded replaces nothing", {.replaces = true}}};
   for (const Kind& kind : left) {
-    ProxyScene scene(kind.style);
+    RayCasterScene scene(kind.style);
     ASSERT_NE(scene.app, nullptr) << "no EGL context here";
     const auto under = scene.frame(true, 20);
     EXPECT_EQ(scene.app->substituted(), 0U) << kind.name;
@@ -141,27 +120,27 @@ TEST(Proxies, WithoutBlendingWhatCannotBeKnownIsNotSubstituted) {
 }
 
 TEST(Proxies, TheShadersBackgroundMayChangeBetweenFrames) {
-  ProxyScene scene({.discards = false});
+  RayCasterScene scene({.discards = false});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
-  std::optional<std::array<float, 3>>& background = scene.caster().style.background;
+  std::optional<std::array<float, 3>>& background = scene.caster.style.background;
   for (const auto& colour :
        {std::optional<std::array<float, 3>>(), {{1, 1, 1}}, {{0, 0.25F, 0.5F}}, {{0, 0, 0}}}) {
     background = colour;
     const auto under = scene.frame(true, 20);
     EXPECT_GE(psnr(under, scene.frame(false, 20)), 38) << (colour ? (*colour)[2] : -1);
   }
-  scene.caster().set_table(*scene.app, 0.5F);
+  scene.caster.set_table(*scene.app, 0.5F);
   const auto under = scene.frame(true, 35);
   EXPECT_GE(psnr(under, scene.frame(false, 35)), 38) << "another table";
   EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
 }
 
 TEST(Proxies, AShadersBackgroundThatIsAddedToWhatIsThereIsLeft) {
-  ProxyScene scene({.background = {{0.3F, 0.2F, 0.1F}}, .discards = false});
+  RayCasterScene scene({.background = {{0.3F, 0.2F, 0.1F}}, .discards = false});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
   scene.frame(true, 20);
   ASSERT_EQ(scene.app->substituted(), 1U) << scene.app->last_reason();
-  scene.caster().style.adds = true;
+  scene.caster.style.adds = true;
   const auto under = scene.frame(true, 20);
   EXPECT_EQ(scene.app->substituted(), 1U);
   EXPECT_TRUE(under == scene.frame(false, 20));
@@ -172,7 +151,7 @@ TEST(Proxies, OpaqueFragmentsWhoseBoxIsNotSortedAreLeft) {
       {"both are opaque", {.background = {{1, 1, 1}}, .discards = false, .both_faces = true}},
       {"the others are opaque", {.background = {{1, 1, 1}}}}};
   for (const Kind& kind : left) {
-    ProxyScene scene(kind.style);
+    RayCasterScene scene(kind.style);
     ASSERT_NE(scene.app, nullptr) << "no EGL context here";
     const auto under = scene.frame(true, 20);
     EXPECT_EQ(scene.app->substituted(), 0U) << kind.name;
@@ -182,10 +161,10 @@ TEST(Proxies, OpaqueFragmentsWhoseBoxIsNotSortedAreLeft) {
 }
 
 TEST(Proxies, BlendingMayBeSwitchedBetweenFrames) {
-  ProxyScene scene({.discards = false});
+  RayCasterScene scene({.discards = false});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
   for (const bool disabled : {false, true, true, false}) {
-    scene.caster().style.replaces = disabled;
+    scene.caster.style.replaces = disabled;
     const auto under = scene.frame(true, 20);
     EXPECT_GE(psnr(under, scene.frame(false, 20)), 38) << (disabled ? "disabled" : "enabled");
   }
@@ -193,12 +172,12 @@ TEST(Proxies, BlendingMayBeSwitchedBetweenFrames) {
 }
 
 TEST(Proxies, BackFacesThatAreDrawnLaterAreSeen) {
-  ProxyScene scene({.whole_rays = true});
+  RayCasterScene scene({.whole_rays = true});
   ASSERT_NE(scene.app, nullptr) << "no EGL context here";
   for (int i = 0; i < 6; ++i) scene.frame(true, 20);
   EXPECT_EQ(scene.app->substituted(), 6U) << scene.app->last_reason();
   const auto culled = scene.frame(false, 20);
-  scene.caster().style.both_faces = true;
+  scene.caster.style.both_faces = true;
   const auto under = scene.frame(true, 20);
   const auto bare = scene.frame(false, 20);
   EXPECT_TRUE(under == bare) << psnr(under, bare) << " dB";
@@ -206,15 +185,15 @@ TEST(Proxies, BackFacesThatAreDrawnLaterAreSeen) {
 }
 
 TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
-  ProxyScene scene(MarchStyle{});
+  RayCasterScene scene(MarchStyle{});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
   const auto before = scene.frame(true, 30);
-  scene.caster().style.step = 0.06F;
+  scene.caster.style.step = 0.06F;
   const auto coarse = scene.frame(true, 30);
   EXPECT_LT(psnr(before, coarse), 30) << "the step changes nothing: the test tests nothing";
   EXPECT_GE(psnr(coarse, scene.frame(false, 30)), 38);
   scene.app->use_chain(true);
-  scene.caster().set_table(*scene.app, 0.9F);
+  scene.caster.set_table(*scene.app, 0.9F);
   const auto dense = scene.frame(true, 30);
   EXPECT_LT(psnr(dense, coarse), 30) << "the table changes nothing: the test tests nothing";
   EXPECT_GE(psnr(dense, scene.frame(false, 30)), 38);
@@ -222,11 +201,11 @@ TEST(Proxies, AnotherStepAndAnotherTableAreSeen) {
 }
 
 TEST(Proxies, AStepThatIsAnotherInEveryFrameIsFollowed) {
-  ProxyScene scene(MarchStyle{});
+  RayCasterScene scene(MarchStyle{});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
   double angle = 30;
   for (const float step : {0.02F, 0.05F, 0.031F, 0.074F, 0.02F}) {
-    scene.caster().style.step = step;
+    scene.caster.style.step = step;
     const auto under = scene.frame(true, angle);
     EXPECT_GE(psnr(under, scene.frame(false, angle)), 38) << "step " << step;
     angle += 7;
@@ -237,13 +216,13 @@ TEST(Proxies, AStepThatIsAnotherInEveryFrameIsFollowed) {
 TEST(Proxies, AnotherStepBehindAnExtremeIsSeen) {
   constexpr double alike = 50;  // dB
   for (const auto composition : {Composition::maximum, Composition::minimum}) {
-    ProxyScene scene(MarchStyle{.composition = composition});
+    RayCasterScene scene(MarchStyle{.composition = composition});
     if (!scene.app) GTEST_SKIP() << "no EGL context here";
     double angle = 30;
     double least = 100;
     for (const float step : {0.02F, 0.07F, 0.03F, 0.06F}) {
       const auto with_former_step = scene.frame(false, angle);
-      scene.caster().style.step = step;
+      scene.caster.style.step = step;
       const auto under = scene.frame(true, angle);
       const auto bare = scene.frame(false, angle);
       const double likeness = psnr(under, bare);
@@ -260,14 +239,14 @@ TEST(Proxies, AnotherStepBehindAnExtremeIsSeen) {
 
 TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
   for (const bool reads_depth : {false, true}) {
-    ProxyScene scene(MarchStyle{.noisy = true, .reads_depth = reads_depth, .step = 0.08F});
+    RayCasterScene scene(MarchStyle{.noisy = true, .reads_depth = reads_depth, .step = 0.08F});
     if (!scene.app) GTEST_SKIP() << "no EGL context here";
-    scene.caster().set_table(*scene.app, 0.9F);
+    scene.caster.set_table(*scene.app, 0.9F);
     const auto first = scene.frame(true, 30);
     const auto bare = scene.frame(false, 30);
     const double likeness = psnr(first, bare);
     scene.app->use_chain(true);
-    scene.caster().set_noise(*scene.app, 2);
+    scene.caster.set_noise(*scene.app, 2);
     const auto second = scene.frame(true, 50);
     const double other_likeness = psnr(second, scene.frame(false, 50));
     std::printf("noise: %.1f dB, other noise: %.1f dB\n", likeness, other_likeness);
@@ -280,7 +259,7 @@ TEST(Proxies, NoiseAtTheBeginningOfRaysIsThatOfTheApplication) {
 }
 
 TEST(Proxies, NoiseIsReadThroughItsSamplerObject) {
-  ProxyScene scene(MarchStyle{.noisy = true, .noise_sampler = true, .step = 0.08F});
+  RayCasterScene scene(MarchStyle{.noisy = true, .noise_sampler = true, .step = 0.08F});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
   const auto under = scene.frame(true, 30);
   const auto bare = scene.frame(false, 30);
@@ -293,7 +272,7 @@ TEST(Proxies, NoiseIsReadThroughItsSamplerObject) {
 }
 
 TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
-  ProxyScene scene(MarchStyle{.reads_depth = true});
+  RayCasterScene scene(MarchStyle{.reads_depth = true});
   if (!scene.app) GTEST_SKIP() << "no EGL context here";
   constexpr float through_the_middle = 0.877F;  // three away, between 0.5 and 10
   for (const double angle : {25.0, 60.0}) {
@@ -308,7 +287,7 @@ TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
 
 TEST(Proxies, RaysThatDoNotEndAtGeometryInTheBoxAreLeft) {
   for (const bool replaces : {false, true}) {
-    ProxyScene scene({.replaces = replaces, .discards = !replaces});
+    RayCasterScene scene({.replaces = replaces, .discards = !replaces});
     ASSERT_NE(scene.app, nullptr) << "no EGL context here";
     constexpr float through_the_middle = 0.877F;
     for (const float wall : {0.0F, 0.5F, through_the_middle, 0.99F}) {
@@ -336,7 +315,7 @@ TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
         Refusal{"rays that begin at the back faces of the box show something, too",
                 {.both_faces = true, .whole_rays = true}},
         Refusal{"the near plane cuts the ray caster's box, or the eye is inside", {.distance = 0.8}}}) {
-    ProxyScene scene(refusal.style);
+    RayCasterScene scene(refusal.style);
     if (!scene.app) GTEST_SKIP() << "no EGL context here";
     for (int i = 0; i < 2; ++i) {
       const auto under = scene.frame(true, 20);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/known_volumes/known_volumes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -21,12 +19,6 @@ constexpr std::array<std::uint64_t, 4> pauses = {1, 1, 4, 16};
 std::uint64_t state_of(GLuint texture, GLuint program, const ShareGroup& group) {
   constexpr std::uint64_t prime = 0x100000001b3;
   return (group.texture_version(texture) * prime) ^ program;
-}
-
-/// What the next image is tried with, after one was wrong; empty: nothing is left to try.
-std::string_view another_explanation(KnownVolume& volume) {
-  if (volume.colours.rounding.try_after_loss(volume.sent.texture)) return "with samples rounded to 8 bits";
-  return {};
 }
 
 }  // namespace
@@ -137,11 +129,11 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
     return;
   }
   Refusal refusal = refusal_of(comparison->difference);
-  if (const std::string_view how = another_explanation(volume); !how.empty()) {
+  if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
     volume.refusals.pause(frame, 1);
     volume.speed.allow_another();
     schedule.ask_for_whole();
-    refusal.reason += fmt::format("; tried again {}", how);
+    refusal.reason += "; tried again with samples rounded to 8 bits";
     throw Refusal{std::move(refusal)};
   }
   schedule.lost();

@@ -119,8 +119,7 @@ void add_ends(FieldProbe& probe, const TellingStretch& stretch, const RaysThroug
       if (!reached(rising[i]) || !reached(falling[i])) continue;
       const int column = int(i) % probe.width();
       const int row = y + int(i) / probe.width();
-      const auto through =
-          rays.through(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+      const auto through = rays.through(probe.x_of(column), probe.y_of(row));
       if (!through) continue;
       const volume::Vec3& way = through->way;
       const double longest = std::max({std::abs(way[0]), std::abs(way[1]), std::abs(way[2])});

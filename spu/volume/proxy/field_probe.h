@@ -4,6 +4,7 @@
 // box's faces are not culled, a pixel's nearest fragment is looked at, whatever the order of the faces.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -104,6 +105,12 @@ class FieldProbe {
   int bottom() const { return viewport_[1]; }
   int width() const { return viewport_[2]; }
   int height() const { return viewport_[3]; }
+  /// The normalised device coordinates of a pixel's middle.
+  double x_of(int column) const { return 2 * (column + 0.5) / width() - 1; }
+  double y_of(int row) const { return 2 * (row + 0.5) / height() - 1; }
+  /// The pixel at normalised device coordinates, or the nearest one in the viewport.
+  int column_at(double x) const { return std::clamp(int((x + 1) / 2 * width()), 0, width() - 1); }
+  int row_at(double y) const { return std::clamp(int((y + 1) / 2 * height()), 0, height() - 1); }
   /// Width and height.
   const std::array<GLint, 2>& largest_viewport() const { return largest_viewport_; }
 

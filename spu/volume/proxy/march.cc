@@ -283,14 +283,10 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::R
     if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
     march.past_planes = past_planes;
     marches.push_back(march);
-    // Fields of one value do not tell which extreme it is, or of what the mean.
-    if (march.extreme) {
-      marches.push_back(march);
-      marches.back().extreme = volume::Operator::min;
-    } else if (march.mean == Mean::of_colours) {
-      marches.push_back(march);
-      marches.back().mean = Mean::of_values;
-    }
+    // Fields of one value do not tell which extreme it is.
+    if (!march.extreme) continue;
+    marches.push_back(march);
+    marches.back().extreme = volume::Operator::min;
   }
 }
 

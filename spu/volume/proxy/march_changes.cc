@@ -163,9 +163,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   if (march.shows_one_colour() || !looked_at.long_ray) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();
-  const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
-  const int row = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
-  const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+  const int column = probe.column_at(middle[0]);
+  const int row = probe.row_at(middle[1]);
+  const auto way = rays.way(probe.x_of(column), probe.y_of(row));
   if (!way) return true;
   return expected(probe.pixel(column, row, march.translucent), march.translucent,
                   samples_of_length(march.steps, steps_of_way(march.steps, *way)));

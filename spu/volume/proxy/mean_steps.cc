@@ -139,8 +139,7 @@ class LayerCounting {
       if (!samples) continue;
       const int column = int(i) % probe_.width();
       const int row = first_row + int(i) / probe_.width();
-      const auto way =
-          rays_.way(2 * (column + 0.5) / probe_.width() - 1, 2 * (row + 0.5) / probe_.height() - 1);
+      const auto way = rays_.way(probe_.x_of(column), probe_.y_of(row));
       if (!way || std::abs((*way)[field.axis]) < least_across * volume::length(*way)) continue;
       if (*samples < 1)
         ++broken_;
@@ -166,9 +165,9 @@ bool shows_mean(FieldProbe& probe, const ProxyBox& box, const std::vector<float>
   if (!(contrast.difference >= least_contrast)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto middle = rays.middle();
-  const int column = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
-  const int row = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
-  const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+  const int column = probe.column_at(middle[0]);
+  const int row = probe.row_at(middle[1]);
+  const auto way = rays.way(probe.x_of(column), probe.y_of(row));
   if (!way) return false;
   for (const auto& field : split_fields(box.region, *way, values[contrast.one], values[contrast.other])) {
     const Rgba seen = probe.pixel(column, row, field);

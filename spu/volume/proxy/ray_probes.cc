@@ -115,7 +115,7 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
       if (!reached(fragments[i])) continue;
       const int column = int(i) % probe.width();
       const int row = y + int(i) / probe.width();
-      const auto way = rays.way(2 * (column + 0.5) / probe.width() - 1, 2 * (row + 0.5) / probe.height() - 1);
+      const auto way = rays.way(probe.x_of(column), probe.y_of(row));
       const float seen = amount(march, premultiplied(fragments[i], already));
       if (!way || (!march.sum && seen > most_counted)) continue;
       counted.push_back({*way, 0, probe.left() + column, probe.bottom() + row});

@@ -138,9 +138,8 @@ void SplitCounting::add_rows(int first_row) {
     const int column = int(i) % probe_.width();
     const int row = first_row + int(i) / probe_.width();
     for (SplitRays& rays : all_)
-      rays.rays.push_back({{2 * (column + 0.5) / probe_.width() - 1, 2 * (row + 0.5) / probe_.height() - 1},
-                           probe_.left() + column,
-                           probe_.bottom() + row});
+      rays.rays.push_back(
+          {{probe_.x_of(column), probe_.y_of(row)}, probe_.left() + column, probe_.bottom() + row});
   }
 }
 

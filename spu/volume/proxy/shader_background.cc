@@ -279,10 +279,9 @@ std::optional<HiddenBehind> HiddenBehind::in_middle_of(FieldProbe& probe, const 
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   const auto middle = rays.middle();
   HiddenBehind ray;
-  ray.column_ = std::clamp(int((middle[0] + 1) / 2 * probe.width()), 0, probe.width() - 1);
-  ray.row_ = std::clamp(int((middle[1] + 1) / 2 * probe.height()), 0, probe.height() - 1);
-  const auto way =
-      rays.way(2 * (ray.column_ + 0.5) / probe.width() - 1, 2 * (ray.row_ + 0.5) / probe.height() - 1);
+  ray.column_ = probe.column_at(middle[0]);
+  ray.row_ = probe.row_at(middle[1]);
+  const auto way = rays.way(probe.x_of(ray.column_), probe.y_of(ray.row_));
   if (!way) return std::nullopt;
   const double samples = part_behind * samples_of_length(steps, steps_of_way(steps, *way));
   const std::vector<Rgba>& entries = march.table.entries;

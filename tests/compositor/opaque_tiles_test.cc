@@ -180,7 +180,11 @@ Drawn drawn(const Texture& texture, const RenderRequest& request, bool with_occl
     const bool nearer = order[0] == communicator.rank();
     OpaqueTiles tiles(communicator, 1, request, order, renderer.footprints(1, request));
     volume::FrameCounts counts;
-    if (!nearer) told.wait();
+    if (!nearer) {
+      told.wait();
+      // Only this thread hears what was told, and on a busy machine others draw before it does.
+      tiles.hides(request.viewport);
+    }
     Image image = renderer.render(1, request, counts, with_occlusion ? &tiles : nullptr);
     std::uint32_t mine = tiles.tell_rest();
     if (nearer) told.count_down();

@@ -11,20 +11,46 @@
 
 namespace understudy::spu {
 
-bool DepthWatch::settle(const Run& run, bool first, bool looked_at) {
-  if (!run.pipeline().depth_test || !run.pipeline().depth_write) return false;
+namespace {
+
+/// Of the framebuffer that is drawn into.
+DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volume) {
+  GLint framebuffer = 0;
+  gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  if (framebuffer == 0) return {0, volume};
+  const auto attached = [&](GLenum what) {
+    GLint value = 0;
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
+    return GLuint(value);
+  };
+  const GLuint type = attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
+  const GLuint renderbuffer = type == GL_RENDERBUFFER ? attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) : 0;
+  return {GLuint(framebuffer), volume, type == GL_TEXTURE, renderbuffer};
+}
+
+}  // namespace
+
+std::optional<DeferredDepth::Watched> DepthWatch::settle(const Run& run, bool first, bool looked_at) {
+  if (!run.pipeline().depth_test || !run.pipeline().depth_write) return std::nullopt;
   const std::string_view why = first       ? "the first of the volume"
                                : looked_at ? "somebody looked at it"
                                : session_.disabled_optimizations(Optimization::unseen_depth) ? "asked to"
                                                                                              : "";
   // First what is seen: what is counted may fail.
-  if (!why.empty()) write_depth(*context_.gl, run);
+  if (!why.empty()) {
+    // To its end, as the application's own drawing is timed: a driver that draws later would hide what this
+    // takes.
+    const TimedShare timed(account_.clock(), &FrameShares::presentation);
+    write_depth(*context_.gl, run);
+    context_.gl->Finish();
+  }
   account_.note([&](FrameRecord& frame) {
     Amount& runs = frame.amount(Optimization::unseen_depth);
     ++(why.empty() ? runs.left_out : runs.done);
   });
   if (!why.empty()) count_done(Optimization::unseen_depth, why);
-  return !looked_at;
+  if (looked_at) return std::nullopt;
+  return depth_of_framebuffer(*context_.gl, run.volume_texture());
 }
 
 }  // namespace understudy::spu

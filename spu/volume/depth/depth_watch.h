@@ -2,6 +2,9 @@
 // Whether somebody looks at the depth that substituted slices would have written (deferred_depth_write.h).
 #pragma once
 
+#include <optional>
+
+#include "spu/volume/depth/deferred_depth.h"
 #include "spu/volume/observation/run.h"
 
 namespace understudy::spu {
@@ -16,8 +19,8 @@ class DepthWatch {
       : context_(context), session_(session), account_(account) {}
 
   /// `run` was substituted, the first of its volume or not: draws the depth that it writes where somebody may
-  /// look at it, as `looked_at` says of earlier frames. True where its use is to be watched from now on.
-  bool settle(const Run& run, bool first, bool looked_at);
+  /// look at it, as `looked_at` says of earlier frames. Set where its use is to be watched from now on.
+  std::optional<DeferredDepth::Watched> settle(const Run& run, bool first, bool looked_at);
 
  private:
   const GlContext& context_;

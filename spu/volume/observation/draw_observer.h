@@ -54,9 +54,15 @@ class DrawObserver : public Unit {
   /// Many 2-D textures of one size: what is drawn with them may be a stack of slices.
   void stack_defined();
 
-  /// The depth that the last substituted slices would have written is being used; or is gone, unused.
+  /// The depth that substituted runs would have written is being used: that of any framebuffer, or of this one.
   virtual void depth_looked_at() = 0;
-  virtual void depth_cleared() = 0;
+  virtual void depth_looked_at_in(GLuint framebuffer) = 0;
+  /// It is gone, unused.
+  virtual void depth_cleared_in(GLuint framebuffer) = 0;
+  /// This framebuffer is what is drawn into from now on.
+  virtual void framebuffer_bound(GLuint framebuffer) = 0;
+  /// A framebuffer gets this renderbuffer.
+  virtual void renderbuffer_attached(GLuint renderbuffer) = 0;
 
   const GlContext& context();
   const DispatchTable& next() const { return chain_.below(*this); }

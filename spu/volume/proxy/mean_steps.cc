@@ -19,7 +19,7 @@ using volume::Rgba;
 namespace {
 
 /// Two values and the channel by which their colours are told apart best.
-struct Contrast {
+struct ValueContrast {
   std::size_t one = 0;
   std::size_t other = 0;
   std::size_t channel = 0;
@@ -31,8 +31,8 @@ struct Contrast {
   }
 };
 
-Contrast greatest_contrast(const std::vector<Rgba>& colours) {
-  Contrast greatest;
+ValueContrast greatest_contrast(const std::vector<Rgba>& colours) {
+  ValueContrast greatest;
   for (std::size_t channel = 0; channel < 4; ++channel) {
     const auto [low, high] =
         std::ranges::minmax_element(colours, {}, [&](const Rgba& colour) { return colour[channel]; });
@@ -47,7 +47,7 @@ Contrast greatest_contrast(const std::vector<Rgba>& colours) {
 /// 0 where that is no whole number.
 class SamplesByColours {
  public:
-  SamplesByColours(const Contrast& contrast, const std::vector<Rgba>& colours)
+  SamplesByColours(const ValueContrast& contrast, const std::vector<Rgba>& colours)
       : contrast_(contrast), colours_(colours) {}
 
   std::optional<double> operator()(const Rgba& fragment) const {
@@ -60,7 +60,7 @@ class SamplesByColours {
   }
 
  private:
-  Contrast contrast_;
+  ValueContrast contrast_;
   const std::vector<Rgba>& colours_;
 };
 
@@ -161,7 +161,7 @@ bool shows_mean(FieldProbe& probe, const ProxyBox& box, const std::vector<float>
                 const std::vector<Rgba>& colours) {
   constexpr float least_contrast = 0.02F;
   constexpr double clearly = 0.1;  // of the contrast
-  const Contrast contrast = greatest_contrast(colours);
+  const ValueContrast contrast = greatest_contrast(colours);
   if (!(contrast.difference >= least_contrast)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto middle = rays.middle();
@@ -181,7 +181,7 @@ bool shows_mean(FieldProbe& probe, const ProxyBox& box, const std::vector<float>
 std::vector<CountedRay> counted_by_means(FieldProbe& probe, const ProxyBox& box, Mean mean,
                                          const std::vector<float>& values, const std::vector<Rgba>& colours) {
   constexpr std::size_t fewest_rays = 64;
-  const Contrast contrast = greatest_contrast(colours);
+  const ValueContrast contrast = greatest_contrast(colours);
   if (!(contrast.difference > 0)) return {};
   const float within = values[contrast.one], outside = values[contrast.other];
   if (mean == Mean::of_colours)

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// The depth that substituted slices would have written: nobody looks at it where a toolkit switches between
+// framebuffers, and it is there for whoever does.
+#include "spu/volume/depth/deferred_depth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "slice_scenes.h"
+
+namespace understudy::spu::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(DeferredDepth, IsThatOfFramebuffersApart) {
+  DeferredDepth depth;
+  EXPECT_THAT(depth.add({.framebuffer = 0, .volume = 7}), IsEmpty());
+  EXPECT_THAT(depth.add({.framebuffer = 3, .volume = 7, .renderbuffer = 5}), IsEmpty());
+  EXPECT_THAT(depth.add({.framebuffer = 3, .volume = 8, .renderbuffer = 5}), IsEmpty());
+  EXPECT_THAT(depth.take(1), IsEmpty());
+  EXPECT_THAT(depth.take(3), ElementsAre(7, 8));
+  EXPECT_FALSE(depth.empty());
+  EXPECT_THAT(depth.take_all(), ElementsAre(7));
+  EXPECT_TRUE(depth.empty());
+}
+
+TEST(DeferredDepth, InATextureIsForAnybodyOnceAnotherFramebufferIsBound) {
+  DeferredDepth depth;
+  depth.add({.framebuffer = 3, .volume = 7, .in_texture = true});
+  depth.add({.framebuffer = 4, .volume = 8, .renderbuffer = 5});
+  EXPECT_THAT(depth.take_textures_outside(3), IsEmpty());
+  EXPECT_THAT(depth.take_textures_outside(4), ElementsAre(7));
+  EXPECT_THAT(depth.take_renderbuffer(0), IsEmpty());
+  EXPECT_THAT(depth.take_renderbuffer(5), ElementsAre(8));
+}
+
+TEST(DeferredDepth, IsWatchedInSoManyFramebuffersAndNoMore) {
+  DeferredDepth depth;
+  for (GLuint i = 0; i < DeferredDepth::most_framebuffers; ++i)
+    EXPECT_THAT(depth.add({.framebuffer = i, .volume = 10 + i}), IsEmpty());
+  EXPECT_THAT(depth.add({.framebuffer = 99, .volume = 99}), ElementsAre(10)) << "the oldest";
+}
+
+/// Two framebuffer objects, as a toolkit has them; the depth of the first in a renderbuffer or in a texture.
+class Framebuffers {
+ public:
+  Framebuffers(const DispatchTable& gl, bool depth_in_texture) {
+    constexpr int size = GlApplication::size;
+    gl.GenFramebuffers(2, names_.data());
+    gl.GenRenderbuffers(3, buffers_.data());
+    for (std::size_t i = 0; i < 2; ++i) {
+      gl.BindFramebuffer(GL_FRAMEBUFFER, names_[i]);
+      gl.BindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+      gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, size, size);
+      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers_[i]);
+    }
+    gl.BindFramebuffer(GL_FRAMEBUFFER, names_[0]);
+    if (depth_in_texture) {
+      GLuint texture = 0;
+      gl.GenTextures(1, &texture);
+      gl.BindTexture(GL_TEXTURE_2D, texture);
+      gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                    nullptr);
+      gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture, 0);
+      gl.BindTexture(GL_TEXTURE_2D, 0);
+    } else {
+      gl.BindRenderbuffer(GL_RENDERBUFFER, buffers_[2]);
+      gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, size, size);
+      gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers_[2]);
+    }
+    EXPECT_EQ(gl.CheckFramebufferStatus(GL_FRAMEBUFFER), GLenum(GL_FRAMEBUFFER_COMPLETE));
+  }
+  GLuint of_volume() const { return names_[0]; }
+  GLuint other() const { return names_[1]; }
+
+ private:
+  std::array<GLuint, 2> names_{};
+  std::array<GLuint, 3> buffers_{};
+};
+
+/// A frame that ends with another framebuffer bound; then the smallest depth that lies in the volume's, read
+/// past Understudy.
+float smallest_depth_after_frame(GlApplication& app, const SliceScene& scene,
+                                 const Framebuffers& framebuffers) {
+  const DispatchTable& gl = app.gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthMask(GL_TRUE);
+  scene.draw(app, 25);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.other());
+  gl.Clear(GL_COLOR_BUFFER_BIT);
+  std::vector<float> depth(std::size_t(GlApplication::size) * GlApplication::size);
+  const DispatchTable& driver = app.driver();
+  driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.of_volume());
+  driver.ReadPixels(0, 0, GlApplication::size, GlApplication::size, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
+  driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.other());
+  app.end_frame();
+  return *std::min_element(depth.begin(), depth.end());
+}
+
+TEST(DeferredDepth, IsNotDrawnWhereAToolkitSwitchesFramebuffers) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  app->use_chain(true);
+  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/false);
+  EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "the first frame draws it";
+  for (std::uint64_t frame = 2; frame <= 4; ++frame) {
+    EXPECT_EQ(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "frame " << frame;
+    EXPECT_EQ(app->substituted(), frame) << app->last_reason();
+  }
+}
+
+TEST(DeferredDepth, IsDrawnIntoATextureThatMayBeSampled) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  app->use_chain(true);
+  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/true);
+  for (std::uint64_t frame = 1; frame <= 3; ++frame) {
+    EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "frame " << frame;
+    EXPECT_EQ(app->substituted(), frame) << app->last_reason();
+  }
+}
+
+TEST(DeferredDepth, IsThereFromTheSecondLookOnInAFramebufferThatIsBoundAgain) {
+  auto app = GlApplication::start(Profile::compatibility);
+  if (!app) GTEST_SKIP() << "no EGL context here";
+  const SliceScene scene = immediate_rgba();
+  scene.set_up(*app);
+  app->use_chain(true);
+  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/false);
+  for (int frame = 1; frame <= 2; ++frame) smallest_depth_after_frame(*app, scene, framebuffers);
+  // Into the volume's framebuffer, with a depth test and without a clear.
+  app->gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  app->gl().Enable(GL_DEPTH_TEST);
+  app->gl().Begin(GL_TRIANGLES);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}) app->gl().Vertex3d(x, y, 0.5);
+  app->gl().End();
+  app->end_frame();
+  EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1);
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

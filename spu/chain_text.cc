@@ -22,9 +22,9 @@ bool is_plain(char c) {
   return !is_space(c) && c != ',' && c != '(' && c != ')' && c != '"';
 }
 
-class Reader {
+class ChainTextReader {
  public:
-  explicit Reader(std::string_view text) : text_(text) {}
+  explicit ChainTextReader(std::string_view text) : text_(text) {}
 
   ChainSettings chain() {
     ChainSettings units;
@@ -138,7 +138,7 @@ ChainSettings parse_chain(std::string_view text) {
     throw ChainError("chain",
                      fmt::format("it is {} bytes long; {} are the limit", text.size(), max_chain_bytes));
   }
-  return Reader(text).chain();
+  return ChainTextReader(text).chain();
 }
 
 std::string chain_text(const ChainSettings& chain) {

@@ -13,5 +13,9 @@ enum class TexelType : std::uint8_t { u8, u16, f32, rgba8 };
 constexpr std::size_t bytes_per_texel(TexelType type) {
   return type == TexelType::u8 ? 1 : type == TexelType::u16 ? 2 : 4;
 }
+/// What is 1 when sampled.
+constexpr double largest_texel(TexelType type) {
+  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
+}
 
 }  // namespace understudy::volume

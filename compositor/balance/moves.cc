@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compositor/balance/block_edge.h"
 #include "volume/brick/brick_store.h"
 #include "volume/cell_lattice.h"
 
@@ -10,11 +11,7 @@ namespace understudy::compositor {
 
 using volume::TexelBox;
 
-namespace {
-
-constexpr int block = volume::BrickStore::block_cells;
-
-}  // namespace
+namespace {}  // namespace
 
 TexelBox blocks_kept(const volume::VolumeDescription& volume, const TexelBox& cells) {
   if (volume::is_empty(cells)) return {};
@@ -23,8 +20,8 @@ TexelBox blocks_kept(const volume::VolumeDescription& volume, const TexelBox& ce
   for (std::size_t k = 0; k < 3; ++k) {
     const int low = std::max(cells.low[k] - volume.ghost_layer, lattice.low[k]) - lattice.low[k];
     const int high = std::min(cells.high[k] + volume.ghost_layer, lattice.high[k]) - lattice.low[k];
-    blocks.low[k] = low / block;
-    blocks.high[k] = (high + block - 1) / block;
+    blocks.low[k] = low / block_edge;
+    blocks.high[k] = (high + block_edge - 1) / block_edge;
   }
   return blocks;
 }
@@ -33,8 +30,8 @@ TexelBox blocks_owned(const TexelBox& lattice, const TexelBox& cells) {
   if (volume::is_empty(cells)) return {};
   TexelBox blocks;
   for (std::size_t k = 0; k < 3; ++k) {
-    blocks.low[k] = (cells.low[k] - lattice.low[k] + block - 1) / block;
-    blocks.high[k] = (cells.high[k] - lattice.low[k] + block - 1) / block;
+    blocks.low[k] = (cells.low[k] - lattice.low[k] + block_edge - 1) / block_edge;
+    blocks.high[k] = (cells.high[k] - lattice.low[k] + block_edge - 1) / block_edge;
   }
   return blocks;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compositor/balance/balancer.h"
+#include "compositor/balance/block_edge.h"
 #include "compositor/balance/tree.h"
 #include "volume/brick/brick_store.h"
 #include "volume/texel_box.h"
@@ -16,8 +17,6 @@ using volume::Partition;
 using volume::TexelBox;
 
 namespace {
-
-constexpr int block = volume::BrickStore::block_cells;
 
 class MullerBalancer : public Balancer {
  public:
@@ -32,7 +31,7 @@ class MullerBalancer : public Balancer {
       Partition::Split& split = partition.splits[i];
       const auto axis = std::size_t(split.axis);
       // Planes further up may have moved this box away from its plane.
-      split.cut = allowed_cut(partition, i, box, input.lattice, block, split.cut);
+      split.cut = allowed_cut(partition, i, box, input.lattice, block_edge, split.cut);
       const auto mean_ms = [&](int child) {
         const std::vector<int> ranks = ranks_under(partition, child);
         double sum = 0;
@@ -43,14 +42,14 @@ class MullerBalancer : public Balancer {
       const auto [high_ms, high_sum] = mean_ms(split.high);
       const std::size_t towards = low_ms > high_ms ? 0 : 1;  // which side gets smaller, and gives a slice
       TexelBox slice = box;
-      slice.high[axis] = std::min(box.high[axis], box.low[axis] + block);
+      slice.high[axis] = std::min(box.high[axis], box.low[axis] + block_edge);
       const auto blocks = double(blocks_in(slice));
       const double ms_per_block = (low_sum + high_sum) / double(blocks_in(box));
       const std::array<double, 2>& factor = factors_[i];
       const double cost = blocks * ms_per_block + blocks * factor[towards] * input.ms_per_block;
       if (!(cost < std::abs(low_ms - high_ms))) return;
-      const int cut =
-          allowed_cut(partition, i, box, input.lattice, block, split.cut + (towards == 0 ? -block : block));
+      const int cut = allowed_cut(partition, i, box, input.lattice, block_edge,
+                                  split.cut + (towards == 0 ? -block_edge : block_edge));
       if (cut == split.cut) return;
       split.cut = cut;
       moved[i] = towards;

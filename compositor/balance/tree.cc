@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compositor/balance/block_edge.h"
 #include "volume/brick/brick_store.h"
 
 namespace understudy::compositor {
@@ -11,11 +12,7 @@ namespace understudy::compositor {
 using volume::Partition;
 using volume::TexelBox;
 
-namespace {
-
-constexpr int block = volume::BrickStore::block_cells;
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<int> ranks_under(const Partition& partition, int child) {
   if (child < 0) return {~child};
@@ -54,7 +51,7 @@ int allowed_cut(const Partition& partition, std::size_t split, const TexelBox& b
 std::size_t blocks_in(const TexelBox& box) {
   std::size_t blocks = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    const int layers = (box.high[k] - box.low[k] + block - 1) / block;
+    const int layers = (box.high[k] - box.low[k] + block_edge - 1) / block_edge;
     blocks *= std::size_t(layers);
   }
   return blocks;
@@ -89,7 +86,7 @@ Partition with_room(const Partition& now, const Partition& next, const TexelBox&
   };
   const auto allowed = [&](Partition cuts) {
     walk_splits(cuts, lattice, [&](std::size_t i, const TexelBox& box) {
-      cuts.splits[i].cut = allowed_cut(cuts, i, box, lattice, block, cuts.splits[i].cut);
+      cuts.splits[i].cut = allowed_cut(cuts, i, box, lattice, block_edge, cuts.splits[i].cut);
     });
     return cuts;
   };
@@ -99,7 +96,8 @@ Partition with_room(const Partition& now, const Partition& next, const TexelBox&
   for (int part = parts - 1; part > 0; --part) {
     Partition candidate = now;
     for (std::size_t i = 0; i < now.splits.size(); ++i)
-      candidate.splits[i].cut += (next.splits[i].cut - now.splits[i].cut) / block * part / parts * block;
+      candidate.splits[i].cut +=
+          (next.splits[i].cut - now.splits[i].cut) / block_edge * part / parts * block_edge;
     candidate = allowed(std::move(candidate));
     if (candidate != now && fits(candidate)) return candidate;
   }

@@ -39,7 +39,7 @@ int subsampling_of(JpegPixels format, int quality) {
   return quality >= full_colour_quality ? TJSAMP_444 : TJSAMP_420;
 }
 
-const unsigned char* unsigned_bytes(std::span<const std::byte> bytes) {
+const unsigned char* jpeg_bytes(std::span<const std::byte> bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
@@ -53,7 +53,7 @@ void append_jpeg(std::span<const std::byte> pixels, int width, int height, JpegP
   unsigned long size = ::tjBufSize(width, height, subsampling);
   to.resize(before + size);
   auto* out = reinterpret_cast<unsigned char*>(to.data() + before);
-  if (!handle || ::tjCompress2(handle.get(), unsigned_bytes(pixels), width, 0, height, format_of(format), &out,
+  if (!handle || ::tjCompress2(handle.get(), jpeg_bytes(pixels), width, 0, height, format_of(format), &out,
                                &size, subsampling, quality, TJFLAG_NOREALLOC | TJFLAG_FASTDCT) != 0)
     throw std::runtime_error(std::string("no JPEG image can be made: ") + ::tjGetErrorStr2(handle.get()));
   to.resize(before + size);
@@ -68,11 +68,11 @@ void read_jpeg(std::span<const std::byte> jpeg, int width, int height, JpegPixel
   int colours = 0;
   const bool read =
       handle &&
-      ::tjDecompressHeader3(handle.get(), unsigned_bytes(jpeg), jpeg.size(), &its_width, &its_height,
-                            &subsampling, &colours) == 0 &&
+      ::tjDecompressHeader3(handle.get(), jpeg_bytes(jpeg), jpeg.size(), &its_width, &its_height, &subsampling,
+                            &colours) == 0 &&
       its_width == width && its_height == height &&
-      ::tjDecompress2(handle.get(), unsigned_bytes(jpeg), jpeg.size(),
-                      reinterpret_cast<unsigned char*>(to.data()), width, 0, height, format_of(format),
+      ::tjDecompress2(handle.get(), jpeg_bytes(jpeg), jpeg.size(), reinterpret_cast<unsigned char*>(to.data()),
+                      width, 0, height, format_of(format),
                       TJFLAG_FASTDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) == 0;
   if (!read) throw MalformedMessage("image: no JPEG image of its size");
 }

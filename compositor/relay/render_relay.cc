@@ -16,7 +16,7 @@ namespace {
 
 /// Smaller images are not worth a JPEG's tables.
 constexpr std::size_t least_jpeg_pixels = 4096;
-constexpr double newest_counts = 0.25;  ///< of what is known of packing then
+constexpr double newest_packing_counts = 0.25;  ///< of what is known of packing then
 
 struct ImageHead {
   std::uint32_t reply_bytes = 0;  ///< of the message as the nodes made it
@@ -193,8 +193,8 @@ void NodesRelay::carry_out(Message message) {
       if (head.coding == ImageCoding::packed && head.layout == Layout::rgba32f) {
         // It is unpacked in about the same time.
         packed_seconds_per_byte_ +=
-            newest_counts * (2 * seconds / double(image.size()) - packed_seconds_per_byte_);
-        packed_ratio_ += newest_counts * (double(coded_.size()) / double(image.size()) - packed_ratio_);
+            newest_packing_counts * (2 * seconds / double(image.size()) - packed_seconds_per_byte_);
+        packed_ratio_ += newest_packing_counts * (double(coded_.size()) / double(image.size()) - packed_ratio_);
       }
       image = coded_;
     }

@@ -16,7 +16,7 @@ enum class Part : std::uint8_t {
 };
 
 constexpr std::size_t attribute_stack_depth = 16;
-constexpr std::string_view draw_prefixes[] = {
+constexpr std::string_view prefixes_of_front_draws[] = {
     "glBegin",           "glDrawArrays",   "glDrawElements", "glDrawRangeElements",
     "glDrawPixels",      "glDrawMesh",     "glDrawTex",      "glDrawTransform",
     "glMultiDraw",       "glMultiMode",    "glRect",         "glEvalMesh",
@@ -58,7 +58,7 @@ Part part_of(CallId call) {
   }
   const std::string_view name = call_name(call);
   if (starts_with_any(name, named_prefixes)) return Part::draws_by_name;
-  const bool draws = starts_with_any(name, draw_prefixes) ||
+  const bool draws = starts_with_any(name, prefixes_of_front_draws) ||
                      std::find(std::begin(clears), std::end(clears), name) != std::end(clears);
   return draws ? Part::draws : Part::none;
 }

@@ -21,7 +21,7 @@ constexpr std::size_t most_unknown_bytes = std::size_t(64) * 1024;
 /// That are asked for at once; contexts have some hundreds.
 constexpr GLint most_extensions = 4096;
 
-std::byte* address(std::uint64_t word) {
+std::byte* memory_at(std::uint64_t word) {
   return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(word));
 }
 
@@ -206,7 +206,7 @@ std::optional<std::uint64_t> Remote::constant(CallId call, const std::uint64_t* 
   if (!is_constant(call, words)) return std::nullopt;
   const auto found = constants_.find({call, words[0]});
   if (found == constants_.end() || words[1] == 0) return std::nullopt;
-  std::memcpy(address(words[1]), found->second.data(), found->second.size());
+  std::memcpy(memory_at(words[1]), found->second.data(), found->second.size());
   return 0;
 }
 
@@ -219,14 +219,15 @@ std::optional<std::uint64_t> Remote::known(CallId call, const std::uint64_t* wor
       call == CallId::GetNamedBufferPointerv || call == CallId::GetNamedBufferPointervEXT) {
     const auto found = mappings_.find(mapped_buffer(call, words));
     if (words[2] != 0)
-      *reinterpret_cast<void**>(address(words[2])) = found == mappings_.end() ? nullptr : found->second.data();
+      *reinterpret_cast<void**>(memory_at(words[2])) =
+          found == mappings_.end() ? nullptr : found->second.data();
     return 0;
   }
   if (is_integer_query(call) && GLenum(words[0]) == GL_DOUBLEBUFFER && words[1] != 0) {
     // What stands for a window on the GL server may have one buffer.
-    if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(address(words[1])) = context_.double_buffered;
+    if (call == CallId::GetIntegerv) *reinterpret_cast<GLint*>(memory_at(words[1])) = context_.double_buffered;
     if (call == CallId::GetBooleanv)
-      *reinterpret_cast<GLboolean*>(address(words[1])) = context_.double_buffered;
+      *reinterpret_cast<GLboolean*>(memory_at(words[1])) = context_.double_buffered;
     return 0;
   }
   std::uint64_t result = 0;
@@ -295,7 +296,7 @@ void Remote::drop_mappings(CallId call, const std::uint64_t* words) {
   switch (call) {
     case CallId::DeleteBuffers:
     case CallId::DeleteBuffersARB: {
-      const auto* names = reinterpret_cast<const GLuint*>(address(words[1]));
+      const auto* names = reinterpret_cast<const GLuint*>(memory_at(words[1]));
       for (GLsizei i = 0; i < GLsizei(words[0]) && names != nullptr; ++i) mappings_.erase(names[i]);
       return;
     }
@@ -337,7 +338,8 @@ std::uint64_t Remote::apply(const PackedCall& call, const CallAnswer& answer) {
       case AnsweredOutput::feedback: {
         const ClientState::Retained& memory = state_.feedback();
         if (memory.first != 0)
-          std::memcpy(address(memory.first), output.bytes.data(), std::min(memory.bytes, output.bytes.size()));
+          std::memcpy(memory_at(memory.first), output.bytes.data(),
+                      std::min(memory.bytes, output.bytes.size()));
         break;
       }
       default:
@@ -359,7 +361,7 @@ void Remote::write_output(const PackedCall& call, const AnsweredOutput& output) 
   if (output.image) {
     const auto needed = image_extent(*output.image, tight_pixels);
     if (parameter.rule == ExtentRule::image_out && needed && *needed <= output.bytes.size())
-      spread_image(*output.image, state_.pack(), output.bytes.data(), address(to));
+      spread_image(*output.image, state_.pack(), output.bytes.data(), memory_at(to));
     return;
   }
   const std::size_t room =
@@ -367,7 +369,7 @@ void Remote::write_output(const PackedCall& call, const AnsweredOutput& output) 
           ? output.bytes.size()
           : pointee_bytes(call.call, output.parameter, call.words).value_or(most_unknown_bytes);
   const std::size_t bytes = std::min(room, output.bytes.size());
-  std::memcpy(address(to), output.bytes.data(), bytes);
+  std::memcpy(memory_at(to), output.bytes.data(), bytes);
   if (is_constant(call.call, call.words))
     constants_[{call.call, call.words[0]}].assign(output.bytes.begin(),
                                                   output.bytes.begin() + std::ptrdiff_t(bytes));

@@ -16,7 +16,7 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   return fmt::format("{:.3g} %", whole == 0 ? 0.0 : 100 * double(part) / double(whole));
 }
 
-std::string listed(const ReasonCounts& reasons) {
+std::string listed_reasons(const ReasonCounts& reasons) {
   std::string list;
   for (const auto& [reason, count] : reasons)
     list += fmt::format("{}{} ({}x)", list.empty() ? "" : ", ", reason, count);
@@ -42,7 +42,7 @@ std::string why(Optimization optimization, const volume::FrameCounts& counts, co
                        "empty",
                        counts.messages, counts.messages_of_whole_windows, counts.nodes_idle);
     default:
-      return listed(reasons);
+      return listed_reasons(reasons);
   }
 }
 

@@ -11,17 +11,10 @@
 #include "spu/stream/bound_buffers.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
 namespace {
-
-const void* address(std::uint64_t word) {
-  return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(word));
-}
-
-std::uint64_t word_of(const void* pointer) {
-  return reinterpret_cast<std::uintptr_t>(pointer);
-}
 
 /// GL_ARRAY_BUFFER is nothing while arrays are pointed at memory.
 class WithoutArrayBuffer {
@@ -122,7 +115,7 @@ std::string BroughtArrays::take(std::span<const std::uint64_t> fields, const Rec
   if (bytes != 0) brought.elements = std::int64_t(data->size() / bytes);
   // Where the element 0 would be, that only the later ones are there for.
   if (brought.elements > 0) brought.pointer = word_of(kept(*data, copies)) - std::uint64_t(first) * bytes;
-  point_array(gl, brought.array, GLsizei(bytes), address(brought.pointer));
+  point_array(gl, brought.array, GLsizei(bytes), address_in(brought.pointer));
   // OpenGL may have refused it, and read elsewhere.
   if (in_memory_) note_pointer(brought.array, pointer_of(gl, brought.array));
   brought_.push_back(brought);
@@ -147,7 +140,8 @@ void BroughtArrays::end(const DispatchTable& gl, bool restores) {
   if (active_) {
     const WithoutArrayBuffer without(gl);
     for (const Brought& brought : brought_) {
-      point_array(gl, brought.array, brought.array.stride, restores ? address(brought.array.pointer) : nullptr);
+      point_array(gl, brought.array, brought.array.stride,
+                  restores ? address_in(brought.array.pointer) : nullptr);
       if (in_memory_) note_pointer(brought.array, 0);
     }
   }

@@ -12,16 +12,13 @@
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/image_answers.h"
+#include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
 namespace {
 
 /// OpenGL's longest vector of parameters, a matrix of doubles.
 constexpr std::size_t longest_parameter_bytes = 128;
-
-const std::byte* address(std::uint64_t word) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
-}
 
 bool is_bytes(ReferenceKind kind) {
   return kind == ReferenceKind::inside || kind == ReferenceKind::payload;
@@ -114,7 +111,7 @@ void Decoder::give_room(Call& call, std::size_t p) {
   if (!text && parameter.rule != ExtentRule::parameter_values) return;
   const std::size_t room = text ? call.bytes[p] + 1 : std::max(call.bytes[p], longest_parameter_bytes);
   std::uint64_t* const copy = scratch(room);
-  std::memcpy(copy, address(call.words[p]), call.bytes[p]);
+  std::memcpy(copy, address_in(call.words[p]), call.bytes[p]);
   call.words[p] = reinterpret_cast<std::uintptr_t>(copy);
 }
 

@@ -7,16 +7,11 @@
 #include <limits>
 #include <string_view>
 
+#include "spu/state_value.h"
 #include "spu/stream/extent.h"
 
 namespace understudy::spu {
 namespace {
-
-GLint integer(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
 
 /// The names by which the driver tells about a fixed-function array; 0 where there is nothing to ask.
 struct FixedArrayNames {
@@ -54,11 +49,11 @@ constexpr std::array<FixedArrayNames, 8> fixed_arrays = {{
 
 void add_fixed(const DispatchTable& gl, const FixedArrayNames& names, GLuint index,
                std::vector<ClientArray>& arrays) {
-  if (!gl.IsEnabled(names.array) || integer(gl, names.buffer) != 0) return;
+  if (!gl.IsEnabled(names.array) || state_value(gl, names.buffer) != 0) return;
   ClientArray array{.role = names.role, .index = index};
-  array.size = names.size != 0 ? integer(gl, names.size) : names.fixed_size;
-  array.type = names.type != 0 ? GLenum(integer(gl, names.type)) : names.fixed_type;
-  array.stride = integer(gl, names.stride);
+  array.size = names.size != 0 ? state_value(gl, names.size) : names.fixed_size;
+  array.type = names.type != 0 ? GLenum(state_value(gl, names.type)) : names.fixed_type;
+  array.stride = state_value(gl, names.stride);
   void* pointer = nullptr;
   gl.GetPointerv(names.pointer, &pointer);
   array.pointer = reinterpret_cast<std::uintptr_t>(pointer);
@@ -66,18 +61,18 @@ void add_fixed(const DispatchTable& gl, const FixedArrayNames& names, GLuint ind
 }
 
 bool is_core(const DispatchTable& gl) {
-  if (integer(gl, GL_MAJOR_VERSION) < 3) return false;
-  return (integer(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
+  if (state_value(gl, GL_MAJOR_VERSION) < 3) return false;
+  return (state_value(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 }
 
 void add_all_fixed(const DispatchTable& gl, std::vector<ClientArray>& arrays) {
-  const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+  const GLint active = state_value(gl, GL_CLIENT_ACTIVE_TEXTURE);
   for (const FixedArrayNames& names : fixed_arrays) {
     if (names.role != ArrayRole::texture_coordinate) {
       add_fixed(gl, names, 0, arrays);
       continue;
     }
-    const GLint units = integer(gl, GL_MAX_TEXTURE_COORDS);
+    const GLint units = state_value(gl, GL_MAX_TEXTURE_COORDS);
     for (GLint unit = 0; unit < units; ++unit) {
       gl.ClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
       add_fixed(gl, names, GLuint(unit), arrays);
@@ -178,11 +173,11 @@ void include(ElementRange& range, std::int64_t first, std::int64_t last) {
 std::optional<std::uint32_t> restart_index(const DispatchTable& gl, std::size_t index_size) {
   // NV_primitive_restart, which is older, has names of its own and counts as client state.
   if (gl.PrimitiveRestartIndexNV != nullptr && gl.IsEnabled(GL_PRIMITIVE_RESTART_NV))
-    return std::uint32_t(integer(gl, GL_PRIMITIVE_RESTART_INDEX_NV));
+    return std::uint32_t(state_value(gl, GL_PRIMITIVE_RESTART_INDEX_NV));
   if (gl.PrimitiveRestartIndex == nullptr) return std::nullopt;
   if (gl.IsEnabled(GL_PRIMITIVE_RESTART_FIXED_INDEX))
     return std::uint32_t(std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * index_size));
-  if (gl.IsEnabled(GL_PRIMITIVE_RESTART)) return std::uint32_t(integer(gl, GL_PRIMITIVE_RESTART_INDEX));
+  if (gl.IsEnabled(GL_PRIMITIVE_RESTART)) return std::uint32_t(state_value(gl, GL_PRIMITIVE_RESTART_INDEX));
   return std::nullopt;
 }
 
@@ -193,7 +188,7 @@ bool include_indices(const DispatchTable& gl, ElementRange& range, std::int64_t 
   if (size == 0 || size > 4) return false;
   std::vector<std::byte> copy;
   const auto* bytes = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(indices));
-  if (integer(gl, GL_ELEMENT_ARRAY_BUFFER_BINDING) != 0) {
+  if (state_value(gl, GL_ELEMENT_ARRAY_BUFFER_BINDING) != 0) {
     GLint available = 0;
     gl.GetBufferParameteriv(GL_ELEMENT_ARRAY_BUFFER, GL_BUFFER_SIZE, &available);
     const auto wanted = std::uint64_t(count) * size;
@@ -231,7 +226,7 @@ std::vector<ClientArray> client_arrays(const DispatchTable& gl) {
 std::vector<ClientArray> arrays_without_buffer(const DispatchTable& gl) {
   std::vector<ClientArray> arrays;
   if (!is_core(gl)) add_all_fixed(gl, arrays);
-  const GLint attributes = integer(gl, GL_MAX_VERTEX_ATTRIBS);
+  const GLint attributes = state_value(gl, GL_MAX_VERTEX_ATTRIBS);
   for (GLint i = 0; i < attributes; ++i) add_generic(gl, GLuint(i), arrays);
   return arrays;
 }
@@ -260,7 +255,7 @@ void point_array(const DispatchTable& gl, const ClientArray& array, GLsizei stri
       gl.EdgeFlagPointer(stride, pointer);
       break;
     case ArrayRole::texture_coordinate: {
-      const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+      const GLint active = state_value(gl, GL_CLIENT_ACTIVE_TEXTURE);
       gl.ClientActiveTexture(GL_TEXTURE0 + array.index);
       gl.TexCoordPointer(array.size, array.type, stride, pointer);
       gl.ClientActiveTexture(GLenum(active));
@@ -287,7 +282,7 @@ std::uint64_t pointer_of(const DispatchTable& gl, const ClientArray& array) {
   } else if (array.role != ArrayRole::texture_coordinate) {
     gl.GetPointerv(fixed->pointer, &pointer);
   } else {
-    const GLint active = integer(gl, GL_CLIENT_ACTIVE_TEXTURE);
+    const GLint active = state_value(gl, GL_CLIENT_ACTIVE_TEXTURE);
     gl.ClientActiveTexture(GL_TEXTURE0 + array.index);
     gl.GetPointerv(fixed->pointer, &pointer);
     gl.ClientActiveTexture(GLenum(active));

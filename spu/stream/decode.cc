@@ -9,29 +9,17 @@
 #include <string_view>
 
 #include "dispatch/call_words.h"
+#include "spu/state_value.h"
 #include "spu/stream/answers.h"
 #include "spu/stream/bound_buffers.h"
 #include "spu/stream/checked_pointers.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
 namespace {
-
-const std::byte* address(std::uint64_t word) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
-}
-
-std::uint64_t word_of(const void* pointer) {
-  return reinterpret_cast<std::uintptr_t>(pointer);
-}
-
-GLint ask(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
 
 /// Asks and changes nothing: a stream from elsewhere knows the answer already.
 bool only_asks(CallId call) {
@@ -60,7 +48,7 @@ bool is_named(CallId call) {
 
 /// The buffer object that a call with its target, or its name, as first argument is about.
 GLuint buffer_of(CallId call, const std::uint64_t* words, const DispatchTable& gl) {
-  return is_named(call) ? GLuint(words[0]) : GLuint(ask(gl, binding_of_target(GLenum(words[0]))));
+  return is_named(call) ? GLuint(words[0]) : GLuint(state_value(gl, binding_of_target(GLenum(words[0]))));
 }
 
 /// Bytes of the mapping that the call has just made.
@@ -159,7 +147,7 @@ std::string Decoder::read_strings(const Record& record, Call& call, std::size_t 
   if (lengths_at != no_argument && call.words[lengths_at] != 0) {
     if (call.bytes[lengths_at] < std::size_t(std::max<std::int64_t>(count, 0)) * sizeof(GLint))
       return in_call(call.id, "there are fewer lengths than strings");
-    lengths = reinterpret_cast<const GLint*>(address(call.words[lengths_at]));
+    lengths = reinterpret_cast<const GLint*>(address_in(call.words[lengths_at]));
   }
   std::uint64_t* list = scratch(std::size_t(std::max<std::int64_t>(count, 0)) * sizeof(void*));
   std::size_t at = 0;
@@ -191,7 +179,7 @@ std::string Decoder::read_lists(const Record& record, Call& call, std::size_t p)
   const auto count = std::size_t(std::max<std::int64_t>(std::int32_t(call.words[parameter.counted_by]), 0));
   if (count > bytes->size() / 8 || call.bytes[counts_at] < count * sizeof(GLsizei))
     return in_call(call.id, "there are fewer lists of indices than draws");
-  const auto* counts = reinterpret_cast<const GLsizei*>(address(call.words[counts_at]));
+  const auto* counts = reinterpret_cast<const GLsizei*>(address_in(call.words[counts_at]));
   const std::size_t size = component_size(GLenum(call.words[type_at]));
   std::uint64_t* list = scratch(count * sizeof(void*));
   std::size_t at = 0;
@@ -250,7 +238,7 @@ std::string Decoder::measure(Call& call, std::size_t p) {
   const bool text = parameter.rule == ExtentRule::text || (parameter.rule == ExtentRule::text_or_counted &&
                                                            std::int32_t(call.words[parameter.counted_by]) < 0);
   if (text) {
-    if (std::memchr(address(call.words[p]), 0, call.bytes[p]) == nullptr)
+    if (std::memchr(address_in(call.words[p]), 0, call.bytes[p]) == nullptr)
       return in_call(call.id, fmt::format("{} does not end", parameter.name()));
     return {};
   }
@@ -313,7 +301,7 @@ bool Decoder::translate(Call& call) {
                value_size(parameter.type) == sizeof(GLuint)) {
       const std::size_t count = call.bytes[p] / sizeof(GLuint);
       auto* here = reinterpret_cast<GLuint*>(scratch(call.bytes[p]));
-      const auto* there = reinterpret_cast<const GLuint*>(address(call.words[p]));
+      const auto* there = reinterpret_cast<const GLuint*>(address_in(call.words[p]));
       for (std::size_t i = 0; i < count; ++i)
         here[i] = GLuint(names(parameter.object).here(parameter.object, there[i]));
       call.words[p] = word_of(here);
@@ -374,7 +362,7 @@ void Decoder::remember_answer(const Call& call, std::uint64_t result, const Disp
     if (!answers_names(parameters[p])) continue;
     const auto bytes = pointee_bytes(call.id, p, call.words.data());
     if (!bytes || call.words[p] == 0) continue;
-    const auto* first = reinterpret_cast<const std::uint32_t*>(address(call.words[p]));
+    const auto* first = reinterpret_cast<const std::uint32_t*>(address_in(call.words[p]));
     answer_.names.emplace_back(first, first + *bytes / sizeof(std::uint32_t));
   }
 }

@@ -13,16 +13,11 @@
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
 #include "spu/stream/plain_calls.h"
+#include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
 
-namespace {
-
-const std::byte* address(std::uint64_t word) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 bool needs_answer(CallId call) noexcept {
   const CallShape& shape = call_shape(call);
@@ -89,7 +84,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
   }
   const auto hold = [&](std::size_t bytes) {
     argument.reference.kind = ReferenceKind::inside;
-    argument.bytes = {address(word), bytes};
+    argument.bytes = {address_in(word), bytes};
   };
   switch (pointer.rule) {
     case ExtentRule::image: {
@@ -97,7 +92,7 @@ Encoder::Argument Encoder::prepare(CallId call, std::size_t parameter, const std
       const PixelStore store = pixel_store(ask(), unpack_names);
       // Formats that OpenGL does not know are errors: nothing is read.
       if (!image_extent(image, store)) return argument;
-      argument.owned = tight_image(image, store, address(word));
+      argument.owned = tight_image(image, store, address_in(word));
       argument.reference.kind = ReferenceKind::inside;
       argument.bytes = argument.owned;
       return argument;
@@ -135,16 +130,16 @@ void Encoder::write(CallId call, const std::uint64_t* words, std::vector<Argumen
     const auto count = parameters[p].counted_by == no_argument
                            ? 0
                            : std::max<std::int64_t>(std::int32_t(words[parameters[p].counted_by]), 0);
-    const auto* list = reinterpret_cast<const std::uint64_t*>(address(words[p]));
+    const auto* list = reinterpret_cast<const std::uint64_t*>(address_in(words[p]));
     if (argument.reference.kind == ReferenceKind::inside) {
       to.set(p + 1, to.attach(argument.bytes).word());
     } else if (argument.reference.kind == ReferenceKind::strings) {
       const std::uint8_t lengths_at = argument_named(shape, "length");
       const auto* lengths =
-          lengths_at == no_argument ? nullptr : reinterpret_cast<const GLint*>(address(words[lengths_at]));
+          lengths_at == no_argument ? nullptr : reinterpret_cast<const GLint*>(address_in(words[lengths_at]));
       const Reference strings = to.begin_inside(ReferenceKind::strings);
       for (std::int64_t i = 0; i < count; ++i) {
-        const std::byte* text = address(list[i]);
+        const std::byte* text = address_in(list[i]);
         std::size_t length = 0;
         if (text != nullptr) {
           length = lengths != nullptr && lengths[i] >= 0 ? std::size_t(lengths[i])
@@ -156,13 +151,13 @@ void Encoder::write(CallId call, const std::uint64_t* words, std::vector<Argumen
       to.end_inside(strings);
       to.set(p + 1, strings.word());
     } else if (argument.reference.kind == ReferenceKind::lists) {
-      const auto* counts = reinterpret_cast<const GLsizei*>(address(words[argument_named(shape, "count")]));
+      const auto* counts = reinterpret_cast<const GLsizei*>(address_in(words[argument_named(shape, "count")]));
       const std::size_t size = component_size(GLenum(words[argument_named(shape, "type")]));
       const Reference lists = to.begin_inside(ReferenceKind::lists);
       for (std::int64_t i = 0; i < count; ++i) {
         const std::size_t bytes = list[i] == 0 ? 0 : std::size_t(std::max(counts[i], 0)) * size;
         to.append(bytes);
-        to.append_bytes({address(list[i]), bytes}, false);
+        to.append_bytes({address_in(list[i]), bytes}, false);
       }
       to.end_inside(lists);
       to.set(p + 1, lists.word());
@@ -189,7 +184,7 @@ void append_arrays(const std::vector<ClientArray>& arrays, const ElementRange& r
       elements.resize(std::size_t(last - first + 1) * bytes);
       for (std::int64_t i = first; i <= last; ++i) {
         std::memcpy(elements.data() + std::size_t(i - first) * bytes,
-                    address(array.pointer) + std::size_t(i) * array.step(), bytes);
+                    address_in(array.pointer) + std::size_t(i) * array.step(), bytes);
       }
     }
     const std::array<std::uint64_t, event::words_per_array> fields = {

@@ -10,13 +10,10 @@
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/image_answers.h"
+#include "spu/stream/pointer_words.h"
 
 namespace understudy::spu {
 namespace {
-
-const std::byte* address(std::uint64_t word) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
-}
 
 /// Buffers that are mapped keep what the application does not write; only where it says that it will not look
 /// and not care can that be spared.
@@ -95,7 +92,7 @@ void Decoder::answer_outputs(const Call& call) {
         call.kinds[p] != ReferenceKind::output || parameter.rule == ExtentRule::retained) {
       continue;
     }
-    const std::byte* first = address(call.words[p]);
+    const std::byte* first = address_in(call.words[p]);
     std::size_t bytes = call.bytes[p];
     while (bytes > 0 && first[bytes - 1] == unwritten) --bytes;
     if (bytes == 0) continue;
@@ -122,8 +119,8 @@ void Decoder::answer_result(const Call& call, std::uint64_t result) {
   }
   if (call.shape->result_pointer == 0 || result == 0) return;
   if (call.shape->result == ValueType::uint8) {
-    const char* text = reinterpret_cast<const char*>(address(result));
-    const std::byte* first = address(result);
+    const char* text = reinterpret_cast<const char*>(address_in(result));
+    const std::byte* first = address_in(result);
     call_answer_.outputs.push_back(
         {AnsweredOutput::result_text, std::nullopt, {first, first + std::strlen(text) + 1}});
   } else if (!maps_a_buffer(call.id)) {

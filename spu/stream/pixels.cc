@@ -11,7 +11,7 @@ namespace {
 /// No image that any OpenGL takes has more: sizes above are not computed with.
 constexpr std::uint64_t most_image_bytes = std::uint64_t(1) << 40;
 
-std::optional<std::size_t> components(GLenum format) {
+std::optional<std::size_t> components_of_format(GLenum format) {
   switch (format) {
     case GL_RED:
     case GL_GREEN:
@@ -201,7 +201,7 @@ void set_pixel_store(const DispatchTable& gl, const std::array<GLenum, 8>& names
 
 std::optional<std::size_t> pixel_bytes(GLenum format, GLenum type) {
   const auto size = type_size(type);
-  const auto count = components(format);
+  const auto count = components_of_format(format);
   if (!size || !count) return std::nullopt;
   return size->packed ? size->bytes : size->bytes * *count;
 }

@@ -11,6 +11,7 @@
 #include "spu/stream/decode.h"
 #include "spu/stream/decoded_call.h"
 #include "spu/stream/extent.h"
+#include "spu/stream/pointer_words.h"
 #include "spu/stream/unknown_answers.h"
 
 namespace understudy::spu {
@@ -35,10 +36,6 @@ std::size_t bytes_of_buffer(CallId call, const std::uint64_t* words, const Dispa
     gl.GetNamedBufferParameteri64v(GLuint(words[0]), GL_BUFFER_SIZE, &bytes);
   }
   return std::min(std::size_t(std::max<GLint64>(bytes, 0)), most_linked_output_bytes);
-}
-
-std::uint64_t word_of(const void* pointer) {
-  return reinterpret_cast<std::uintptr_t>(pointer);
 }
 
 }  // namespace

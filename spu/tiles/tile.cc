@@ -25,18 +25,18 @@ struct CompiledCalls {
   std::atomic<bool> touch_scissor = false;
 };
 
-constexpr UnitOption options[] = {{.name = "part",
-                                   .type = OptionType::integer,
-                                   .fallback = "0",
-                                   .low = 0,
-                                   .high = most_tiles - 1,
-                                   .help = "which tile, from the lowest"},
-                                  {.name = "of",
-                                   .type = OptionType::integer,
-                                   .fallback = "2",
-                                   .low = 2,
-                                   .high = most_tiles,
-                                   .help = "tiles of a window"}};
+constexpr UnitOption tile_options[] = {{.name = "part",
+                                        .type = OptionType::integer,
+                                        .fallback = "0",
+                                        .low = 0,
+                                        .high = most_tiles - 1,
+                                        .help = "which tile, from the lowest"},
+                                       {.name = "of",
+                                        .type = OptionType::integer,
+                                        .fallback = "2",
+                                        .low = 2,
+                                        .high = most_tiles,
+                                        .help = "tiles of a window"}};
 
 }  // namespace
 
@@ -75,7 +75,7 @@ std::uint64_t Tile::call(CallId call, const std::uint64_t* words) {
 constinit const UnitDescription tile_description{
     .name = "tile",
     .help = "draws some rows of windows alone (of tile workers, see tiles)",
-    .options = options,
+    .options = tile_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Tile>(place.chain, shared_by_file<CompiledCalls>("").touch_scissor,
                                     int(place.options.integer("part")), int(place.options.integer("of")));

@@ -10,6 +10,7 @@
 #include "dispatch/call_words.h"
 #include "spu/report/counters.h"
 #include "spu/shared_by_file.h"
+#include "spu/state_value.h"
 #include "spu/stream/event.h"
 #include "spu/stream/extent.h"
 #include "spu/stream/pixels.h"
@@ -30,12 +31,6 @@ struct Divided {
   }
 };
 
-GLint ask(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
-
 /// 0 for what the window does not have.
 GLint ask_of_window(const DispatchTable& gl, GLenum attachment, GLenum name) {
   GLint value = 0;
@@ -51,26 +46,26 @@ std::pair<GLint, GLint> depth_and_stencil_bits(const DispatchTable& gl) {
           ask_of_window(gl, GL_STENCIL, GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE)};
 }
 
-constexpr UnitOption options[] = {{.name = "of",
-                                   .type = OptionType::integer,
-                                   .fallback = "2",
-                                   .low = 2,
-                                   .high = most_tiles,
-                                   .help = "tiles of a window, each drawn by a process of its own"},
-                                  {.name = "gl-server",
-                                   .type = OptionType::text,
-                                   .fallback = "",
-                                   .help = "Unix socket of the GL servers that draw the others"}};
+constexpr UnitOption tiles_options[] = {{.name = "of",
+                                         .type = OptionType::integer,
+                                         .fallback = "2",
+                                         .low = 2,
+                                         .high = most_tiles,
+                                         .help = "tiles of a window, each drawn by a process of its own"},
+                                        {.name = "gl-server",
+                                         .type = OptionType::text,
+                                         .fallback = "",
+                                         .help = "Unix socket of the GL servers that draw the others"}};
 
 }  // namespace
 
 bool window_divides(const DispatchTable& gl) {
   // Older ones do not know the questions, and would tell the application of the error.
   const auto* version = reinterpret_cast<const char*>(gl.GetString(GL_VERSION));
-  if (version == nullptr || std::atof(version) < 3 || ask(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 ||
-      ask(gl, GL_SAMPLES) > 0)
+  if (version == nullptr || std::atof(version) < 3 || state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING) != 0 ||
+      state_value(gl, GL_SAMPLES) > 0)
     return false;
-  const GLenum colour = ask(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK_LEFT : GL_FRONT_LEFT;
+  const GLenum colour = state_value(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK_LEFT : GL_FRONT_LEFT;
   for (const GLenum channel : {GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, GL_FRAMEBUFFER_ATTACHMENT_GREEN_SIZE,
                                GL_FRAMEBUFFER_ATTACHMENT_BLUE_SIZE, GL_FRAMEBUFFER_ATTACHMENT_ALPHA_SIZE}) {
     if (ask_of_window(gl, colour, channel) > 8) return false;
@@ -191,7 +186,7 @@ bool Tiles::copies_window(CallId call, const std::uint64_t* words) const {
   const WindowUse use = window_use(call);
   if (use != WindowUse::copies && use != WindowUse::blits) return false;
   if (call == CallId::BlitNamedFramebuffer) return words[0] == 0;
-  return ask(chain_.driver(), GL_READ_FRAMEBUFFER_BINDING) == 0;
+  return state_value(chain_.driver(), GL_READ_FRAMEBUFFER_BINDING) == 0;
 }
 
 /// Answers stay in this process, unless they go to a buffer object, where later calls find them.
@@ -202,8 +197,8 @@ std::uint64_t Tiles::read(CallId call, const std::uint64_t* words) {
   const bool image = std::any_of(parameters.begin(), parameters.end(), [](const ParameterShape& parameter) {
     return parameter.rule == ExtentRule::image_out;
   });
-  const bool window = pixels && divided_ && ask(next, GL_READ_FRAMEBUFFER_BINDING) == 0;
-  if (image && ask(next, GL_PIXEL_PACK_BUFFER_BINDING) != 0) {
+  const bool window = pixels && divided_ && state_value(next, GL_READ_FRAMEBUFFER_BINDING) == 0;
+  if (image && state_value(next, GL_PIXEL_PACK_BUFFER_BINDING) != 0) {
     if (window && !making_whole_) make_whole_for_copy();
     if (workers_.given_up() != nullptr && !is_compiling()) stop_dividing();
     return workers_.here() ? make(call, words, false) : invoke(next, call, words);
@@ -327,7 +322,7 @@ std::vector<std::uint8_t> Tiles::shown_image() {
 constinit const UnitDescription tiles_description{
     .name = "tiles",
     .help = "has each tile of a window drawn by a process of its own (understudy run --remote --tiles on)",
-    .options = options,
+    .options = tiles_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       const std::string& servers = place.options.text("gl-server");
       if (servers.empty())

@@ -18,7 +18,7 @@ namespace {
 /// Blocks are written at frame ends; a frame as large as this is cut.
 constexpr std::size_t large_block_words = std::size_t(8) << 20;
 
-std::uint64_t thread_number() {
+std::uint64_t recorded_thread() {
   static constinit std::atomic<std::uint64_t> threads{0};
   thread_local const std::uint64_t number = threads.fetch_add(1, std::memory_order_relaxed);
   return number;
@@ -40,7 +40,7 @@ std::string claim(const std::string& file) {
 }  // namespace
 
 void Recording::name_thread() {
-  const std::uint64_t thread = thread_number();
+  const std::uint64_t thread = recorded_thread();
   if (thread == last_thread_) return;
   last_thread_ = thread;
   records_.append_plain(event::thread, std::span(&thread, 1));

@@ -6,6 +6,7 @@
 
 #include "dispatch/call_words.h"
 #include "spu/shared_by_file.h"
+#include "spu/state_value.h"
 #include "spu/stream/event.h"
 
 namespace understudy::spu {
@@ -17,16 +18,10 @@ struct Traced {
   }
 };
 
-GLint ask(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
-
-constexpr UnitOption options[] = {{.name = "file",
-                                   .type = OptionType::file,
-                                   .fallback = "trace.ust",
-                                   .help = "what `understudy replay` plays"}};
+constexpr UnitOption trace_options[] = {{.name = "file",
+                                         .type = OptionType::file,
+                                         .fallback = "trace.ust",
+                                         .help = "what `understudy replay` plays"}};
 
 }  // namespace
 
@@ -55,8 +50,8 @@ std::uint64_t Trace::call(CallId call, const std::uint64_t* words) {
 void Trace::introduce_context() {
   introduced_ = true;
   const DispatchTable& gl = chain_.driver();
-  const GLint version = ask(gl, GL_MAJOR_VERSION) * 100 + ask(gl, GL_MINOR_VERSION) * 10;
-  const GLint profile = version >= 320 ? ask(gl, GL_CONTEXT_PROFILE_MASK) : 0;
+  const GLint version = state_value(gl, GL_MAJOR_VERSION) * 100 + state_value(gl, GL_MINOR_VERSION) * 10;
+  const GLint profile = version >= 320 ? state_value(gl, GL_CONTEXT_PROFILE_MASK) : 0;
   std::array<std::uint64_t, event::context_words> words = {chain_.surroundings().context,
                                                            chain_.surroundings().shares_with, 0,
                                                            std::uint64_t(version), std::uint64_t(profile)};
@@ -66,7 +61,7 @@ void Trace::introduce_context() {
   constexpr std::array<GLint, 8> usual = {8, 8, 8, 8, 24, 8, 0, 1};
   const bool core = (profile & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
   for (std::size_t i = 0; i < names.size(); ++i)
-    words[5 + i] = std::uint64_t(core && i < 6 ? usual[i] : ask(gl, names[i]));
+    words[5 + i] = std::uint64_t(core && i < 6 ? usual[i] : state_value(gl, names[i]));
   recording_.append([&](Records& records) { records.append_plain(event::context, words); });
 }
 
@@ -92,7 +87,7 @@ void Trace::left() {
 }
 
 void Trace::note_viewport(const std::uint64_t* words) {
-  if (recorder_.inside_begin() || ask(chain_.driver(), GL_DRAW_FRAMEBUFFER_BINDING) != 0) return;
+  if (recorder_.inside_begin() || state_value(chain_.driver(), GL_DRAW_FRAMEBUFFER_BINDING) != 0) return;
   const auto extent = [&](std::size_t at) {
     return std::uint64_t(
         std::max<std::int64_t>(std::int32_t(words[at]) + std::int64_t(std::int32_t(words[at + 2])), 0));
@@ -122,7 +117,7 @@ void Trace::abandon() {
 constinit const UnitDescription trace_description{
     .name = "trace",
     .help = "keeps every call in a file, for `understudy replay`",
-    .options = options,
+    .options = trace_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Trace>(place.chain, shared_by_file<Recording>(place.options.text("file")));
     }};

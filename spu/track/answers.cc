@@ -17,10 +17,6 @@
 namespace understudy::spu {
 namespace {
 
-Track& here() {
-  return *Chain::current()->find<Track>();
-}
-
 /// What a query's answer depends on, and how many values it has at least.
 struct Subject {
   StateTopics topics = topic::nothing;
@@ -110,7 +106,7 @@ constexpr T unwritten() {
 
 struct NoteChange {
   static const DispatchTable& before(CallId call) {
-    Track& track = here();
+    Track& track = Track::current();
     Answers& answers = *track.answers();
     answers.changed(topics_changed_by(call));
     const DispatchTable* own = answers.own(track.chain().phase(), call);
@@ -121,20 +117,20 @@ struct NoteChange {
 /// Commands that need more than their topics.
 struct NoteBegin {
   static const DispatchTable& before(CallId call) {
-    here().answers()->perhaps_inside_begin();
+    Track::current().answers()->perhaps_inside_begin();
     return NoteChange::before(call);
   }
 };
 
 struct NoteEnd {
   static const DispatchTable& before(CallId call) {
-    here().answers()->outside_begin();
+    Track::current().answers()->outside_begin();
     return NoteChange::before(call);
   }
 };
 
 void APIENTRY call_list(GLuint list) {
-  Track& track = here();
+  Track& track = Track::current();
   Answers& answers = *track.answers();
   const auto record = track.chain().group().list(list);
   answers.changed(record && record->only_geometry ? topic::current : topic::everything);
@@ -148,39 +144,40 @@ struct Values;
 template <CallId Query, class T, void (APIENTRY* DispatchTable::*Slot)(GLenum, T*)>
 struct Values<Query, Slot> {
   static void APIENTRY call(GLenum name, T* to) {
-    Track& track = here();
+    Track& track = Track::current();
     track.answers()->values(Query, name, 0, to, [&](T* v) { (track.below().*Slot)(name, v); });
   }
 };
 template <CallId Query, class T, void (APIENTRY* DispatchTable::*Slot)(GLenum, GLuint, T*)>
 struct Values<Query, Slot> {
   static void APIENTRY call(GLenum name, GLuint index, T* to) {
-    Track& track = here();
+    Track& track = Track::current();
     track.answers()->values(Query, name, index, to, [&](T* v) { (track.below().*Slot)(name, index, v); });
   }
 };
 
 GLboolean APIENTRY is_enabled(GLenum name) {
-  const DispatchTable& below = here().below();
-  return here().answers()->enabled(
+  const DispatchTable& below = Track::current().below();
+  return Track::current().answers()->enabled(
       CallId::IsEnabled, name, 0, [&] { return below.IsEnabled(name); },
       [&](GLboolean* value) { below.GetBooleanv(name, value); });
 }
 
 GLboolean APIENTRY is_enabled_indexed(GLenum name, GLuint index) {
-  const DispatchTable& below = here().below();
-  return here().answers()->enabled(
+  const DispatchTable& below = Track::current().below();
+  return Track::current().answers()->enabled(
       CallId::IsEnabledi, name, index, [&] { return below.IsEnabledi(name, index); },
       [&](GLboolean* value) { below.GetBooleani_v(name, index, value); });
 }
 
 const GLubyte* APIENTRY get_string(GLenum name) {
-  return here().answers()->text(CallId::GetString, name, 0, [&] { return here().below().GetString(name); });
+  return Track::current().answers()->text(CallId::GetString, name, 0,
+                                          [&] { return Track::current().below().GetString(name); });
 }
 
 const GLubyte* APIENTRY get_string_indexed(GLenum name, GLuint index) {
-  return here().answers()->text(CallId::GetStringi, name, index,
-                                [&] { return here().below().GetStringi(name, index); });
+  return Track::current().answers()->text(CallId::GetStringi, name, index,
+                                          [&] { return Track::current().below().GetStringi(name, index); });
 }
 
 void fill_queries(DispatchTable& table) {

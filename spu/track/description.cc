@@ -7,17 +7,18 @@ namespace understudy::spu {
 
 namespace {
 
-constexpr UnitOption options[] = {{.name = "answer",
-                                   .type = OptionType::on_off,
-                                   .fallback = "off",
-                                   .help = "answer glGet itself until a call may have changed the value"}};
+constexpr UnitOption track_options[] = {
+    {.name = "answer",
+     .type = OptionType::on_off,
+     .fallback = "off",
+     .help = "answer glGet itself until a call may have changed the value"}};
 
 }  // namespace
 
 constinit const UnitDescription track_description{
     .name = "track",
     .help = "remembers what OpenGL cannot be asked for later, and notices the first 3-D texture",
-    .options = options,
+    .options = track_options,
     .make = [](const UnitPlace& place) -> std::unique_ptr<Unit> {
       return std::make_unique<Track>(place.chain, place.options.is_on("answer"));
     }};

@@ -123,23 +123,23 @@ constexpr StateRow matrix_rows[] = {
     of_unit(Per::texture_coordinates, matrix(GL_TEXTURE, GL_TEXTURE_MATRIX)),
 };
 
-constexpr StateRow current(CallId set, GLenum name, int count) {
+constexpr StateRow current_row(CallId set, GLenum name, int count) {
   return compatibility(plain(StateGroup::current, set, {{name, count}}));
 }
 constexpr StateRow current_texture_coordinates() {
   StateRow row =
-      each(Per::texture_coordinates, GL_TEXTURE0, current(MultiTexCoord4f, GL_CURRENT_TEXTURE_COORDS, 4));
+      each(Per::texture_coordinates, GL_TEXTURE0, current_row(MultiTexCoord4f, GL_CURRENT_TEXTURE_COORDS, 4));
   row.selector = Selector::texture_unit;
   return row;
 }
 
 constexpr StateRow current_rows[] = {
-    current(Color4f, GL_CURRENT_COLOR, 4),
-    from(140, current(SecondaryColor3f, GL_CURRENT_SECONDARY_COLOR, 3)),
-    current(Normal3f, GL_CURRENT_NORMAL, 3),
-    current(Indexf, GL_CURRENT_INDEX, 1),
-    from(140, current(FogCoordf, GL_CURRENT_FOG_COORD, 1)),
-    current(EdgeFlag, GL_EDGE_FLAG, 1),
+    current_row(Color4f, GL_CURRENT_COLOR, 4),
+    from(140, current_row(SecondaryColor3f, GL_CURRENT_SECONDARY_COLOR, 3)),
+    current_row(Normal3f, GL_CURRENT_NORMAL, 3),
+    current_row(Indexf, GL_CURRENT_INDEX, 1),
+    from(140, current_row(FogCoordf, GL_CURRENT_FOG_COORD, 1)),
+    current_row(EdgeFlag, GL_EDGE_FLAG, 1),
     from(130, current_texture_coordinates()),
     from(200, each(Per::vertex_attribute, 0,
                    asked(Question::vertex_attribute,

@@ -8,46 +8,42 @@
 namespace understudy::spu {
 namespace {
 
-Track& here() {
-  return *Chain::current()->find<Track>();
-}
-
 ProgramSources& programs() {
-  return here().chain().group().programs();
+  return Track::current().chain().group().programs();
 }
 
 /// Once the call is made.
 template <class Note>
 void note(Note note) {
-  here().chain().after_call([&] { note(programs()); });
+  Track::current().chain().after_call([&] { note(programs()); });
 }
 
 GLuint APIENTRY create_shader(GLenum type) {
-  const GLuint shader = here().below().CreateShader(type);
+  const GLuint shader = Track::current().below().CreateShader(type);
   note([&](ProgramSources& known) { known.shader_created(shader, type); });
   return shader;
 }
 
 GLhandleARB APIENTRY create_shader_object(GLenum type) {
-  const GLhandleARB shader = here().below().CreateShaderObjectARB(type);
+  const GLhandleARB shader = Track::current().below().CreateShaderObjectARB(type);
   note([&](ProgramSources& known) { known.shader_created(GLuint(shader), type); });
   return shader;
 }
 
 GLuint APIENTRY create_program() {
-  const GLuint program = here().below().CreateProgram();
+  const GLuint program = Track::current().below().CreateProgram();
   note([&](ProgramSources& known) { known.program_created(program); });
   return program;
 }
 
 GLhandleARB APIENTRY create_program_object() {
-  const GLhandleARB program = here().below().CreateProgramObjectARB();
+  const GLhandleARB program = Track::current().below().CreateProgramObjectARB();
   note([&](ProgramSources& known) { known.program_created(GLuint(program)); });
   return program;
 }
 
 GLuint APIENTRY create_shader_program(GLenum type, GLsizei count, const GLchar* const* strings) {
-  const GLuint program = here().below().CreateShaderProgramv(type, count, strings);
+  const GLuint program = Track::current().below().CreateShaderProgramv(type, count, strings);
   note([&](ProgramSources& known) {
     known.program_linked_from(program, type, joined(count, strings, nullptr));
   });
@@ -55,20 +51,20 @@ GLuint APIENTRY create_shader_program(GLenum type, GLsizei count, const GLchar* 
 }
 
 GLuint APIENTRY create_shader_program_ext(GLenum type, const GLchar* string) {
-  const GLuint program = here().below().CreateShaderProgramEXT(type, string);
+  const GLuint program = Track::current().below().CreateShaderProgramEXT(type, string);
   note([&](ProgramSources& known) { known.program_linked_from(program, type, joined(1, &string, nullptr)); });
   return program;
 }
 
 void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
   programs().source_given(shader, joined(count, strings, lengths));
-  here().below().ShaderSource(shader, count, strings, lengths);
+  Track::current().below().ShaderSource(shader, count, strings, lengths);
 }
 
 void APIENTRY shader_source_arb(GLhandleARB shader, GLsizei count, const GLcharARB** strings,
                                 const GLint* lengths) {
   programs().source_given(GLuint(shader), joined(count, strings, lengths));
-  here().below().ShaderSourceARB(shader, count, strings, lengths);
+  Track::current().below().ShaderSourceARB(shader, count, strings, lengths);
 }
 
 void APIENTRY shader_binary(GLsizei count, const GLuint* shaders, GLenum format, const void* binary,
@@ -76,23 +72,23 @@ void APIENTRY shader_binary(GLsizei count, const GLuint* shaders, GLenum format,
   if (count > 0 && shaders != nullptr) {
     for (const GLuint shader : std::span(shaders, std::size_t(count))) programs().binary_given(shader);
   }
-  here().below().ShaderBinary(count, shaders, format, binary, length);
+  Track::current().below().ShaderBinary(count, shaders, format, binary, length);
 }
 
 void APIENTRY specialize_shader(GLuint shader, const GLchar* entry, GLuint count, const GLuint* indices,
                                 const GLuint* values) {
   programs().binary_given(shader);
-  here().below().SpecializeShader(shader, entry, count, indices, values);
+  Track::current().below().SpecializeShader(shader, entry, count, indices, values);
 }
 
 void APIENTRY specialize_shader_arb(GLuint shader, const GLchar* entry, GLuint count, const GLuint* indices,
                                     const GLuint* values) {
   programs().binary_given(shader);
-  here().below().SpecializeShaderARB(shader, entry, count, indices, values);
+  Track::current().below().SpecializeShaderARB(shader, entry, count, indices, values);
 }
 
 void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
-  here().below().ProgramBinary(program, format, binary, length);
+  Track::current().below().ProgramBinary(program, format, binary, length);
   if (binary == nullptr || length <= 0) return;
   note([&](ProgramSources& known) {
     known.program_loaded(program, {static_cast<const std::byte*>(binary), std::size_t(length)});
@@ -102,7 +98,7 @@ void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, 
 void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length, GLenum* format, void* binary) {
   constexpr GLsizei nothing_written = -1;
   GLsizei written = nothing_written;
-  here().below().GetProgramBinary(program, space, &written, format, binary);
+  Track::current().below().GetProgramBinary(program, space, &written, format, binary);
   if (length != nullptr && written != nothing_written) *length = written;
   if (binary == nullptr || written <= 0) return;
   note([&](ProgramSources& known) {
@@ -111,7 +107,7 @@ void APIENTRY get_program_binary(GLuint program, GLsizei space, GLsizei* length,
 }
 
 void APIENTRY delete_object(GLhandleARB object) {
-  here().below().DeleteObjectARB(object);
+  Track::current().below().DeleteObjectARB(object);
   // The one name is a shader's or a program's.
   note([&](ProgramSources& known) {
     known.shader_deleted(GLuint(object));
@@ -125,7 +121,7 @@ struct Noted;
 template <class... Names, void (APIENTRY* DispatchTable::*Slot)(Names...), auto Note>
 struct Noted<Slot, Note> {
   static void APIENTRY call(Names... names) {
-    (here().below().*Slot)(names...);
+    (Track::current().below().*Slot)(names...);
     note([&](ProgramSources& known) { (known.*Note)(GLuint(names)...); });
   }
 };

@@ -15,17 +15,17 @@
 namespace understudy::spu {
 namespace {
 
-using Values = std::span<const double>;
+using StateValues = std::span<const double>;
 
-bool equal(Values a, Values b) {
+bool equal(StateValues a, StateValues b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   });
 }
 
-class Reader {
+class StateReader {
  public:
-  explicit Reader(const DispatchTable& gl) : gl_(gl), version_(read_version()), core_(is_core()) {}
+  explicit StateReader(const DispatchTable& gl) : gl_(gl), version_(read_version()), core_(is_core()) {}
 
   State read() {
     State state;
@@ -261,7 +261,7 @@ class Difference {
     if (touched) set(*enabled, std::array{0.0});
   }
 
-  void set(const State::Item& item, Values values) {
+  void set(const State::Item& item, StateValues values) {
     const StateRow& row = *item.row;
     // Calls that name their unit need none selected.
     if (row.selector == Selector::texture_unit && !row.numbered)
@@ -320,14 +320,14 @@ class Difference {
   }
 
   /// The default framebuffer's buffers can be several under one name, which glDrawBuffers does not take.
-  void set_draw_buffers(Values values) {
+  void set_draw_buffers(StateValues values) {
     std::size_t used = values.size();
     while (used > 1 && values[used - 1] == GL_NONE) --used;
     if (used == 1) return call(CallId::DrawBuffer, {}, values.first(1));
     call(CallId::DrawBuffers, std::array{double(used)}, values.first(used));
   }
 
-  void bind_indexed(const State::Item& item, Values values) {
+  void bind_indexed(const State::Item& item, StateValues values) {
     const std::vector<double> before = arguments_before(item);
     if (values[2] == 0) {
       call(CallId::BindBufferBase, before, values.first(1));
@@ -371,7 +371,7 @@ class Difference {
   }
 
   /// Values go to a pointer parameter together, else one to each.
-  void call(CallId id, Values before, Values values) {
+  void call(CallId id, StateValues before, StateValues values) {
     records_.begin(stable_id(id));
     const auto parameters = call_shape(id).parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) records_.append(0);
@@ -381,13 +381,13 @@ class Difference {
         records_.set(p + 1, attach(parameter.type, values).word());
         return;
       }
-      Values& next = before.empty() ? values : before;
+      StateValues& next = before.empty() ? values : before;
       records_.set(p + 1, with_type(parameter.type, next[0], [](auto v) { return word(v); }));
       next = next.subspan(1);
     }
   }
 
-  Reference attach(ValueType type, Values values) {
+  Reference attach(ValueType type, StateValues values) {
     std::vector<std::byte> bytes;
     for (const double value : values) {
       with_type(type, value, [&](auto v) {
@@ -428,7 +428,7 @@ bool State::operator==(const State& other) const {
 }
 
 State read_state(const DispatchTable& gl) {
-  return Reader(gl).read();
+  return StateReader(gl).read();
 }
 
 Records difference(const State& from, const State& to) {

@@ -13,14 +13,10 @@
 namespace understudy::spu {
 namespace {
 
-Track& here() {
-  return *Chain::current()->find<Track>();
-}
-
 /// Inside glNewList: notes what kind of command the list takes up, then lets the driver compile it.
 struct NoteListContent {
   static const DispatchTable& before(CallId call) {
-    Track& track = here();
+    Track& track = Track::current();
     ListRecord& list = track.open_list();
     switch (kind_of(call)) {
       case CallKind::draw:
@@ -49,17 +45,17 @@ struct NotesMode;
 template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLenum, A...)>
 struct NotesMode<Slot> {
   static void APIENTRY call(GLenum mode, A... rest) {
-    Track& track = here();
+    Track& track = Track::current();
     track.open_list().draws = true;
     track.open_list().only_polygons &= draws_polygons(mode);
     (track.below().*Slot)(mode, rest...);
   }
 };
 
-struct NoteTextureChange {
+struct TellOfTextureChange {
   static constexpr bool chooses(std::string_view name) { return changes_texture(name); }
   static const DispatchTable& before(CallId) {
-    Track& track = here();
+    Track& track = Track::current();
     track.texture_changes();
     return track.below();
   }
@@ -72,7 +68,7 @@ struct DefinesVolume;
 template <std::size_t Target, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
 struct DefinesVolume<Target, Slot> {
   static void APIENTRY call(A... arguments) {
-    Track& track = here();
+    Track& track = Track::current();
     track.texture_changes();
     if (std::get<Target>(std::tie(arguments...)) == GL_TEXTURE_3D) track.volume_defined();
     (track.below().*Slot)(arguments...);
@@ -81,7 +77,7 @@ struct DefinesVolume<Target, Slot> {
 
 void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal_format, GLsizei width,
                                  GLsizei height, GLsizei depth) {
-  Track& track = here();
+  Track& track = Track::current();
   track.texture_changes();
   // An array of 2-D textures, perhaps: then there is one watch too many.
   track.volume_defined();
@@ -91,7 +87,7 @@ void APIENTRY texture_storage_3d(GLuint texture, GLsizei levels, GLenum internal
 /// From now on each of the two changes whenever the other does.
 void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenum internal_format,
                            GLuint first_level, GLuint levels, GLuint first_layer, GLuint layers) {
-  Track& track = here();
+  Track& track = Track::current();
   track.texture_rendered_to(texture);
   track.texture_rendered_to(original);
   track.below().TextureView(texture, target, original, internal_format, first_level, levels, first_layer,
@@ -99,7 +95,7 @@ void APIENTRY texture_view(GLuint texture, GLenum target, GLuint original, GLenu
 }
 
 void APIENTRY delete_textures(GLsizei count, const GLuint* textures) {
-  Track& track = here();
+  Track& track = Track::current();
   // The slices of an open run use the texture as it is.
   if (track.chain().phase() == Phase::deferring) track.chain().settle();
   if (count > 0 && textures != nullptr) {
@@ -115,7 +111,7 @@ struct Attaches;
 template <std::size_t Position, class... A, void (APIENTRY* DispatchTable::*Slot)(A...)>
 struct Attaches<Position, Slot> {
   static void APIENTRY call(A... arguments) {
-    Track& track = here();
+    Track& track = Track::current();
     track.texture_rendered_to(std::get<Position>(std::tie(arguments...)));
     (track.below().*Slot)(arguments...);
   }
@@ -146,14 +142,14 @@ void fill_attachments(DispatchTable& table) {
 
 void APIENTRY bind_image_texture(GLuint unit, GLuint texture, GLint level, GLboolean layered, GLint layer,
                                  GLenum access, GLenum format) {
-  Track& track = here();
+  Track& track = Track::current();
   if (access != GL_READ_ONLY) track.texture_rendered_to(texture);
   track.below().BindImageTexture(unit, texture, level, layered, layer, access, format);
 }
 
 /// Binds for reading and writing.
 void APIENTRY bind_image_textures(GLuint first, GLsizei count, const GLuint* textures) {
-  Track& track = here();
+  Track& track = Track::current();
   if (count > 0 && textures != nullptr) {
     for (const GLuint texture : std::span(textures, std::size_t(count))) track.texture_rendered_to(texture);
   }
@@ -161,7 +157,7 @@ void APIENTRY bind_image_textures(GLuint first, GLsizei count, const GLuint* tex
 }
 
 void APIENTRY new_list(GLuint list, GLenum mode) {
-  Track& track = here();
+  Track& track = Track::current();
   track.below().NewList(list, mode);
   // Anything else is refused and opens no list.
   if (list != 0 && (mode == GL_COMPILE || mode == GL_COMPILE_AND_EXECUTE))
@@ -169,19 +165,19 @@ void APIENTRY new_list(GLuint list, GLenum mode) {
 }
 
 void APIENTRY close_list() {
-  Track& track = here();
+  Track& track = Track::current();
   track.below().EndList();
   track.chain().after_call([&] { track.end_list(); });
 }
 
 void APIENTRY delete_lists(GLuint first, GLsizei count) {
-  Track& track = here();
+  Track& track = Track::current();
   track.below().DeleteLists(first, count);
   track.chain().after_call([&] { track.chain().group().lists_deleted(first, count); });
 }
 
-void APIENTRY call_list(GLuint list) {
-  Track& track = here();
+void APIENTRY track_list(GLuint list) {
+  Track& track = Track::current();
   track.below().CallList(list);
   ShareGroup& group = track.chain().group();
   if (!group.has_volumes() || !group.lists_change_textures()) return;
@@ -192,7 +188,7 @@ void APIENTRY call_list(GLuint list) {
 }
 
 void APIENTRY call_lists(GLsizei count, GLenum type, const void* lists) {
-  Track& track = here();
+  Track& track = Track::current();
   track.below().CallLists(count, type, lists);
   track.chain().after_call([&] {
     if (track.chain().group().lists_change_textures()) track.chain().group().some_texture_changed();
@@ -200,7 +196,7 @@ void APIENTRY call_lists(GLsizei count, GLenum type, const void* lists) {
 }
 
 void APIENTRY call_list_in_list(GLuint list) {
-  Track& track = here();
+  Track& track = Track::current();
   const auto record = track.chain().group().list(list);
   ListRecord& open = track.open_list();
   open.draws |= !record || record->draws;
@@ -212,7 +208,7 @@ void APIENTRY call_list_in_list(GLuint list) {
 
 /// Which lists they are depends on glListBase when the open list is called.
 void APIENTRY call_lists_in_list(GLsizei count, GLenum type, const void* lists) {
-  Track& track = here();
+  Track& track = Track::current();
   ListRecord& open = track.open_list();
   open.draws = true;
   open.only_geometry = false;
@@ -239,7 +235,7 @@ void fill_compiling(DispatchTable& table) {
 }
 
 void fill_texture_changes(DispatchTable& table) {
-  PassThrough<NoteTextureChange>::fill_chosen(table);
+  PassThrough<TellOfTextureChange>::fill_chosen(table);
   table.TexImage3D = DefinesVolume<0, &DispatchTable::TexImage3D>::call;
   table.TexImage3DEXT = DefinesVolume<0, &DispatchTable::TexImage3DEXT>::call;
   table.TexStorage3D = DefinesVolume<0, &DispatchTable::TexStorage3D>::call;
@@ -322,7 +318,7 @@ void Track::fill_own(Phase phase, DispatchTable& table) {
   table.DeleteLists = delete_lists;
   if (phase == Phase::compiling) return;
   table.NewList = new_list;
-  table.CallList = call_list;
+  table.CallList = track_list;
   table.CallLists = call_lists;
 }
 

@@ -24,6 +24,9 @@ class Track final : public Unit {
   explicit Track(Chain& chain, bool answer = false)
       : chain_(chain), answers_(answer ? std::make_unique<Answers>() : nullptr) {}
 
+  /// That of the chain that is current on this thread, which has one.
+  static Track& current() { return *Chain::current()->find<Track>(); }
+
   const char* tag_address() const override { return &tag; }
   void fill(Phase phase, DispatchTable& table) override;
   void made_current() override;

@@ -163,7 +163,7 @@ RecordAction Prefix::action_of_call(CallId call, const Record& record, ThreadSta
 namespace {
 
 /// A call's word by its place, 0 where the record ends before.
-std::uint64_t word_of(const Record& record, std::size_t place) {
+std::uint64_t word_at(const Record& record, std::size_t place) {
   return place + 1 < record.words.size() ? record.words[place + 1] : 0;
 }
 
@@ -199,7 +199,7 @@ void Prefix::look_before(CallId call, const Record& record, const ThreadState& t
 
 void Prefix::look_at_texture(CallId call, const Record& record) {
   const std::string_view name = call_name(call);
-  const auto word = [&](std::size_t p) { return word_of(record, p); };
+  const auto word = [&](std::size_t p) { return word_at(record, p); };
   if (name.starts_with("glCopyTexImage") || name.starts_with("glCopyTexSubImage") ||
       name.starts_with("glGenerateMipmap")) {
     mark_bound_texture(GLenum(word(0)));
@@ -220,7 +220,7 @@ void Prefix::look_at_texture(CallId call, const Record& record) {
 }
 
 void Prefix::look_at_buffer(CallId call, const Record& record) {
-  const auto word = [&](std::size_t p) { return word_of(record, p); };
+  const auto word = [&](std::size_t p) { return word_at(record, p); };
   if ((call == CallId::BindBufferBase || call == CallId::BindBufferRange) && word(0) != GL_UNIFORM_BUFFER)
     mark(ObjectKind::buffer, GLuint(player_.here(ObjectKind::buffer, word(2))));
   if (call == CallId::CopyBufferSubData) {

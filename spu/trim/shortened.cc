@@ -13,7 +13,7 @@
 namespace understudy::spu {
 namespace {
 
-constexpr std::size_t large_block_words = std::size_t(1) << 20;
+constexpr std::size_t large_payload_words = std::size_t(1) << 20;
 /// OpenGL itself nests lists no deeper than 64.
 constexpr int deepest_nesting = 64;
 
@@ -215,7 +215,7 @@ void Shortened::take_all(const Records& records) {
 }
 
 void Shortened::write_when_large() {
-  if (records_.words().size() + records_.payload().size() >= large_block_words) finish();
+  if (records_.words().size() + records_.payload().size() >= large_payload_words) finish();
 }
 
 void Shortened::finish() {

@@ -5,23 +5,18 @@
 #include <array>
 #include <initializer_list>
 
+#include "spu/state_value.h"
 #include "spu/stream/pixels.h"
 
 namespace understudy::spu {
 namespace {
 
-GLint ask(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
-
 int version_of(const DispatchTable& gl) {
-  return ask(gl, GL_MAJOR_VERSION) * 100 + ask(gl, GL_MINOR_VERSION) * 10;
+  return state_value(gl, GL_MAJOR_VERSION) * 100 + state_value(gl, GL_MINOR_VERSION) * 10;
 }
 
-bool is_core(const DispatchTable& gl) {
-  return version_of(gl) >= 320 && (ask(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
+bool has_core_profile(const DispatchTable& gl) {
+  return version_of(gl) >= 320 && (state_value(gl, GL_CONTEXT_PROFILE_MASK) & GL_CONTEXT_CORE_PROFILE_BIT) != 0;
 }
 
 std::size_t pixels_of(Extent2D extent) {
@@ -29,7 +24,7 @@ std::size_t pixels_of(Extent2D extent) {
 }
 
 GLenum window_buffer(const DispatchTable& gl) {
-  return ask(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK : GL_FRONT;
+  return state_value(gl, GL_DOUBLEBUFFER) != 0 ? GL_BACK : GL_FRONT;
 }
 
 /// While it lives, pixels travel as they are between tight memory and framebuffers.
@@ -38,9 +33,9 @@ class PlainPixels {
   PlainPixels(const DispatchTable& gl, GLenum buffer_target, GLenum buffer_binding,
               const std::array<GLenum, 8>& names)
       : gl_(gl),
-        core_(is_core(gl)),
+        core_(has_core_profile(gl)),
         buffer_target_(buffer_target),
-        buffer_(ask(gl, buffer_binding)),
+        buffer_(state_value(gl, buffer_binding)),
         names_(names),
         store_(pixel_store(gl, names)) {
     if (!core_) {
@@ -81,10 +76,10 @@ struct Destination {
 
 void read_window(const DispatchTable& gl, int width, int first_row, int rows,
                  std::initializer_list<Destination> wanted) {
-  const GLint framebuffer = ask(gl, GL_READ_FRAMEBUFFER_BINDING);
+  const GLint framebuffer = state_value(gl, GL_READ_FRAMEBUFFER_BINDING);
   const PlainPixels plain(gl, GL_PIXEL_PACK_BUFFER, GL_PIXEL_PACK_BUFFER_BINDING, pack_names);
   if (framebuffer != 0) gl.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-  const GLint read_buffer = ask(gl, GL_READ_BUFFER);
+  const GLint read_buffer = state_value(gl, GL_READ_BUFFER);
   gl.ReadBuffer(window_buffer(gl));
   for (const Destination& one : wanted)
     gl.ReadPixels(0, first_row, width, rows, one.format, one.type, one.pixels);
@@ -103,9 +98,9 @@ void attach(const DispatchTable& gl, GLuint texture, GLenum attachment, GLint fo
 
 /// The buffers that are drawn to.
 std::vector<GLenum> draw_buffers(const DispatchTable& gl) {
-  std::vector<GLenum> buffers(std::size_t(std::clamp(ask(gl, GL_MAX_DRAW_BUFFERS), 1, 16)));
+  std::vector<GLenum> buffers(std::size_t(std::clamp(state_value(gl, GL_MAX_DRAW_BUFFERS), 1, 16)));
   for (std::size_t i = 0; i < buffers.size(); ++i)
-    buffers[i] = GLenum(ask(gl, GLenum(GL_DRAW_BUFFER0) + GLenum(i)));
+    buffers[i] = GLenum(state_value(gl, GLenum(GL_DRAW_BUFFER0) + GLenum(i)));
   while (buffers.size() > 1 && buffers.back() == GL_NONE) buffers.pop_back();
   return buffers;
 }
@@ -160,8 +155,9 @@ void set_window_contents(const DispatchTable& gl, const WindowContents& contents
   // A blit is subject to less of the context's state than drawing and clearing.
   const PlainPixels plain(gl, GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_UNPACK_BUFFER_BINDING, unpack_names);
   const NoScissor no_scissor(gl);
-  const GLint drawn_to = ask(gl, GL_DRAW_FRAMEBUFFER_BINDING), read_from = ask(gl, GL_READ_FRAMEBUFFER_BINDING);
-  const GLint bound = ask(gl, GL_TEXTURE_BINDING_2D);
+  const GLint drawn_to = state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING),
+              read_from = state_value(gl, GL_READ_FRAMEBUFFER_BINDING);
+  const GLint bound = state_value(gl, GL_TEXTURE_BINDING_2D);
   GLuint framebuffer = 0;
   std::array<GLuint, 2> textures{};
   gl.GenFramebuffers(1, &framebuffer);

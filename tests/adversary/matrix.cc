@@ -8,7 +8,7 @@ namespace adversary {
 namespace {
 
 constexpr float near_plane = 0.1F, far_plane = 10;
-constexpr Vector centre{0.5F, 0.5F, 0.5F};
+constexpr Vector centre_of_cube{0.5F, 0.5F, 0.5F};
 
 float radians(float degrees) {
   return degrees * std::numbers::pi_v<float> / 180;
@@ -72,7 +72,7 @@ Camera camera_at(const Orbit& orbit, int frame, float aspect) {
   const Vector away{std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                     std::cos(elevation) * std::cos(azimuth)};
   const Vector forward = -1.0F * away, right = normalized(cross(forward, {0, 1, 0}));
-  const Vector eye = centre + orbit.distance * away + orbit.sideways * right;
+  const Vector eye = centre_of_cube + orbit.distance * away + orbit.sideways * right;
   const Matrix projection =
       orbit.projection == Projection::perspective ? perspective(0.268F, aspect) : parallel(0.7F, aspect);
   return {eye, forward, projection, looking(eye, forward)};

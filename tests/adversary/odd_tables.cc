@@ -6,8 +6,8 @@
 namespace adversary {
 namespace {
 
-constexpr int place = 5;      ///< texture unit or binding
-constexpr int entries = 256;  ///< of a table
+constexpr int place = 5;            ///< texture unit or binding
+constexpr int table_entries = 256;  ///< of a table
 
 GLenum target_of(TableKind kind) {
   switch (kind) {
@@ -76,7 +76,7 @@ OddTable::OddTable(const Canvas& canvas, TableKind kind, const GlslProgram& prog
 }
 
 void OddTable::create() {
-  constexpr GLsizeiptr bytes = sizeof(float) * 4 * entries;
+  constexpr GLsizeiptr bytes = sizeof(float) * 4 * table_entries;
   if (lies_in_a_buffer(kind_)) {
     gl_.GenBuffers(1, &buffer_);
     gl_.BindBuffer(target_, buffer_);
@@ -90,12 +90,12 @@ void OddTable::create() {
   gl_.BindTexture(target_, texture_);
   switch (kind_) {
     case TableKind::array_2d:
-      return gl_.TexImage3D(target_, 0, GL_RGBA8, entries, 1, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+      return gl_.TexImage3D(target_, 0, GL_RGBA8, table_entries, 1, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     case TableKind::buffer_texture:
       return gl_.TexBuffer(target_, GL_RGBA32F, buffer_);
     default:
-      return gl_.TexImage2D(target_, 0, GL_RGBA8, entries, kind_ == TableKind::array_1d ? 2 : 1, 0, GL_RGBA,
-                            GL_UNSIGNED_BYTE, nullptr);
+      return gl_.TexImage2D(target_, 0, GL_RGBA8, table_entries, kind_ == TableKind::array_1d ? 2 : 1, 0,
+                            GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
   }
 }
 
@@ -103,7 +103,7 @@ void OddTable::edit(const std::vector<Colour>& colours) const {
   const std::vector<float> floats = as_floats(colours);
   if (kind_ == TableKind::uniform_array) {
     program_.use();
-    return gl_.Uniform4fv(program_.location("entries"), entries, floats.data());
+    return gl_.Uniform4fv(program_.location("entries"), table_entries, floats.data());
   }
   if (lies_in_a_buffer(kind_)) {
     gl_.BindBuffer(target_, buffer_);
@@ -111,9 +111,9 @@ void OddTable::edit(const std::vector<Colour>& colours) const {
   }
   gl_.ActiveTexture(GL_TEXTURE0 + place);
   if (kind_ == TableKind::array_2d)
-    gl_.TexSubImage3D(target_, 0, 0, 0, 1, entries, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
+    gl_.TexSubImage3D(target_, 0, 0, 0, 1, table_entries, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, colours.data());
   else
-    gl_.TexSubImage2D(target_, 0, 0, kind_ == TableKind::array_1d ? 1 : 0, entries, 1, GL_RGBA,
+    gl_.TexSubImage2D(target_, 0, 0, kind_ == TableKind::array_1d ? 1 : 0, table_entries, 1, GL_RGBA,
                       GL_UNSIGNED_BYTE, colours.data());
 }
 

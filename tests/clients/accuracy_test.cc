@@ -82,12 +82,12 @@ INSTANTIATE_TEST_SUITE_P(Viewer, EveryMode, testing::Values("rgba", "table", "co
 
 class Ranks : public CommandTest {};
 
-constexpr int frames = 3;
+constexpr int accuracy_frames = 3;
 
 /// Largest difference of any channel, alpha among them, of any frame.
 double largest_difference(const std::filesystem::path& a, const std::filesystem::path& b) {
   double largest = 0;
-  for (int number = 0; number < frames; ++number) {
+  for (int number = 0; number < accuracy_frames; ++number) {
     const std::string name = fmt::format("frame_{:04}.pfm", number);
     const RgbaImage first = read_image(a / name), second = read_image(b / name);
     if (!first.has_alpha || !second.has_alpha || first.rgba.size() != second.rgba.size()) return HUGE_VAL;
@@ -100,7 +100,7 @@ double largest_difference(const std::filesystem::path& a, const std::filesystem:
 TEST_F(Ranks, AnyNumberOfThemGivesTheSameImages) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const Words viewer =
-      engine_viewer("core", one_view + Words{"--frames", std::to_string(frames), "--orbit", "50"});
+      engine_viewer("core", one_view + Words{"--frames", std::to_string(accuracy_frames), "--orbit", "50"});
   std::vector<int> ranks = {0, 1, 2, 3, 4, 7};
   const auto folder = [&](int count) { return file(fmt::format("frames-{}", count)); };
   for (const int count : ranks) {
@@ -110,7 +110,7 @@ TEST_F(Ranks, AnyNumberOfThemGivesTheSameImages) {
         viewer);
     const nlohmann::json report = json("report.json");
     ASSERT_EQ(report.at("nodes"), count) << outcome.err;
-    ASSERT_EQ(report.at("frames_substituted"), frames) << outcome.err;
+    ASSERT_EQ(report.at("frames_substituted"), accuracy_frames) << outcome.err;
   }
   const RgbaImage first = read_image(folder(0) / "frame_0000.pfm");
   EXPECT_GT(*std::max_element(first.rgba.begin(), first.rgba.end()), 0.5) << "there is something to see";

@@ -22,7 +22,7 @@ using understudy::spu::Optimization;
 using understudy::spu::optimization_table;
 using understudy::spu::OptimizationText;
 
-constexpr int frames = 4;
+constexpr int left_out_frames = 4;
 
 struct Case {
   Optimization optimization;
@@ -65,12 +65,12 @@ class LeftOut : public CommandTest, public testing::WithParamInterface<std::size
     Words viewer = shown.viewer;
     std::replace(viewer.begin(), viewer.end(), std::string("rising.json"), file("rising.json").string());
     const Words recording = {"--report", file(name + ".json"), "--save-frames", file(name), "--explain"};
-    outcome =
-        run_well(under(shown.options + options + recording) +
-                 engine_viewer(shown.mode, viewer + Words{"--no-frame", "--frames", std::to_string(frames),
-                                                          "--screenshot-frames", file(name + "_shown")}));
+    outcome = run_well(
+        under(shown.options + options + recording) +
+        engine_viewer(shown.mode, viewer + Words{"--no-frame", "--frames", std::to_string(left_out_frames),
+                                                 "--screenshot-frames", file(name + "_shown")}));
     nlohmann::json report = json(name + ".json");
-    EXPECT_EQ(report.at("frames_substituted"), frames) << outcome.err;
+    EXPECT_EQ(report.at("frames_substituted"), left_out_frames) << outcome.err;
     return report;
   }
 
@@ -96,7 +96,7 @@ TEST_P(LeftOut, ChangesNoImage) {
              still = nevertheless.at("left_out").get<std::uint64_t>(),
              done_without = nevertheless.at("done").get<std::uint64_t>();
   double most = 0;
-  for (int frame = 0; frame < frames; ++frame) {
+  for (int frame = 0; frame < left_out_frames; ++frame) {
     const std::string png = fmt::format("frame_{:04}.png", frame);
     EXPECT_LE(largest_difference(read_image(file("with_shown") / png), read_image(file("without_shown") / png)),
               about.tolerance > 0 ? 1.01 / 255 : 0);

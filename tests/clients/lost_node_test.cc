@@ -16,7 +16,7 @@
 namespace clients {
 namespace {
 
-constexpr int frames = 20;
+constexpr int lost_node_frames = 20;
 constexpr int ranks = 3;
 
 class LostNode : public CommandTest, public testing::WithParamInterface<int> {
@@ -67,8 +67,8 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
 TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   const auto viewer = [&](const std::filesystem::path& images) {
-    return engine_viewer("table", {"--frames", std::to_string(frames), "--orbit", "3", "--print-times",
-                                   "--screenshot-frames", images.string()});
+    return engine_viewer("table", {"--frames", std::to_string(lost_node_frames), "--orbit", "3",
+                                   "--print-times", "--screenshot-frames", images.string()});
   };
   run_well(viewer(file("bare")));
 
@@ -100,7 +100,7 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 
   double worst = HUGE_VAL;
-  for (int number = 0; number < frames; ++number) {
+  for (int number = 0; number < lost_node_frames; ++number) {
     const std::string name = fmt::format("frame_{:04}.png", number);
     worst = std::min(worst, viewer_test::difference(png("bare/" + name), png("under/" + name)).psnr);
   }
@@ -112,7 +112,7 @@ TEST_P(LostNode, TheViewerGoesOnAndAnotherGroupTakesOver) {
       "rank {} of {} killed after the third frame: worst of {} frames PSNR {:.2f} dB, drawn by nodes (n) and "
       "the "
       "viewer (v): {}\n{}",
-      GetParam(), ranks, frames, worst, who_drew, outcome.err);
+      GetParam(), ranks, lost_node_frames, worst, who_drew, outcome.err);
   EXPECT_GE(worst, 40);
   EXPECT_EQ(who_drew.substr(0, 3), "nnn");
   EXPECT_TRUE(who_drew.ends_with("n")) << "the next group has taken over";

@@ -13,22 +13,22 @@ namespace understudy::spu::testing {
 namespace {
 
 using compositor::MessageType;
-using Buffer = std::vector<std::byte>;
+using SeedBuffer = std::vector<std::byte>;
 
 template <class Plain>
-void append(Buffer& to, std::span<const Plain> values) {
+void append(SeedBuffer& to, std::span<const Plain> values) {
   const auto bytes = std::as_bytes(values);
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-Buffer travelling(MessageType type, const Buffer& payload, compositor::Codec codec) {
+SeedBuffer travelling(MessageType type, const SeedBuffer& payload, compositor::Codec codec) {
   compositor::MessageHeader header;
   header.type = type;
   header.payload_bytes = payload.size();
-  Buffer bytes;
+  SeedBuffer bytes;
   append(bytes, std::span<const compositor::MessageHeader>(&header, 1));
   if (payload.empty()) return bytes;
-  Buffer compressed;
+  SeedBuffer compressed;
   compositor::BlockCompressor compressor;
   if (codec == compositor::Codec::none || !compressor.compress(codec, payload, compressed)) {
     codec = compositor::Codec::none;
@@ -40,23 +40,23 @@ Buffer travelling(MessageType type, const Buffer& payload, compositor::Codec cod
   return bytes;
 }
 
-Buffer between_application_and_gl_server(MessageType type, const Buffer& payload) {
+SeedBuffer between_application_and_gl_server(MessageType type, const SeedBuffer& payload) {
   const auto message = type.as<GlServerMessage>();
   const std::array<std::uint32_t, 2> head = {message ? std::uint32_t(*message) : 0,
                                              std::uint32_t(payload.size())};
-  Buffer bytes;
+  SeedBuffer bytes;
   append(bytes, std::span<const std::uint32_t>(head));
   append(bytes, std::span<const std::byte>(payload));
   return bytes;
 }
 
-Buffer some_calls() {
+SeedBuffer some_calls() {
   const std::array<std::uint64_t, 6> records = {std::uint64_t(3) << 32 | 7, 1, 2,
                                                 std::uint64_t(3) << 32 | 9, 3, 4};
   ChunkSender sender;
   sender.add(records, {});
   const CallsHead head{1, ServerReply::answer, records.size(), 0};
-  Buffer bytes;
+  SeedBuffer bytes;
   append(bytes, std::span<const CallsHead>(&head, 1));
   const std::uint64_t count = sender.heads().size();
   append(bytes, std::span<const std::uint64_t>(&count, 1));
@@ -65,13 +65,13 @@ Buffer some_calls() {
   return bytes;
 }
 
-Buffer some_image(PixelCoding coding) {
+SeedBuffer some_image(PixelCoding coding) {
   const ImageChange change{.drawable = 3, .extent = {40, 30}, .x = 4, .y = 5, .width = 16, .height = 16};
-  Buffer bytes;
+  SeedBuffer bytes;
   append(bytes, std::span<const PixelCoding>(&coding, 1));
-  const Buffer head = encode_head(change);
+  const SeedBuffer head = encode_head(change);
   append(bytes, std::span<const std::byte>(head));
-  const Buffer pixels(std::size_t(16) * 16 * 4, std::byte(90));
+  const SeedBuffer pixels(std::size_t(16) * 16 * 4, std::byte(90));
   if (coding == PixelCoding::jpeg)
     compositor::append_jpeg(pixels, 16, 16, compositor::JpegPixels::bgrx, 50, bytes);
   else
@@ -79,10 +79,10 @@ Buffer some_image(PixelCoding coding) {
   return bytes;
 }
 
-Buffer some_rendered(compositor::ImageCoding coding) {
-  const Buffer reply = compositor::encode(compositor::RenderedReply{{1, 2, 20, 13}, {}});
+SeedBuffer some_rendered(compositor::ImageCoding coding) {
+  const SeedBuffer reply = compositor::encode(compositor::RenderedReply{{1, 2, 20, 13}, {}});
   const std::array<std::uint32_t, 2> head = {std::uint32_t(reply.size()), std::uint32_t(coding)};
-  Buffer bytes;
+  SeedBuffer bytes;
   append(bytes, std::span<const std::uint32_t>(head));
   append(bytes, std::span<const std::byte>(reply));
   const std::vector<float> pixels(std::size_t(4) * 20 * 13, 0.25F);
@@ -100,13 +100,13 @@ Seeds remote_seeds() {
   const compositor::Credentials secret{compositor::Secret(contents)};
   compositor::ClientHandshake client(secret, {});
   compositor::ServerHandshake server(secret);
-  Buffer of_client = client.hello();
+  SeedBuffer of_client = client.hello();
   server.answer(std::span(of_client).first(compositor::hello_bytes));
-  Buffer of_server = server.answer(std::span(of_client).subspan(compositor::hello_bytes));
-  const Buffer proof = client.answer(of_server);
+  SeedBuffer of_server = server.answer(std::span(of_client).subspan(compositor::hello_bytes));
+  const SeedBuffer proof = client.answer(of_server);
   append(of_client, std::span<const std::byte>(proof));
   server.answer(proof);
-  const Buffer verdict = server.verdict(compositor::AdmissionVerdict::accepted);
+  const SeedBuffer verdict = server.verdict(compositor::AdmissionVerdict::accepted);
   append(of_server, std::span<const std::byte>(verdict));
   seeds["client"] = of_client;
   seeds["server"] = of_server;
@@ -125,20 +125,20 @@ Seeds record_seeds() {
   Seeds seeds;
   for (const std::size_t size : {0UL, 1UL, 300UL, 20'000UL}) {
     compositor::RecordSealer sealer(fuzzed_key);
-    Buffer line;
+    SeedBuffer line;
     for (int record = 0; record < 3; ++record)
-      append(line, sealer.seal(Buffer(size / std::size_t(record + 1), std::byte(record))));
+      append(line, sealer.seal(SeedBuffer(size / std::size_t(record + 1), std::byte(record))));
     seeds[std::to_string(size)] = line;
   }
   return seeds;
 }
 
 Seeds gl_server_seeds() {
-  Buffer both = between_application_and_gl_server(GlServerMessage::calls, some_calls());
-  const Buffer again = both;
+  SeedBuffer both = between_application_and_gl_server(GlServerMessage::calls, some_calls());
+  const SeedBuffer again = both;
   append(both, std::span<const std::byte>(again));
   CallAnswer answer{.result = 42};
-  answer.outputs.push_back({1, std::nullopt, Buffer(5, std::byte(7))});
+  answer.outputs.push_back({1, std::nullopt, SeedBuffer(5, std::byte(7))});
   return {
       {"calls", both},
       {"plain", between_application_and_gl_server(GlServerMessage::image, some_image(PixelCoding::plain))},

@@ -14,7 +14,7 @@ namespace {
 
 using namespace understudy::testing;
 
-constexpr double good_image = 40;
+constexpr double good_psnr = 40;
 
 /// Mesa's other software renderer, which still draws when main has ended.
 const Words softpipe{"GALLIUM_DRIVER=softpipe"};
@@ -90,7 +90,7 @@ TEST_P(Programs, TwoThreadsThatDrawVolumes) {
     EXPECT_EQ(behind.total().substituted, 12U) << scene;
     const double psnr = psnr_of_files(file("bare"), file("behind"));
     std::printf("%s: %.1f dB\n", scene, psnr);
-    EXPECT_GT(psnr, good_image);
+    EXPECT_GT(psnr, good_psnr);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-using Composition = MarchStyle::Composition;
+using CutComposition = MarchStyle::Composition;
 
 constexpr double alike = 45;         // dB
 constexpr double another = 35;       // dB; below, an image is another one
@@ -68,14 +68,14 @@ TEST(CutProxies, CroppedRegionsAreLeftOut) {
 }
 
 TEST(CutProxies, CroppingIsThereFromTheFirstFrameOnUnderEveryComposition) {
-  for (const auto composition : {Composition::over, Composition::maximum}) {
+  for (const auto composition : {CutComposition::over, CutComposition::maximum}) {
     MarchStyle style{.composition = composition};
     style.cropping_planes = {0.2F, 0.8F, 0.3F, 0.9F, 0.1F, 0.7F};
     style.kept_regions = middle_region;
-    if (composition == Composition::maximum) style.extent = {1.2F, 1.0F, 0.85F};
+    if (composition == CutComposition::maximum) style.extent = {1.2F, 1.0F, 0.85F};
     CutScene scene(style);
     if (!scene.app) GTEST_SKIP() << "no EGL context here";
-    scene.expect_alike(25, composition == Composition::over ? "over" : "maximum");
+    scene.expect_alike(25, composition == CutComposition::over ? "over" : "maximum");
   }
 }
 
@@ -123,7 +123,8 @@ TEST(CutProxies, UniformsStayAsTheyWere) {
 
 TEST(CutProxies, SumsAreThoseOfTheApplication) {
   for (const bool parallel : {false, true}) {
-    CutScene scene(MarchStyle{.composition = Composition::grey_sum, .parallel = parallel, .extent = stretched});
+    CutScene scene(
+        MarchStyle{.composition = CutComposition::grey_sum, .parallel = parallel, .extent = stretched});
     if (!scene.app) GTEST_SKIP() << "no EGL context here";
     const auto thin = scene.expect_alike(25, "sum");
     scene.expect_alike(-60, "sum");
@@ -135,12 +136,12 @@ TEST(CutProxies, SumsAreThoseOfTheApplication) {
 
 TEST(CutProxies, MeansAreThoseOfTheApplication) {
   const std::array<float, 6> planes{0.2F, 0.7F, 0, 1, 0.3F, 1};
-  for (const Composition composition : {Composition::mean_of_colours, Composition::mean_of_values}) {
+  for (const CutComposition composition : {CutComposition::mean_of_colours, CutComposition::mean_of_values}) {
     for (const bool divided : {false, true}) {
       CutScene scene(MarchStyle{.composition = composition, .divided = divided, .extent = stretched});
       if (!scene.app) GTEST_SKIP() << "no EGL context here";
       const std::string what =
-          composition == Composition::mean_of_colours ? "mean of colours" : "mean of values";
+          composition == CutComposition::mean_of_colours ? "mean of colours" : "mean of values";
       const auto thin = scene.expect_alike(25, what);
       scene.expect_alike(-60, what);
       scene.app->use_chain(true);

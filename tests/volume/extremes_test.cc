@@ -14,7 +14,7 @@
 namespace understudy::volume::testing {
 namespace {
 
-Image render(const Texture& texture, const RenderRequest& request) {
+Image rendered_extreme(const Texture& texture, const RenderRequest& request) {
   const BrickStore store = filled(texture);
   Image image(request.window);
   FrameCounts counts;
@@ -24,7 +24,7 @@ Image render(const Texture& texture, const RenderRequest& request) {
 
 Difference against_reference(const Texture& texture, const RenderRequest& request) {
   const Field field = texture_field(texture.description, request.filter, texture.texels);
-  return difference(render(texture, request), slice_sum(field, request, request.window));
+  return difference(rendered_extreme(texture, request), slice_sum(field, request, request.window));
 }
 
 void put(Texture& texture, std::size_t index, float value) {
@@ -45,7 +45,7 @@ TEST(Extremes, SamplesThatTouchNanContributeNothing) {
       RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 40);
       request.filter = filter;
       request.op = op;
-      EXPECT_TRUE(finite(render(texture, request)));
+      EXPECT_TRUE(finite(rendered_extreme(texture, request)));
       EXPECT_LE(against_reference(texture, request).max, 1e-4);
     }
 }
@@ -53,7 +53,7 @@ TEST(Extremes, SamplesThatTouchNanContributeNothing) {
 TEST(Extremes, AFieldOfNanIsClear) {
   const Texture texture = sampled(describe({19, 17, 21}, TexelType::f32), constant_field(std::nan("")));
   const RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 40);
-  EXPECT_EQ(difference(render(texture, request), Image(request.window)).max, 0);
+  EXPECT_EQ(difference(rendered_extreme(texture, request), Image(request.window)).max, 0);
 }
 
 TEST(Extremes, InfiniteAndHugeTexelsStayFinite) {
@@ -73,7 +73,7 @@ TEST(Extremes, InfiniteAndHugeTexelsStayFinite) {
     for (const Operator op :
          {Operator::over, Operator::max, Operator::min, Operator::add, Operator::first_hit}) {
       request.op = op;
-      const Image image = render(texture, request);
+      const Image image = rendered_extreme(texture, request);
       EXPECT_TRUE(finite(image));
     }
   }
@@ -85,7 +85,7 @@ TEST(Extremes, AlphaOneIsExactlyOpaque) {
   TransferFunction opaque;
   opaque.entries.assign(2, {0.25F, 0.5F, 1.0F, 1.0F});
   request.classification = opaque;
-  const Image image = render(texture, request);
+  const Image image = rendered_extreme(texture, request);
   int covered = 0;
   for (std::size_t p = 0; p < image.rgba.size(); p += 4)
     if (image.rgba[p + 3] != 0) {
@@ -104,7 +104,7 @@ TEST(Extremes, OpacityNeverExceedsOneNorColourOpacity) {
   TransferFunction comb;  // alternately clear and opaque
   for (int i = 0; i < 256; ++i) comb.entries.push_back(i % 2 ? Rgba{1, 0.5F, 0.25F, 1} : Rgba{});
   request.classification = comb;
-  const Image image = render(texture, request);
+  const Image image = rendered_extreme(texture, request);
   for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
     ASSERT_LE(image.rgba[p + 3], 1.0F);
     ASSERT_GE(image.rgba[p + 3], 0.0F);
@@ -119,7 +119,7 @@ TEST(Extremes, GlowAddsColourWithoutOpacity) {
   for (int i = 0; i < 64; ++i) glow.entries.push_back({float(i) / 64, 0.1F, 0, 0});
   request.classification = glow;
   EXPECT_LE(against_reference(texture, request).max, 1e-4);
-  EXPECT_GT(render(texture, request).at(23, 24)[0], 1.0F);
+  EXPECT_GT(rendered_extreme(texture, request).at(23, 24)[0], 1.0F);
 }
 
 TEST(Extremes, ViewportsOfOnePixelAndOfOneLongRow) {
@@ -143,11 +143,11 @@ TEST(Extremes, AWorldFarFromTheOriginIsAsGood) {
 TEST(Extremes, MirroringTheSceneMirrorsTheImage) {
   Texture texture = noise(describe({19, 17, 21}, TexelType::u8), 49);
   const RenderRequest request = request_for(texture, usual_camera(41, 37), 41, 37, 40);
-  const Image image = render(texture, request);
+  const Image image = rendered_extreme(texture, request);
   RenderRequest mirrored = request;
   for (int k = 0; k < 4; ++k)
     mirrored.texture_to_clip[std::size_t(k)] = -mirrored.texture_to_clip[std::size_t(k)];
-  const Image reflection = render(texture, mirrored);
+  const Image reflection = rendered_extreme(texture, mirrored);
   double worst = 0;
   for (int y = 0; y < 37; ++y)
     for (int x = 0; x < 41; ++x)

@@ -18,13 +18,13 @@
 namespace understudy::volume::testing {
 namespace {
 
-struct Drawn {
+struct ImageAndCounts {
   Image image;
   FrameCounts counts;
 };
 
-Drawn draw(const BrickStore& store, const RenderRequest& request) {
-  Drawn drawn{Image(request.window), {}};
+ImageAndCounts draw(const BrickStore& store, const RenderRequest& request) {
+  ImageAndCounts drawn{Image(request.window), {}};
   raycast(store, request, drawn.image, drawn.counts);
   return drawn;
 }
@@ -55,9 +55,9 @@ TEST(Optimizations, OfEmptyBricksChangesNoImage) {
         request.op = op;
         request.filter = filter;
         const BrickStore store = filled(texture);
-        const Drawn usual = draw(store, request);
+        const ImageAndCounts usual = draw(store, request);
         request.optimizations.empty_bricks = false;
-        const Drawn all = draw(store, request);
+        const ImageAndCounts all = draw(store, request);
         const double d = difference(usual.image, all.image).max;
         worst = std::max(worst, d);
         EXPECT_LE(d, 0) << "type " << int(type) << ", operator " << int(op);
@@ -78,9 +78,9 @@ TEST(Optimizations, ChangesNoImageOfScenesThatNobodyThoughtOf) {
     RandomScene scene = random_scene(random);
     const BrickStore store = filled(scene.texture);
     scene.request.termination = 0;
-    const Drawn usual = draw(store, scene.request);
+    const ImageAndCounts usual = draw(store, scene.request);
     scene.request.optimizations = {false, false, false};
-    const Drawn all = draw(store, scene.request);
+    const ImageAndCounts all = draw(store, scene.request);
     const double d = difference(usual.image, all.image).max / brightest(all.image);
     worst = std::max(worst, d);
     EXPECT_LE(d, 1e-6) << scene.text << ", UNDERSTUDY_TEST_SEED=" << seed;
@@ -95,10 +95,10 @@ TEST(Optimizations, OfHiddenSamplesIsCountedAndKeepsTheThreshold) {
   RenderRequest request = request_for(texture, usual_camera(64, 64), 64, 64, 200);
   request.classification = smooth_table(256, 0.9F);
   const BrickStore store = filled(texture);
-  const Drawn all = draw(store, request);
+  const ImageAndCounts all = draw(store, request);
   EXPECT_EQ(all.counts.samples_hidden, 0U);
   request.termination = 5e-6F;
-  const Drawn usual = draw(store, request);
+  const ImageAndCounts usual = draw(store, request);
   EXPECT_GT(usual.counts.samples_hidden, usual.counts.samples / 10);
   EXPECT_LT(usual.counts.samples_taken, all.counts.samples_taken);
   EXPECT_LE(usual.counts.samples_taken + usual.counts.samples_hidden, usual.counts.samples);
@@ -117,9 +117,9 @@ TEST(Optimizations, OfDominatedSamplesNeedsColoursThatRise) {
     rising.entries.push_back({value, value, value, float(i) / 255});
   }
   request.classification = rising;
-  const Drawn usual = draw(store, request);
+  const ImageAndCounts usual = draw(store, request);
   request.optimizations.dominated_samples = false;
-  const Drawn all = draw(store, request);
+  const ImageAndCounts all = draw(store, request);
   const bool plain = std::string_view(instruction_set()) == "scalar";  // which leaves out empty bricks alone
   EXPECT_GT(usual.counts.dominated_samples, plain ? 0 : left_in_empty_bricks(all.counts));
   EXPECT_EQ(all.counts.dominated_samples, 0U);

@@ -18,17 +18,17 @@ namespace {
 
 constexpr double tolerance = 1e-10;
 
-struct Case {
+struct StoredCase {
   const char* name;
   TexelType type;
   Wrap wrap;
   std::array<int, 3> size;
 };
 
-class StoredField : public ::testing::TestWithParam<Case> {};
+class StoredField : public ::testing::TestWithParam<StoredCase> {};
 
 TEST_P(StoredField, ShowsTheIntegralsOfTheTexture) {
-  const Case& of = GetParam();
+  const StoredCase& of = GetParam();
   const Texture texture = sampled(describe(of.size, of.type, of.wrap), marschner_lobb_field());
   const RenderRequest request = request_on_steps(texture);
   const Medium medium = Medium::of_samples(std::get<TransferFunction>(request.classification), 1);
@@ -59,10 +59,10 @@ TEST_P(StoredField, ShowsTheIntegralsOfTheTexture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Textures, StoredField,
-                         ::testing::Values(Case{"bytes", TexelType::u8, Wrap::edge, {40, 33, 17}},
-                                           Case{"words", TexelType::u16, Wrap::border, {17, 9, 40}},
-                                           Case{"floats", TexelType::f32, Wrap::edge, {8, 41, 30}},
-                                           Case{"a_plate", TexelType::f32, Wrap::border, {30, 1, 30}}),
+                         ::testing::Values(StoredCase{"bytes", TexelType::u8, Wrap::edge, {40, 33, 17}},
+                                           StoredCase{"words", TexelType::u16, Wrap::border, {17, 9, 40}},
+                                           StoredCase{"floats", TexelType::f32, Wrap::edge, {8, 41, 30}},
+                                           StoredCase{"a_plate", TexelType::f32, Wrap::border, {30, 1, 30}}),
                          [](const auto& info) { return info.param.name; });
 
 /// Steps of a thirtieth of the volume's depth each, however slantingly rays cross them.

@@ -19,17 +19,17 @@ namespace {
 constexpr std::size_t header_bytes_1 = 348, header_bytes_2 = 540;
 constexpr double largest_offset = 1e12;
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
+[[noreturn]] void fail_nifti(const std::string& path, const std::string& what) {
   throw FileError(fmt::format("{}: not a readable NIfTI file: {}", path, what));
 }
 
 /// Fields of the header by their place, in the byte order of its writer.
-class Header {
+class NiftiHeader {
  public:
-  explicit Header(ByteSource& file) {
+  explicit NiftiHeader(ByteSource& file) {
     got_ = file.read(0, bytes_);
     if (got_ < header_bytes_1)
-      fail(file.path(), fmt::format("its header has only {} bytes; get the file again", got_));
+      fail_nifti(file.path(), fmt::format("its header has only {} bytes; get the file again", got_));
     for (const bool foreign : {false, true}) {
       foreign_ = foreign;
       const auto size = at<std::int32_t>(0);
@@ -38,14 +38,14 @@ class Header {
       if (version_ != 0) break;
     }
     if (version_ == 0)
-      fail(file.path(),
-           "it does not begin with a header's length; get the file again, or give raw scalars another "
-           "name and their size");
+      fail_nifti(file.path(),
+                 "it does not begin with a header's length; get the file again, or give raw scalars another "
+                 "name and their size");
     const char* magic = reinterpret_cast<const char*>(bytes_.data()) + (version_ == 1 ? 344 : 4);
     const char digit = version_ == 1 ? '1' : '2';
     if (magic[0] != 'n' || (magic[1] != '+' && magic[1] != 'i') || magic[2] != digit)
-      fail(file.path(),
-           "it has no NIfTI mark (an ANALYZE file?); convert it, for example with `fslchfiletype NIFTI`");
+      fail_nifti(file.path(),
+                 "it has no NIfTI mark (an ANALYZE file?); convert it, for example with `fslchfiletype NIFTI`");
     one_file_ = magic[1] == '+';
   }
 
@@ -76,8 +76,9 @@ ScalarType type_of(int code, const std::string& path) {
       {1024, ScalarType::i64}, {1280, ScalarType::u64}};
   const auto found = codes.find(code);
   if (found == codes.end())
-    fail(path,
-         fmt::format("its data of type {} is no scalar that can be drawn; extract one component first", code));
+    fail_nifti(
+        path,
+        fmt::format("its data of type {} is no scalar that can be drawn; extract one component first", code));
   return found->second;
 }
 
@@ -104,7 +105,7 @@ bool is_nifti(const std::string& path) {
 std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFiles& files) {
   const std::string header_path = is_part(path, ".img") ? with_part(path, ".img", ".hdr") : path;
   std::unique_ptr<ByteSource> file = open_file_or_gzip(header_path, files);
-  const Header header(*file);
+  const NiftiHeader header(*file);
 
   // dim[0] is the number of axes, dim[1] ... their lengths.
   std::array<std::int64_t, 8> dim{};
@@ -128,7 +129,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
     intercept = header.at<double>(184);
   }
   if (dim[0] < 1 || dim[0] > 7)
-    fail(path, fmt::format("its header speaks of {} axes, not 1 to 7; get the file again", dim[0]));
+    fail_nifti(path, fmt::format("its header speaks of {} axes, not 1 to 7; get the file again", dim[0]));
   std::array<std::int64_t, 3> size{1, 1, 1};
   for (std::size_t axis = 0; axis < 3 && std::int64_t(axis) < dim[0]; ++axis) size[axis] = dim[axis + 1];
   description.type = type_of(code, path);
@@ -139,7 +140,7 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
     description.offset = intercept;
   }
   if (!(data_offset >= 0 && data_offset <= largest_offset))
-    fail(path, fmt::format("its data would begin at byte {}; get the file again", data_offset));
+    fail_nifti(path, fmt::format("its data would begin at byte {}; get the file again", data_offset));
 
   DenseScalars scalars;
   scalars.offset = std::uint64_t(data_offset);
@@ -147,8 +148,8 @@ std::unique_ptr<VolumeFile> open_nifti(const std::string& path, const ReadableFi
   scalars.advice = "its header asks for more than it holds: get the file again";
   if (header.one_file()) {
     if (scalars.offset < header_bytes_1)
-      fail(path, fmt::format("its data would begin at byte {}, within its header; get the file again",
-                             scalars.offset));
+      fail_nifti(path, fmt::format("its data would begin at byte {}, within its header; get the file again",
+                                   scalars.offset));
     scalars.bytes = std::move(file);
   } else {
     scalars.bytes = open_file_or_gzip(

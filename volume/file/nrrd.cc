@@ -26,12 +26,12 @@ constexpr std::size_t max_header_bytes = std::size_t(1) << 20;
 constexpr int max_axes = 16;
 constexpr std::uint64_t max_skip = std::uint64_t(1) << 40;
 
-struct Header {
+struct NrrdHeader {
   std::map<std::string, std::string> fields;
   std::uint64_t bytes = 0;  ///< with the empty line at its end
 };
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
+[[noreturn]] void fail_nrrd(const std::string& path, const std::string& what) {
   throw FileError(fmt::format("{}: not a readable NRRD file: {}", path, what));
 }
 
@@ -47,11 +47,11 @@ std::string lower(std::string text) {
 }
 
 // Of a detached header the file's end ends it as well.
-Header read_header(ByteSource& file) {
+NrrdHeader read_header(ByteSource& file) {
   std::string text(std::min<std::size_t>(max_header_bytes, std::size_t(file.size().value_or(max_header_bytes))),
                    ' ');
   text.resize(file.read(0, std::as_writable_bytes(std::span(text))));
-  Header header;
+  NrrdHeader header;
   bool ended = text.size() < max_header_bytes;
   std::size_t at = 0;
   for (bool first = true; at < text.size(); first = false) {
@@ -67,18 +67,18 @@ Header read_header(ByteSource& file) {
     std::string name = lower(trimmed(std::string_view(line).substr(0, colon)));
     std::erase(name, ' ');
     if (!header.fields.emplace(name, trimmed(std::string_view(line).substr(colon + 1))).second)
-      fail(file.path(), fmt::format("its header has the field '{}' twice; remove one", name));
+      fail_nrrd(file.path(), fmt::format("its header has the field '{}' twice; remove one", name));
   }
   if (!ended)
-    fail(file.path(),
-         fmt::format("its header does not end within {} bytes; get the file again", max_header_bytes));
+    fail_nrrd(file.path(),
+              fmt::format("its header does not end within {} bytes; get the file again", max_header_bytes));
   header.bytes = at;
   return header;
 }
 
 class Fields {
  public:
-  Fields(const Header& header, const std::string& path) : fields_(header.fields), path_(path) {}
+  Fields(const NrrdHeader& header, const std::string& path) : fields_(header.fields), path_(path) {}
 
   /// Empty when there is none.
   std::string text(const char* name) const {
@@ -87,15 +87,15 @@ class Fields {
   }
   std::string required(const char* name) const {
     std::string value = text(name);
-    if (value.empty()) fail(path_, fmt::format("its header has no field '{}'; get the file again", name));
+    if (value.empty()) fail_nrrd(path_, fmt::format("its header has no field '{}'; get the file again", name));
     return value;
   }
   std::int64_t integer(const char* name, const std::string& value, std::int64_t low, std::int64_t high) const {
     std::int64_t number = 0;
     const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), number);
     if (error != std::errc() || stop != value.data() + value.size() || number < low || number > high)
-      fail(path_, fmt::format("its field '{}' is '{}', not a number of {} to {}; check its header", name, value,
-                              low, high));
+      fail_nrrd(path_, fmt::format("its field '{}' is '{}', not a number of {} to {}; check its header", name,
+                                   value, low, high));
     return number;
   }
 
@@ -148,8 +148,9 @@ ScalarType type_of(const Fields& fields, const std::string& path) {
                                                        {"double", ScalarType::f64}};
   const auto found = names.find(name);
   if (found == names.end())
-    fail(path, fmt::format("scalars of type '{}' cannot be drawn; convert them, for example with `unu convert`",
-                           name));
+    fail_nrrd(path,
+              fmt::format("scalars of type '{}' cannot be drawn; convert them, for example with `unu convert`",
+                          name));
   return found->second;
 }
 
@@ -186,7 +187,7 @@ FileDescription description_of(const Fields& fields, const std::string& path) {
   const auto axes = std::size_t(fields.integer("dimension", fields.required("dimension"), 1, max_axes));
   const std::vector<std::string> words = words_of(fields.required("sizes"));
   if (words.size() != axes)
-    fail(path, fmt::format("it has {} axes but {} sizes; check its header", axes, words.size()));
+    fail_nrrd(path, fmt::format("it has {} axes but {} sizes; check its header", axes, words.size()));
   std::vector<double> distances;
   if (const std::string directions = fields.text("spacedirections"); !directions.empty())
     distances = lengths_of(directions);
@@ -202,12 +203,12 @@ FileDescription description_of(const Fields& fields, const std::string& path) {
         fields.integer("sizes", words[axis], 0, std::numeric_limits<std::int64_t>::max());
     if (axes != 3 && extent == 1) continue;
     if (spatial == 3)
-      fail(path, "it has more than three axes longer than 1; cut it first, for example with `unu slice`");
+      fail_nrrd(path, "it has more than three axes longer than 1; cut it first, for example with `unu slice`");
     size[spatial] = extent;
     description.spacing[spatial++] = believable_spacing(axis < distances.size() ? distances[axis] : 1.0);
   }
   if (spatial < 3 && axes != 3) {
-    if (axes < 3) fail(path, fmt::format("it has {} axes, a volume has 3; check its header", axes));
+    if (axes < 3) fail_nrrd(path, fmt::format("it has {} axes, a volume has 3; check its header", axes));
     for (; spatial < 3; ++spatial) size[spatial] = 1;
   }
   description.type = type_of(fields, path);
@@ -220,7 +221,8 @@ std::uint64_t skip_lines(ByteSource& file, std::uint64_t from, std::int64_t line
   std::vector<char> part(std::size_t(1) << 16);
   while (lines > 0) {
     const std::size_t got = file.read(from, std::as_writable_bytes(std::span(part)));
-    if (got == 0) fail(file.path(), "it has fewer lines than its header wants skipped; get the file again");
+    if (got == 0)
+      fail_nrrd(file.path(), "it has fewer lines than its header wants skipped; get the file again");
     for (std::size_t i = 0; i < got && lines > 0; ++i, ++from) lines -= part[i] == '\n';
   }
   return from;
@@ -237,7 +239,7 @@ bool is_nrrd(const std::string& path, const ReadableFiles& files) {
 
 std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFiles& files) {
   std::unique_ptr<ByteSource> file = open_file(path, files);
-  const Header header = read_header(*file);
+  const NrrdHeader header = read_header(*file);
   const Fields fields(header, path);
   const FileDescription description = description_of(fields, path);
 
@@ -247,7 +249,7 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFil
   std::string data = fields.text("datafile");
   if (!data.empty()) {
     if (data.starts_with("LIST") || data.find('%') != std::string::npos)
-      fail(path, "its data lies in several files; join them first, for example with `unu save -f nrrd`");
+      fail_nrrd(path, "its data lies in several files; join them first, for example with `unu save -f nrrd`");
     // Beside the header, unless the name is absolute.
     file = open_file(std::filesystem::path(path).parent_path() / data, files);
     scalars.offset = 0;
@@ -267,24 +269,24 @@ std::unique_ptr<VolumeFile> open_nrrd(const std::string& path, const ReadableFil
     } else {  // the data is what the file ends with
       const std::uint64_t there = file->size().value_or(0);
       if (there < bytes)
-        fail(path, fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}", bytes, there,
-                               scalars.advice));
+        fail_nrrd(path, fmt::format("truncated: {} bytes of scalars were expected, {} are there; {}", bytes,
+                                    there, scalars.advice));
       scalars.offset = there - bytes;
     }
     scalars.bytes = std::move(file);
   } else if (encoding == "gzip" || encoding == "gz") {
-    if (skip < 0) fail(path, "a byte skip of -1 means nothing in compressed data; check its header");
+    if (skip < 0) fail_nrrd(path, "a byte skip of -1 means nothing in compressed data; check its header");
     scalars.bytes = std::make_unique<GzipSource>(std::move(file), scalars.offset);
     scalars.offset = std::uint64_t(skip);
   } else {
-    fail(path, fmt::format("its encoding '{}' is not read here; save it as raw or gzip, for example with "
-                           "`unu save -f nrrd -e raw`",
-                           encoding));
+    fail_nrrd(path, fmt::format("its encoding '{}' is not read here; save it as raw or gzip, for example with "
+                                "`unu save -f nrrd -e raw`",
+                                encoding));
   }
   if (bytes_per_scalar(description.type) > 1) {
     const std::string endian = lower(fields.required("endian"));
     if (endian != "little" && endian != "big")
-      fail(path, fmt::format("its field 'endian' is '{}', not little or big; check its header", endian));
+      fail_nrrd(path, fmt::format("its field 'endian' is '{}', not little or big; check its header", endian));
     scalars.big_endian = endian == "big";
   }
   return dense_volume(description, std::move(scalars));

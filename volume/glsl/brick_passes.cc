@@ -7,7 +7,7 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-void bind(const Functions& gl, Unit unit, GLenum target, GLuint texture) {
+void bind_texture(const Functions& gl, Unit unit, GLenum target, GLuint texture) {
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + GLint(unit)));
   gl.BindTexture(target, texture);
 }
@@ -30,7 +30,7 @@ void BrickPasses::resize(int width, int height) {
   made_height_ = std::max(made_height_, height);
   for (State& state : states_) {
     for (const Texture* texture : {&state.sums, &state.progress}) {
-      bind(gl, Unit::sums, GL_TEXTURE_2D, texture->name());
+      bind_texture(gl, Unit::sums, GL_TEXTURE_2D, texture->name());
       gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, made_width_, made_height_, 0, GL_RGBA, GL_FLOAT, nullptr);
       gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
       gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -78,10 +78,10 @@ void BrickPasses::draw(const MarchProgram& program, int width, int height, std::
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + GLint(Unit::field)));
     atlas_.make_resident(std::span(order).subspan(from, count));
     const State &before = states_[std::size_t(passes_ + 1) % 2], &after = states_[std::size_t(passes_) % 2];
-    bind(gl, Unit::field, GL_TEXTURE_3D, atlas_.texels());
-    bind(gl, Unit::pages, GL_TEXTURE_3D, atlas_.pages());
-    bind(gl, Unit::sums, GL_TEXTURE_2D, before.sums.name());
-    bind(gl, Unit::progress, GL_TEXTURE_2D, before.progress.name());
+    bind_texture(gl, Unit::field, GL_TEXTURE_3D, atlas_.texels());
+    bind_texture(gl, Unit::pages, GL_TEXTURE_3D, atlas_.pages());
+    bind_texture(gl, Unit::sums, GL_TEXTURE_2D, before.sums.name());
+    bind_texture(gl, Unit::progress, GL_TEXTURE_2D, before.progress.name());
     gl.Uniform1i(program.passes_before, passes_);
     gl.BindFramebuffer(GL_FRAMEBUFFER, after.framebuffer);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);

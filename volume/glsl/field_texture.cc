@@ -11,15 +11,17 @@ namespace understudy::volume::glsl {
 
 namespace {
 
-constexpr int cells = BrickStore::block_cells, row = BrickStore::block_row, slice = BrickStore::block_slice;
+constexpr int cells_of_block = BrickStore::block_cells, row = BrickStore::block_row,
+              slice = BrickStore::block_slice;
 
 }  // namespace
 
 std::array<int, 3> FieldTexture::size_of(const BrickStore& store) {
   std::array<int, 3> size{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int first = store.first_block()[axis] * cells;
-    size[axis] = std::min(store.block_counts()[axis] * cells + 1, store.lattice().cells[axis] + 1 - first);
+    const int first = store.first_block()[axis] * cells_of_block;
+    size[axis] =
+        std::min(store.block_counts()[axis] * cells_of_block + 1, store.lattice().cells[axis] + 1 - first);
   }
   return size;
 }
@@ -54,20 +56,22 @@ FieldTexture::FieldTexture(Device& device, const BrickStore& store)
   std::vector<std::byte> layer(slice_texels * row * format.bytes);
   std::size_t block = 0;
   for (int bz = 0; bz < counts[2]; ++bz) {
-    const int slices = std::min(row, size_[2] - bz * cells);
+    const int slices = std::min(row, size_[2] - bz * cells_of_block);
     for (int by = 0; by < counts[1]; ++by)
       for (int bx = 0; bx < counts[0]; ++bx, ++block) {
-        const int width = std::min(row, size_[0] - bx * cells), height = std::min(row, size_[1] - by * cells);
+        const int width = std::min(row, size_[0] - bx * cells_of_block),
+                  height = std::min(row, size_[1] - by * cells_of_block);
         for (int z = 0; z < slices; ++z)
           for (int y = 0; y < height; ++y) {
             const std::size_t place =
-                (std::size_t(z) * std::size_t(size_[1]) + std::size_t(by * cells + y)) * std::size_t(size_[0]) +
-                std::size_t(bx * cells);
+                (std::size_t(z) * std::size_t(size_[1]) + std::size_t(by * cells_of_block + y)) *
+                    std::size_t(size_[0]) +
+                std::size_t(bx * cells_of_block);
             convert(store.description().type, store.block_data()[block], z * slice + y * row, width,
                     layer.data() + place * format.bytes);
           }
       }
-    upload({0, 0, bz * cells}, {size_[0], size_[1], slices}, layer.data());
+    upload({0, 0, bz * cells_of_block}, {size_[0], size_[1], slices}, layer.data());
   }
   device.check("filling the volume's texture");
 }
@@ -85,9 +89,9 @@ void FieldTexture::blocks_changed(std::span<const std::size_t> blocks) {
   std::vector<std::byte> texels(BrickStore::block_texels * bytes);
   device_.gl().BindTexture(GL_TEXTURE_3D, texture_.name());
   for (const std::size_t block : blocks) {
-    const std::array<int, 3> at{int(block % std::size_t(counts[0])) * cells,
-                                int(block / std::size_t(counts[0]) % std::size_t(counts[1])) * cells,
-                                int(block / std::size_t(counts[0]) / std::size_t(counts[1])) * cells};
+    const std::array<int, 3> at{int(block % std::size_t(counts[0])) * cells_of_block,
+                                int(block / std::size_t(counts[0]) % std::size_t(counts[1])) * cells_of_block,
+                                int(block / std::size_t(counts[0]) / std::size_t(counts[1])) * cells_of_block};
     std::array<int, 3> size{};
     for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = std::min(row, size_[axis] - at[axis]);
     std::byte* to = texels.data();

@@ -31,10 +31,6 @@ namespace {
 
 using Texel4 = std::array<float, 4>;
 
-double largest_texel(TexelType type) {
-  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
-}
-
 /// A table's steepness is what an even ramp over all of a volume's values would have as 1. Beyond so much the
 /// rounding of OpenGL's filter, 1e-6 of these values on llvmpipe, would show.
 constexpr double steepest = 8;

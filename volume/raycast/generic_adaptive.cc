@@ -106,7 +106,7 @@ class PartWalk {
 };
 
 template <typename FieldType>
-void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+void walk_adaptive_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   for (std::size_t ray = 0; ray < packet_rays; ++ray) {
     const Rgba pixel =
         PartWalk<FieldType>(scene, packet, ray).walk(packet.first[ray], packet.last[ray], counts);
@@ -119,11 +119,11 @@ void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, Kerne
 void generic_adaptive(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
+      return walk_adaptive_packet<StoredTexels<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
+      return walk_adaptive_packet<StoredTexels<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_packet<Field<float>>(scene, packet, rgba, counts);
+      return walk_adaptive_packet<StoredTexels<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:  // refused by validate()
       return;
   }

@@ -18,7 +18,7 @@ namespace understudy::volume {
 
 /// A sample of the field in units of the texel type: one component, or RGBA.
 template <typename Texel>
-struct Field {
+struct StoredTexels {
   using Sample = float;
   static Sample read(const std::byte* block, int index) {
     Texel texel;
@@ -119,7 +119,7 @@ class FieldReader {
   typename FieldType::Sample sample() const {
     const std::byte* block = scene_.store->block_data()[block_];
     constexpr int y = BrickStore::block_row, z = BrickStore::block_slice;
-    if constexpr (std::is_same_v<FieldType, Field<std::uint8_t>>)
+    if constexpr (std::is_same_v<FieldType, StoredTexels<std::uint8_t>>)
       if (scene_.filter == Filter::linear_8_bit) return rounded_sample(block);
     if (scene_.filter == Filter::nearest) {
       const int texel = corner_ + (fraction_[0] >= 0.5F ? 1 : 0) + (fraction_[1] >= 0.5F ? y : 0) +

@@ -158,11 +158,11 @@ void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, Kerne
 void generic_kernel(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
+      return walk_packet<StoredTexels<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
+      return walk_packet<StoredTexels<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_packet<Field<float>>(scene, packet, rgba, counts);
+      return walk_packet<StoredTexels<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:
       return walk_packet<Colours>(scene, packet, rgba, counts);
   }

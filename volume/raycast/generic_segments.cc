@@ -221,7 +221,7 @@ class SegmentWalk {
 };
 
 template <typename FieldType>
-void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
+void walk_segment_packet(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   for (std::size_t ray = 0; ray < packet_rays; ++ray) {
     const Rgba pixel = SegmentWalk<FieldType>(scene, packet, ray).walk(counts);
     std::copy(pixel.begin(), pixel.end(), rgba + 4 * ray);
@@ -233,11 +233,11 @@ void walk_packet(const Scene& scene, const RayPacket& packet, float* rgba, Kerne
 void generic_segments(const Scene& scene, const RayPacket& packet, float* rgba, KernelCounts& counts) {
   switch (scene.store->description().type) {
     case TexelType::u8:
-      return walk_packet<Field<std::uint8_t>>(scene, packet, rgba, counts);
+      return walk_segment_packet<StoredTexels<std::uint8_t>>(scene, packet, rgba, counts);
     case TexelType::u16:
-      return walk_packet<Field<std::uint16_t>>(scene, packet, rgba, counts);
+      return walk_segment_packet<StoredTexels<std::uint16_t>>(scene, packet, rgba, counts);
     case TexelType::f32:
-      return walk_packet<Field<float>>(scene, packet, rgba, counts);
+      return walk_segment_packet<StoredTexels<float>>(scene, packet, rgba, counts);
     case TexelType::rgba8:  // refused by validate()
       return;
   }

@@ -17,13 +17,13 @@ namespace {
 
 using Colour = std::array<double, 4>;  // premultiplied
 
-Colour over(const Colour& front, const Colour& back) {
+Colour colour_over(const Colour& front, const Colour& back) {
   const double room = 1 - front[3];
   return {front[0] + room * back[0], front[1] + room * back[1], front[2] + room * back[2],
           front[3] + room * back[3]};
 }
 
-Colour between(const Colour& a, const Colour& b, double s) {
+Colour colour_between(const Colour& a, const Colour& b, double s) {
   Colour mixed;
   for (std::size_t k = 0; k < 4; ++k) mixed[k] = a[k] + s * (b[k] - a[k]);
   return mixed;
@@ -58,11 +58,11 @@ Colour layer(const Colour& colour, double opacity, double way) {
 Colour piece(const Colour& front, const Colour& back, double length, int parts) {
   Colour sum{};
   for (int part = 0; part < parts; ++part) {
-    const Colour from = between(front, back, double(part) / parts),
-                 to = between(front, back, (part + 1.0) / parts);
-    const Colour middle = between(from, to, 0.5);
+    const Colour from = colour_between(front, back, double(part) / parts),
+                 to = colour_between(front, back, (part + 1.0) / parts);
+    const Colour middle = colour_between(from, to, 0.5);
     const double way = length / parts;
-    sum = over(sum, layer(middle, -std::expm1(-way * mean_depth(from[3], to[3])), way));
+    sum = colour_over(sum, layer(middle, -std::expm1(-way * mean_depth(from[3], to[3])), way));
   }
   return sum;
 }
@@ -75,7 +75,7 @@ void rising_segments(const std::vector<Colour>& entries, Segment segment) {
   std::vector<Colour> middles(pieces);
   std::vector<double> depths(pieces);
   for (std::size_t i = 0; i < pieces; ++i) {
-    middles[i] = between(entries[i], entries[i + 1], 0.5);
+    middles[i] = colour_between(entries[i], entries[i + 1], 0.5);
     depths[i] = mean_depth(entries[i][3], entries[i + 1][3]);
   }
   tbb::parallel_for(std::size_t(1), pieces + 1, [&](std::size_t count) {
@@ -87,12 +87,12 @@ void rising_segments(const std::vector<Colour>& entries, Segment segment) {
       piece_at[i] = parts == 1 ? layer(middles[i], -std::expm1(-way * depths[i]), way)
                                : piece(entries[i], entries[i + 1], way, parts);
     for (std::size_t i = 0; i < pieces; ++i)
-      up_to[i] = i % count == 0 ? piece_at[i] : over(up_to[i - 1], piece_at[i]);
+      up_to[i] = i % count == 0 ? piece_at[i] : colour_over(up_to[i - 1], piece_at[i]);
     for (std::size_t i = pieces; i-- > 0;)
-      from[i] = i % count == count - 1 || i + 1 == pieces ? piece_at[i] : over(piece_at[i], from[i + 1]);
+      from[i] = i % count == count - 1 || i + 1 == pieces ? piece_at[i] : colour_over(piece_at[i], from[i + 1]);
     for (std::size_t front = 0; front + count <= pieces; ++front) {
       const std::size_t last = front + count - 1;
-      segment(front, front + count, front % count == 0 ? up_to[last] : over(from[front], up_to[last]));
+      segment(front, front + count, front % count == 0 ? up_to[last] : colour_over(from[front], up_to[last]));
     }
   });
 }
@@ -128,7 +128,7 @@ PreIntegrationTable pre_integrated(const TransferFunction& function) {
       const Rgba& e = function.entries[entry];
       return Colour{e[0], e[1], e[2], e[3]};
     };
-    entries.push_back(between(colour(below), colour(below + 1), place - double(below)));
+    entries.push_back(colour_between(colour(below), colour(below + 1), place - double(below)));
   }
 
   PreIntegrationTable table;

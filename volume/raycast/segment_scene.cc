@@ -88,10 +88,6 @@ std::array<double, 3> reach_between_planes(const VolumeDescription& volume, cons
   return forwards && backwards ? endless : reach;
 }
 
-double units(TexelType type) {
-  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
-}
-
 }  // namespace
 
 bool walks_segments(const RenderRequest& request) {
@@ -166,7 +162,7 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
 
 PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume)
     : model(light),
-      full_slope(float(light.full_slope * units(volume.type))),
+      full_slope(float(light.full_slope * largest_texel(volume.type))),
       inverse_(inverse_of(light.space)) {
   for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = volume.size[axis];
   const double largest =
@@ -209,7 +205,7 @@ SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest&
     : pre_integrated(request.method == Method::pre_integrated),
       lit_samples(request.light && request.light->on_samples) {
   for (const Surface& surface : request.surfaces) {
-    Level level{float(surface.value * units(volume.type)), surface.colour};
+    Level level{float(surface.value * largest_texel(volume.type)), surface.colour};
     for (std::size_t k = 0; k < 3; ++k) level.colour[k] *= level.colour[3];
     levels.push_back(level);
   }

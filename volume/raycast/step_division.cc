@@ -12,10 +12,6 @@ namespace understudy::volume {
 
 namespace {
 
-double units(TexelType type) {
-  return type == TexelType::f32 ? 1 : type == TexelType::u16 ? 65535 : 255;
-}
-
 std::array<double, 4> entry_at(const TransferFunction& function, double place) {
   const auto below = std::min(std::size_t(place), function.entries.size() - 2);
   std::array<double, 4> entry{};
@@ -112,8 +108,8 @@ PartTable::PartTable(const TransferFunction& function, TexelType type) {
   constexpr std::size_t least_pieces = 4095;
   const std::size_t given = function.entries.size() - 1, pieces = pieces_of(function, least_pieces);
   entries_ = pieces + 1;
-  low_ = float(double(function.low) * units(type));
-  const double scale = double(pieces) / ((double(function.high) - double(function.low)) * units(type));
+  low_ = float(double(function.low) * largest_texel(type));
+  const double scale = double(pieces) / ((double(function.high) - double(function.low)) * largest_texel(type));
   scale_ = float(std::min(scale, double(std::numeric_limits<float>::max())));
   rows_.resize(8 * (neutral_entry() + 1));
   for (int divisions = 0; divisions <= most_divisions; ++divisions) {
@@ -136,7 +132,7 @@ StepDivision::StepDivision(const BrickStore& store, const TransferFunction& func
                            double cells)
     : classes_(store.blocks() + 3), divisions_(std::size_t(classes_at_all) * bins + 3) {
   const Roughness roughness(function);
-  const double unit = units(store.description().type);
+  const double unit = largest_texel(store.description().type);
   const double low = double(function.low) * unit;
   const double scale = roughness.last() / ((double(function.high) - double(function.low)) * unit);
   tbb::parallel_for(std::size_t(0), store.blocks(), [&](std::size_t b) {

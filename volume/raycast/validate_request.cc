@@ -29,7 +29,7 @@ template <typename... Args>
 }
 
 template <typename Range>
-bool all_finite(const Range& values) {
+bool are_finite(const Range& values) {
   return std::all_of(values.begin(), values.end(), [](auto v) { return std::isfinite(v); });
 }
 
@@ -48,7 +48,7 @@ void validate_classification(const VolumeDescription& volume, const Classificati
     if (!std::isfinite(function->low) || !std::isfinite(function->high) || !(function->low < function->high))
       refuse("the transfer function spans values {} to {}", function->low, function->high);
     for (const Rgba& entry : function->entries)
-      if (!all_finite(entry)) refuse("the transfer function holds a value that is not finite");
+      if (!are_finite(entry)) refuse("the transfer function holds a value that is not finite");
   } else if (const auto* pairs = std::get_if<PreIntegrationTable>(&classification)) {
     if (volume.type == TexelType::rgba8)
       refuse("a volume of colours needs a linear map, not a pre-integration table");
@@ -59,18 +59,18 @@ void validate_classification(const VolumeDescription& volume, const Classificati
     if (!std::isfinite(pairs->low) || !std::isfinite(pairs->high) || !(pairs->low < pairs->high))
       refuse("the pre-integration table spans values {} to {}", pairs->low, pairs->high);
     for (const Rgba& entry : pairs->entries)
-      if (!all_finite(entry)) refuse("the pre-integration table holds a value that is not finite");
+      if (!are_finite(entry)) refuse("the pre-integration table holds a value that is not finite");
   } else {
     const LinearMap& map = std::get<LinearMap>(classification);
     if (volume.type != TexelType::rgba8)
       refuse("a scalar field needs a transfer function, not a linear map of colours");
-    if (!all_finite(map.matrix) || std::isnan(map.alpha_above))
+    if (!are_finite(map.matrix) || std::isnan(map.alpha_above))
       refuse("the map of colours holds a value that is not finite");
   }
 }
 
 void validate_steps(const RaySteps& steps, const Box& region) {
-  if (!all_finite(steps.metric) || !std::isfinite(steps.first) || !std::isfinite(steps.rounding) ||
+  if (!are_finite(steps.metric) || !std::isfinite(steps.first) || !std::isfinite(steps.rounding) ||
       !std::isfinite(steps.past_depth))
     refuse("the steps along rays hold a value that is not finite");
   const auto row = [&](std::size_t r) {
@@ -123,8 +123,8 @@ void validate_slice_segment(const VolumeDescription& volume, const RenderRequest
   if (request.steps) refuse("segments lie on planes, not on steps along rays");
   if (request.fog) refuse("there is no fog with segments");
   const SliceSegment& slice_segment = *request.slice_segment;
-  if (!std::isfinite(slice_segment.planes) || !all_finite(slice_segment.offset) ||
-      !all_finite(slice_segment.reach))
+  if (!std::isfinite(slice_segment.planes) || !are_finite(slice_segment.offset) ||
+      !are_finite(slice_segment.reach))
     refuse("the segments hold a value that is not finite");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double cells = slice_segment.reach[axis] * volume.size[axis];
@@ -163,23 +163,23 @@ void validate_fog(const Fog& fog, Operator op) {
   if (fog.entries.size() < 2 || fog.entries.size() > max_table_entries)
     refuse("the fog has {} entries (2 to {} are possible)", fog.entries.size(), max_table_entries);
   for (const Rgba& entry : fog.entries)
-    if (!all_finite(entry)) refuse("the fog holds a value that is not finite");
-  if (!all_finite(fog.normal) || !std::isfinite(fog.offset))
+    if (!are_finite(entry)) refuse("the fog holds a value that is not finite");
+  if (!are_finite(fog.normal) || !std::isfinite(fog.offset))
     refuse("the direction of the fog holds a value that is not finite");
 }
 
 void validate_camera(const RenderRequest& request) {
-  if (!all_finite(request.texture_to_clip))
+  if (!are_finite(request.texture_to_clip))
     refuse("the matrix from texture to clip space holds a value that is not finite");
   if (!inverse(request.texture_to_clip)) refuse("the matrix from texture to clip space is singular");
   if (!believable(request.viewport) || !believable(request.window) || request.viewport.empty())
     refuse("viewport of {} x {} pixels at ({}, {})", request.viewport.width, request.viewport.height,
            request.viewport.x, request.viewport.y);
-  if (!all_finite(request.depth_range)) refuse("the depth range holds a value that is not finite");
+  if (!are_finite(request.depth_range)) refuse("the depth range holds a value that is not finite");
 }
 
 void validate_planes(const SlicePlanes& planes) {
-  if (!all_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
+  if (!are_finite(planes.normal) || !std::isfinite(planes.first) || !std::isfinite(planes.spacing))
     refuse("the slice planes hold a value that is not finite");
   if (!(length(planes.normal) > 0)) refuse("the slice planes have no direction");
 }
@@ -197,7 +197,7 @@ void validate_places(const RenderRequest& request) {
 
 /// What of the volume is shown: the region of the slices, on one side of each clip plane.
 void validate_region(const VolumeDescription& volume, const RenderRequest& request) {
-  if (!all_finite(request.region.low) || !all_finite(request.region.high))
+  if (!are_finite(request.region.low) || !are_finite(request.region.high))
     refuse("the region of the slices holds a value that is not finite");
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double slack = 1e-6;
@@ -209,7 +209,7 @@ void validate_region(const VolumeDescription& volume, const RenderRequest& reque
   if (request.clip_planes.size() > max_clip_planes)
     refuse("{} clip planes (at most {} are possible)", request.clip_planes.size(), max_clip_planes);
   for (const HalfSpace& plane : request.clip_planes)
-    if (!all_finite(plane.normal) || !std::isfinite(plane.offset))
+    if (!are_finite(plane.normal) || !std::isfinite(plane.offset))
       refuse("a clip plane holds a value that is not finite");
 }
 

@@ -13,7 +13,7 @@ bool dark(const std::array<double, 4>& entry) {
   return std::all_of(entry.begin(), entry.end(), [](double v) { return v == 0; });
 }
 
-void demand(bool holds, const char* what) {
+void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(what);
 }
 
@@ -21,13 +21,13 @@ void demand(bool holds, const char* what) {
 
 Medium::Medium(double low, double high, std::vector<std::array<double, 4>> entries, double distance)
     : entries_(std::move(entries)), distance_(distance) {
-  demand(!entries_.empty(), "a table needs an entry");
-  demand(std::isfinite(low) && std::isfinite(high) && (entries_.size() == 1 || low < high),
-         "a table's range must be finite, and its low end below its high end");
+  require(!entries_.empty(), "a table needs an entry");
+  require(std::isfinite(low) && std::isfinite(high) && (entries_.size() == 1 || low < high),
+          "a table's range must be finite, and its low end below its high end");
   for (const auto& entry : entries_) {
     for (const double v : entry)
-      demand(std::isfinite(v) && v >= 0, "a table's entries must be finite and not negative");
-    demand(distance_ == 0 || entry[3] <= 1, "an opacity must not be above 1");
+      require(std::isfinite(v) && v >= 0, "a table's entries must be finite and not negative");
+    require(distance_ == 0 || entry[3] <= 1, "an opacity must not be above 1");
   }
   const std::size_t n = entries_.size();
   for (std::size_t i = 0; i < n; ++i)
@@ -49,7 +49,7 @@ Medium Medium::of_rates(double low, double high, const std::vector<Rate>& entrie
 }
 
 Medium Medium::of_samples(const TransferFunction& function, double distance) {
-  demand(distance > 0 && std::isfinite(distance), "the distance between samples must be positive");
+  require(distance > 0 && std::isfinite(distance), "the distance between samples must be positive");
   std::vector<std::array<double, 4>> entries;
   entries.reserve(function.entries.size());
   for (const Rgba& entry : function.entries) entries.push_back({entry[0], entry[1], entry[2], entry[3]});

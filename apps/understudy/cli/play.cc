@@ -23,18 +23,18 @@ namespace understudy::launcher {
 namespace {
 
 /// Different faults of a trace that are said; more are only counted.
-constexpr std::size_t most_faults_told = 20;
+constexpr std::size_t most_faults_of_play = 20;
 
 /// One line that rewrites itself, where somebody may be looking at it.
-class Progress {
+class PlayProgress {
  public:
-  explicit Progress(const std::filesystem::path& trace)
+  explicit PlayProgress(const std::filesystem::path& trace)
       : bytes_(std::filesystem::file_size(trace)), shown_(isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
+  ~PlayProgress() {
     if (told_) fmt::print(stderr, "\r\033[K");
   }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  PlayProgress(const PlayProgress&) = delete;
+  PlayProgress& operator=(const PlayProgress&) = delete;
 
   void tell(std::uint64_t offset, std::uint64_t frames) {
     const std::uint64_t percent = bytes_ == 0 ? 100 : 100 * offset / bytes_;
@@ -103,7 +103,7 @@ class Playing {
 
   void tell(const std::string& fault, const std::string& kind) {
     ++played_.errors;
-    if (told_.size() < most_faults_told && told_.insert(kind).second)
+    if (told_.size() < most_faults_of_play && told_.insert(kind).second)
       logging::log(logging::Level::warn, "{}: {}", plan_.trace.string(), fault);
   }
 
@@ -130,7 +130,7 @@ class Playing {
 
   const PlayPlan plan_;
   spu::TraceReader reader_;
-  Progress progress_;
+  PlayProgress progress_;
   const std::unique_ptr<OffscreenContexts> windows_;
   spu::Player player_;
   Played played_;

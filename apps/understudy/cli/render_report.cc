@@ -10,16 +10,12 @@
 #include <stdexcept>
 
 #include "apps/understudy/file_scene/file_scene.h"
+#include "apps/understudy/study/median.h"
 
 namespace understudy::launcher {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values.empty() ? 0 : values[values.size() / 2];
-}
 
 const char* name_of(volume::TexelType type) {
   return type == volume::TexelType::u8 ? "u8" : type == volume::TexelType::u16 ? "u16" : "f32";

@@ -12,16 +12,13 @@
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/trace_option.h"
 #include "apps/understudy/launch/backend_option.h"
+#include "apps/understudy/launch/say.h"
 #include "compositor/logging/log.h"
 #include "spu/former_names.h"
 #include "spu/options.h"
 
 namespace understudy::launcher {
 namespace {
-
-void say(const std::string& line) {
-  logging::log(logging::Level::info, "{}", line);
-}
 
 int run_viewer(RunArguments arguments, const std::vector<std::string>& command) {
   if (command.empty()) {

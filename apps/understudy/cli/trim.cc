@@ -24,7 +24,7 @@ namespace understudy::launcher {
 namespace {
 
 /// Different faults of a trace that are said.
-constexpr std::size_t most_faults_told = 20;
+constexpr std::size_t most_faults_of_trim = 20;
 
 /// Calls `take(record, frame)` for every record up to the end of frame `last`; frames count from 1.
 template <class Take>
@@ -101,7 +101,7 @@ class Faults {
  public:
   explicit Faults(const std::filesystem::path& trace) : trace_(trace) {}
   void tell(const std::string& fault) {
-    if (fault.empty() || told_.size() >= most_faults_told || !told_.insert(fault).second) return;
+    if (fault.empty() || told_.size() >= most_faults_of_trim || !told_.insert(fault).second) return;
     logging::log(logging::Level::warn, "{}: {}; the record is kept as it is", trace_.string(), fault);
   }
 

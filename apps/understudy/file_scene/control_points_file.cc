@@ -11,18 +11,16 @@
 namespace understudy::launcher {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::uintmax_t max_file_bytes = std::uintmax_t(1) << 20;
 
-double number(const Json& from, const char* name) {
+double number(const nlohmann::json& from, const char* name) {
   const auto found = from.find(name);
   if (found == from.end() || !found->is_number())
     throw std::runtime_error(fmt::format("'{}' is missing or no number", name));
   return found->get<double>();
 }
 
-volume::TransferControlPoints::ControlPoint control_point_in(const Json& from) {
+volume::TransferControlPoints::ControlPoint control_point_in(const nlohmann::json& from) {
   volume::TransferControlPoints::ControlPoint point;
   point.at = number(from, "at");
   point.opacity = number(from, "opacity");
@@ -46,7 +44,7 @@ volume::TransferControlPoints control_points_in(const nlohmann::json& json) {
   control_points.of_values = positions == "values";
   const auto list = json.find("knots");
   if (list == json.end() || !list->is_array()) throw std::runtime_error("there is no list 'knots'");
-  for (const Json& entry : *list) {
+  for (const nlohmann::json& entry : *list) {
     try {
       control_points.control_points.push_back(control_point_in(entry));
     } catch (const std::exception& error) {
@@ -66,8 +64,8 @@ volume::TransferControlPoints read_control_points(const std::string& file_or_nam
       throw std::runtime_error(
           fmt::format("has more than {} bytes; give fewer control points", max_file_bytes));
     std::ifstream file(file_or_name);
-    return control_points_in(Json::parse(file));
-  } catch (const Json::exception& error) {
+    return control_points_in(nlohmann::json::parse(file));
+  } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(
         fmt::format("{}: not a transfer function: {}; as in {{\"knots\": [{{\"at\": 0, \"colour\": "
                     "[0, 0, 0], \"opacity\": 0}}, …]}}",

@@ -27,11 +27,11 @@ namespace {
 using compositor::Clock;
 using compositor::FileDescriptor;
 
-constexpr std::chrono::seconds patience_with_ends{1};
+constexpr std::chrono::seconds patience_with_end{1};
 
-using ClientProcesses = std::list<ClientProcess>;
+using ClientProcessList = std::list<ClientProcess>;
 
-void reap(ClientProcesses& clients) {
+void reap(ClientProcessList& clients) {
   clients.remove_if([](ClientProcess& client) {
     const std::optional<Ending> ending = client.poll_ending();
     if (ending && WIFSIGNALED(ending->status) && WTERMSIG(ending->status) != SIGTERM)
@@ -40,7 +40,7 @@ void reap(ClientProcesses& clients) {
   });
 }
 
-bool asked_to_end(SignalInbox& inbox, ClientProcesses& clients) {
+bool asked_to_end(SignalInbox& inbox, ClientProcessList& clients) {
   while (const std::optional<ReceivedSignal> received = inbox.next()) {
     if (received->number != SIGCHLD) return true;
     reap(clients);
@@ -50,8 +50,8 @@ bool asked_to_end(SignalInbox& inbox, ClientProcesses& clients) {
 
 /// Processes of clients that have just gone have figures to write. The others end together, and whatever they
 /// do with signals.
-void end_all(ClientProcesses& clients) {
-  const auto until = Clock::now() + patience_with_ends;
+void end_all(ClientProcessList& clients) {
+  const auto until = Clock::now() + patience_with_end;
   for (reap(clients); !clients.empty() && Clock::now() < until; reap(clients))
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   for (const ClientProcess& client : clients) client.kill();
@@ -88,7 +88,7 @@ void serve_clients(const std::string& socket) {
   SignalInbox inbox({SIGTERM, SIGINT, SIGHUP, SIGCHLD});
   FileDescriptor listener = compositor::listen_at(socket);
   const compositor::SocketFile file(socket);
-  ClientProcesses clients;
+  ClientProcessList clients;
   while (!asked_to_end(inbox, clients)) {
     std::vector<pollfd> waiting = {{listener.get(), POLLIN, 0}, {inbox.descriptor(), POLLIN, 0}};
     for (const ClientProcess& client : clients) waiting.push_back({client.channel(), POLLIN, 0});

@@ -56,7 +56,7 @@ using compositor::Message;
 using compositor::MessageType;
 namespace limits = compositor::limits;
 
-constexpr std::chrono::seconds patience_with_start{10};
+constexpr std::chrono::seconds patience_with_client{10};
 /// Different faults of a stream that are said.
 constexpr std::size_t most_faults_told = 20;
 
@@ -325,7 +325,7 @@ std::unique_ptr<ChildProcess> start_gl_server(const Installation& installation,
   auto server = std::make_unique<ChildProcess>(
       Command{.arguments = {installation.programs / "understudy", "gl-server", "--socket", socket},
               .environment = std::move(environment)});
-  const auto until = Clock::now() + patience_with_start;
+  const auto until = Clock::now() + patience_with_client;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {
     if (const auto ending = server->wait_for_ending(5))

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "apps/understudy/launch/say.h"
 #include "apps/understudy/processes/client_processes.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/signal_inbox.h"
@@ -34,11 +35,7 @@ using compositor::Listener;
 using compositor::TcpConnection;
 namespace limits = compositor::limits;
 
-constexpr std::chrono::seconds patience_with_start{10};
-
-void say(const std::string& line) {
-  logging::log(logging::Level::info, "{}", line);
-}
+constexpr std::chrono::seconds patience_with_listener{10};
 
 /// The file in which a listener says where it listens.
 std::filesystem::path address_file(const std::filesystem::path& folder) {
@@ -134,7 +131,7 @@ OpenListener start_listener(const Installation& installation, const ListenerPlan
   if (plan.plain) words.emplace_back("--plain");
   OpenListener listener{
       std::make_unique<ChildProcess>(Command{.arguments = words, .environment = current_environment()}), {}};
-  const auto until = Clock::now() + patience_with_start;
+  const auto until = Clock::now() + patience_with_listener;
   while (!std::filesystem::exists(address_file(plan.folder))) {
     if (const auto ending = listener.process->wait_for_ending(5))
       throw std::runtime_error(

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apps/understudy/hosts/mpirun_command.h"
+#include "apps/understudy/launch/say.h"
 #include "apps/understudy/processes/environment.h"
 #include "compositor/logging/log.h"
 #include "compositor/service/backend_line.h"
@@ -30,10 +31,6 @@ constexpr const char* nodes_log = "nodes.log";
 /// In the private folder, and told to nobody but the nodes.
 constexpr const char* ranks_socket = "ranks.sock";
 constexpr std::size_t max_backend_choices = 1024;
-
-void say(const std::string& line) {
-  logging::log(logging::Level::info, "{}", line);
-}
 
 std::filesystem::path log_of(const NodeGroupPlan& plan) {
   return plan.folder / nodes_log;

@@ -37,7 +37,7 @@ using compositor::FileDescriptor;
 using compositor::TcpConnection;
 namespace limits = compositor::limits;
 
-constexpr std::chrono::seconds patience_with_start{10};
+constexpr std::chrono::seconds patience_with_relay{10};
 constexpr std::array<const char*, 3> layout_names = {"float", "half", "byte"};
 
 compositor::Credentials credentials_of(const ConnectionPlan& plan) {
@@ -144,7 +144,7 @@ std::unique_ptr<ChildProcess> start_relay(const Installation& installation, cons
   if (plan.connection_request.plain) words.emplace_back("--plain");
   auto relay = std::make_unique<ChildProcess>(
       Command{.arguments = words, .environment = current_environment(), .own_group = true});
-  const auto until = Clock::now() + patience_with_start;
+  const auto until = Clock::now() + patience_with_relay;
   std::error_code unreadable;
   while (!std::filesystem::is_socket(socket, unreadable)) {
     if (const auto ending = relay->wait_for_ending(5))

@@ -25,6 +25,7 @@
 #include "apps/understudy/launch/relay.h"
 #include "apps/understudy/launch/run_figures.h"
 #include "apps/understudy/launch/run_folder.h"
+#include "apps/understudy/launch/say.h"
 #include "apps/understudy/processes/child_process.h"
 #include "apps/understudy/processes/environment.h"
 #include "apps/understudy/processes/installation.h"
@@ -50,10 +51,6 @@ constexpr const char* remote_chain = "pack remote";
 
 bool stands_in_viewer(const std::string& chain) {
   return spu::parse_chain(chain).back().name == "remote";
-}
-
-void say(const std::string& line) {
-  logging::log(logging::Level::info, "{}", line);
 }
 
 /// The options of this run: the environment's, and over them the command line's.

@@ -13,6 +13,7 @@
 
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/study/median.h"
 #include "apps/understudy/study/viewer_command.h"
 #include "spu/report/optimization.h"
 
@@ -58,11 +59,6 @@ struct Shown {
   std::uint64_t left_out = 0, done = 0;
   fs::path images;
 };
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 Shown show(const Scene& scene, const Show& how, const fs::path& folder, bool nevertheless) {
   const char* const item = spu::text_of(how.optimization).name;

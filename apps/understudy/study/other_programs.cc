@@ -13,6 +13,7 @@
 
 #include "apps/understudy/images/image.h"
 #include "apps/understudy/processes/installation.h"
+#include "apps/understudy/study/median.h"
 #include "apps/understudy/study/viewer_command.h"
 #include "volume/image.h"
 
@@ -21,13 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int viewer_frames = 9, frames_that_settle = 3, vtk_frames = 3;
+constexpr int viewer_frames = 9, frames_until_settled = 3, vtk_frames = 3;
 constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages are for
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 fs::path vtk_script() {
   return this_installation().programs.parent_path() / "share" / "understudy" / "vtk_mappers.py";
@@ -85,7 +81,7 @@ OtherPrograms::Drawn OtherPrograms::bare_viewer(const Scene& scene) const {
     if (const std::size_t colon = line.find(": "); line.starts_with("frame ") && colon != std::string::npos)
       times.push_back(std::stod(line.substr(colon + 2)));
   if (int(times.size()) != viewer_frames) throw std::runtime_error("understudy-viewer printed no times");
-  times.erase(times.begin(), times.begin() + frames_that_settle);
+  times.erase(times.begin(), times.begin() + frames_until_settled);
 
   Drawn drawn{median(std::move(times)), volume::Image({0, 0, scene.edge(), scene.edge()})};
   const RgbaImage image = read_image(screenshot);

@@ -47,12 +47,12 @@ struct StudyArguments {
 };
 
 /// A bar on a terminal, else a line for every scene.
-class Progress {
+class StudyProgress {
  public:
-  explicit Progress(std::size_t scenes) : scenes_(scenes), bar_(::isatty(STDERR_FILENO) != 0) {}
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress() {
+  explicit StudyProgress(std::size_t scenes) : scenes_(scenes), bar_(::isatty(STDERR_FILENO) != 0) {}
+  StudyProgress(const StudyProgress&) = delete;
+  StudyProgress& operator=(const StudyProgress&) = delete;
+  ~StudyProgress() {
     if (bar_ && shown_) std::fputc('\n', stderr);
   }
 
@@ -172,7 +172,7 @@ bool study_setting(const Setting& setting, Scene& scene, SceneResults& results, 
 
 void study_scene(const SceneDescription& description, SceneResults& results, Results& all,
                  const fs::path& folder, const StudyArguments& arguments, OtherPrograms* others,
-                 bool with_savings, Progress& progress) {
+                 bool with_savings, StudyProgress& progress) {
   const std::vector<Setting> missing = missing_settings(results, arguments.quick, others);
   const bool optimizations_of =
       with_savings &&
@@ -278,7 +278,7 @@ int run_study(const StudyArguments& arguments) {
   const auto from_file = std::ranges::find_if(
       scenes, [](const SceneDescription& scene) { return !scene.volume.starts_with("synthetic:"); });
   const std::size_t looked_into = from_file == scenes.end() ? 0 : std::size_t(from_file - scenes.begin());
-  Progress progress(scenes.size());
+  StudyProgress progress(scenes.size());
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SceneDescription& scene = scenes[i];
     std::erase_if(results.scenes, [&](const SceneResults& earlier) {

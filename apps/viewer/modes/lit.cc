@@ -10,7 +10,7 @@ namespace viewer {
 namespace {
 
 // Central differences over one voxel; where the field is flat there is no surface, and no shade.
-constexpr const char* fragment_source = R"(#version 120
+constexpr const char* lit_fragment_source = R"(#version 120
 uniform sampler3D volume;
 uniform sampler1D table;
 uniform vec3 voxel;
@@ -31,7 +31,7 @@ class LitMode : public Mode {
   LitMode(const Texels& texels, const std::string& file)
       : format_(luminance_format(texels.format)),
         volume_(make_volume_texture(format_, texels.size, texels.data.data(), file)),
-        slices_("lit", nullptr, fragment_source) {
+        slices_("lit", nullptr, lit_fragment_source) {
     glUseProgram(slices_.program());
     glUniform3f(glGetUniformLocation(slices_.program(), "voxel"), 1.0F / static_cast<float>(texels.size[0]),
                 1.0F / static_cast<float>(texels.size[1]), 1.0F / static_cast<float>(texels.size[2]));

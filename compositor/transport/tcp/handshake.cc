@@ -20,7 +20,7 @@ static_assert(sizeof(Mac) == proof_bytes);
 
 constexpr std::array<char, 8> magic = {'U', 'N', 'D', 'E', 'R', 'L', 'N', 'K'};
 
-struct Hello {
+struct HandshakeHello {
   std::array<char, 8> magic_number = magic;
   std::uint32_t version = tcp_protocol_version;
   std::uint8_t to = 0;
@@ -29,7 +29,7 @@ struct Hello {
   std::uint8_t flags = 0;
   Nonce nonce{};
 };
-static_assert(sizeof(Hello) == hello_bytes);
+static_assert(sizeof(HandshakeHello) == hello_bytes);
 
 struct Challenge {
   std::array<char, 8> magic_number = magic;
@@ -127,7 +127,7 @@ std::vector<std::byte> ServerHandshake::answer(std::span<const std::byte> messag
 }
 
 void ServerHandshake::take_hello(std::span<const std::byte> message) {
-  const auto hello = words_of<Hello>(message);
+  const auto hello = words_of<HandshakeHello>(message);
   if (hello.magic_number != magic) throw HandshakeFailed("it is no program of Understudy");
   if (hello.version != tcp_protocol_version) {
     last_words_ = buffer_of(Challenge{});
@@ -184,7 +184,7 @@ std::vector<std::byte> ServerHandshake::verdict(AdmissionVerdict verdict) const 
 ClientHandshake::ClientHandshake(const Credentials& credentials, const ConnectionRequest& connection_request,
                                  std::uint32_t version)
     : credentials_(&credentials), version_(version), plain_(connection_request.plain) {
-  Hello hello;
+  HandshakeHello hello;
   hello.version = version;
   hello.to = std::uint8_t(connection_request.to);
   hello.pixels = std::uint8_t(connection_request.pixels);

@@ -11,6 +11,7 @@
 
 #include "compositor/rendered.h"
 #include "compositor/service.h"
+#include "spu/volume/timing/milliseconds_since.h"
 #include "volume/footprint.h"
 #include "volume/image.h"
 #include "volume/raycast/segment_scene.h"
@@ -42,10 +43,6 @@ constexpr std::size_t least_integrals = 64;
 constexpr double patience_with_integrals_ms = 5000;
 constexpr std::size_t spread_pixels = 64;
 constexpr std::size_t worst_pixels = 8;  ///< of each setting
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::array<float, 4> pixel_of(const ImageView& image, const Pixel& pixel) {
   const volume::Rect& rect = image.rect;

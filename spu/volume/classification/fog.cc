@@ -9,7 +9,7 @@ namespace understudy::spu {
 namespace {
 
 /// Half a step of an 8-bit framebuffer: what interpolating the number may cost, and what nobody sees.
-constexpr float same_colour = 2e-3F;
+constexpr float same_as_fog = 2e-3F;
 /// Entries whose colours tell the fog from what it covers.
 constexpr std::size_t most_samples = 8;
 /// Every so many values along the number make one entry.
@@ -91,7 +91,7 @@ std::optional<volume::Rgba> fog_at(const Samples& seen, bool premultiplied, std:
     for (std::size_t c = 0; c < 3; ++c) {
       const float r = premultiplied ? sample[v][3] : 1.0F;
       const float expected = entry[3] * sample[clearest][c] + r * entry[c];
-      if (!(std::abs(expected - sample[v][c]) <= same_colour)) return std::nullopt;
+      if (!(std::abs(expected - sample[v][c]) <= same_as_fog)) return std::nullopt;
     }
   }
   return entry;
@@ -107,7 +107,7 @@ std::optional<MeasuredFog> measure_fog(const std::vector<volume::Rgba>& table, b
     seen.push_back(colours(entry));
     for (volume::Rgba& colour : seen.back()) {
       colour = clamped(colour);
-      if (!(std::abs(colour[3] - seen.back().front()[3]) <= same_colour)) return std::nullopt;
+      if (!(std::abs(colour[3] - seen.back().front()[3]) <= same_as_fog)) return std::nullopt;
     }
   }
   if (seen.empty()) return std::nullopt;

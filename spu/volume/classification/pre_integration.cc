@@ -13,7 +13,7 @@ constexpr int coarse_edge = 255 + 1;
 
 /// Between entries of a coarse table colours may be off by about a step of 8 bits, to which drivers round where
 /// a texture holds no more; but on the average by next to nothing.
-constexpr double same_colour = 4e-3;
+constexpr double same_entry = 4e-3;
 constexpr double same_mean = 1e-4;
 
 float value_at(const std::array<float, 2>& range, int entry) {
@@ -44,7 +44,7 @@ bool coarse_suffices(const volume::PreIntegrationTable& fine) {
              entry_at(fine, front - x, back + y)[c] + entry_at(fine, front + x, back + y)[c]) /
             4;
         const double off = told - entry_at(fine, front, back)[c];
-        if (!(std::abs(off) <= same_colour)) return false;
+        if (!(std::abs(off) <= same_entry)) return false;
         sum += off;
       }
     }

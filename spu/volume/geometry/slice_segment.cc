@@ -12,7 +12,7 @@ namespace {
 using volume::Vec3;
 
 /// Coordinates are floats of [0,1], and what a vertex shader adds up of them.
-constexpr double same_place = 4e-6;
+constexpr double same_coordinate = 4e-6;
 /// A second sample further away than this belongs to something else.
 constexpr double longest = 0.25;
 
@@ -36,7 +36,7 @@ bool all_near(const std::vector<Way>& ways, const auto& expected) {
   return std::all_of(ways.begin(), ways.end(), [&](const Way& way) {
     const Vec3 there = expected(way);
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!(std::abs(way.to[k] - there[k]) <= same_place)) return false;
+      if (!(std::abs(way.to[k] - there[k]) <= same_coordinate)) return false;
     }
     return true;
   });
@@ -52,7 +52,7 @@ std::optional<volume::SliceSegment> slice_segment_of(const std::vector<Way>& way
     planes_between += volume::dot(planes.normal, way.to) / planes.spacing;
     for (std::size_t k = 0; k < 3; ++k) {
       slice_segment.offset[k] += way.to[k];
-      slice_segment.reach[k] = std::max(slice_segment.reach[k], std::abs(way.to[k]) + same_place);
+      slice_segment.reach[k] = std::max(slice_segment.reach[k], std::abs(way.to[k]) + same_coordinate);
     }
   }
   for (double& component : slice_segment.offset) component /= double(ways.size());

@@ -18,7 +18,7 @@ using volume::TexelBox;
 /// is another lattice.
 constexpr double same_texel = 0.05;
 /// Coordinates this close, in texels, are the same.
-constexpr double same_place = 0.01;
+constexpr double same_brick_place = 0.01;
 /// Of the box around all regions at least so much must be filled; the rest may be gaps as wide as slices are
 /// apart. Whether the slices really fill a box is asked of them later.
 constexpr double least_filled = 0.5;
@@ -39,7 +39,7 @@ double volume_of(const volume::Box& box) {
 
 bool overlap(const volume::Box& a, const volume::Box& b) {
   for (std::size_t k = 0; k < 3; ++k) {
-    if (std::min(a.high[k], b.high[k]) - std::max(a.low[k], b.low[k]) < same_place) return false;
+    if (std::min(a.high[k], b.high[k]) - std::max(a.low[k], b.low[k]) < same_brick_place) return false;
   }
   return true;
 }
@@ -58,8 +58,9 @@ TexelBox texels_read(const volume::Box& region, const std::array<int, 3>& size, 
   TexelBox box;
   for (std::size_t k = 0; k < 3; ++k) {
     const double n = size[k];
-    box.low[k] = int(std::floor(std::clamp(region.low[k] * n - reach + same_place, 0.0, n - 1)));
-    box.high[k] = int(std::ceil(std::clamp(region.high[k] * n + reach - same_place, box.low[k] + 1.0, n)));
+    box.low[k] = int(std::floor(std::clamp(region.low[k] * n - reach + same_brick_place, 0.0, n - 1)));
+    box.high[k] =
+        int(std::ceil(std::clamp(region.high[k] * n + reach - same_brick_place, box.low[k] + 1.0, n)));
   }
   return box;
 }
@@ -129,8 +130,8 @@ std::variant<Tiling, std::string> find_tiling(std::span<const DrawnBrick> bricks
     for (std::size_t k = 0; k < 3; ++k) {
       const int first = tiling.places[i].origin[k];
       const int end = first + bricks[i].size[k];
-      const bool beyond_low = regions[i].low[k] - reach < first - same_place;
-      const bool beyond_high = regions[i].high[k] + reach > end + same_place;
+      const bool beyond_low = regions[i].low[k] - reach < first - same_brick_place;
+      const bool beyond_high = regions[i].high[k] + reach > end + same_brick_place;
       if ((beyond_low || beyond_high) && wrap[k] == volume::Wrap::repeat) return "a brick's texture repeats";
       if ((beyond_low && first != all.low[k]) || (beyond_high && end != all.high[k]))
         return "a brick's faces show: it does not hold its neighbour's texels";

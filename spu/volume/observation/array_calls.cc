@@ -11,7 +11,7 @@ namespace {
 
 /// The table below, with the run closed where it still needs the arrays as they are.
 const DispatchTable& before_change() {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   if (observer.run_open() && (observer.run().reads_arrays || observer.run().inside_begin)) observer.close_run();
   return observer.next();
 }
@@ -47,7 +47,7 @@ bool is_about_arrays(GLenum name) {
 
 /// The table below, with the run closed unless the answer is about arrays.
 const DispatchTable& before_question(GLenum name) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   if (observer.run_open() && (!is_about_arrays(name) || observer.run().inside_begin)) observer.close_run();
   return observer.next();
 }
@@ -58,7 +58,7 @@ void APIENTRY get_integer(GLenum name, GLint* value) {
 void APIENTRY get_pointer(GLenum name, void** value) {
   before_question(name).GetPointerv(name, value);
 }
-GLboolean APIENTRY is_enabled(GLenum name) {
+GLboolean APIENTRY is_enabled_after_slices(GLenum name) {
   return before_question(name).IsEnabled(name);
 }
 void APIENTRY get_attribute(GLuint index, GLenum name, GLint* value) {
@@ -78,7 +78,7 @@ void APIENTRY get_buffer_64(GLenum target, GLenum name, GLint64* value) {
 }
 
 void APIENTRY bind_buffer(GLenum target, GLuint buffer) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   if (target == GL_ARRAY_BUFFER || target == GL_ELEMENT_ARRAY_BUFFER) {
     before_change().BindBuffer(target, buffer);
   } else {
@@ -111,7 +111,7 @@ void APIENTRY attribute_pointer(GLuint index, GLint size, GLenum type, GLboolean
 void fill_array_calls(DispatchTable& table) {
   table.GetIntegerv = get_integer;
   table.GetPointerv = get_pointer;
-  table.IsEnabled = is_enabled;
+  table.IsEnabled = is_enabled_after_slices;
   table.GetVertexAttribiv = get_attribute;
   table.GetVertexAttribPointerv = get_attribute_pointer;
   if (table.GetBufferParameteriv != nullptr) table.GetBufferParameteriv = get_buffer;

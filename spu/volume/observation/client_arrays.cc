@@ -61,12 +61,12 @@ float component(const std::byte* from, GLenum type, bool normalised) {
   }
 }
 
-struct FixedArrayNames {
+struct FixedPointerNames {
   GLenum enable, size, type, stride, buffer, pointer;
 };
 
 bool add_fixed(const DispatchTable& gl, ArraySources& sources, int& in_buffers, MemoryArray array,
-               const FixedArrayNames& names) {
+               const FixedPointerNames& names) {
   if (!gl.IsEnabled(names.enable)) return true;
   GLint value = 0;
   if (names.size != 0) gl.GetIntegerv(names.size, &array.components);

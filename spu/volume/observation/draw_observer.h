@@ -25,6 +25,9 @@ class DrawObserver : public Unit {
 
   explicit DrawObserver(Chain& chain) : chain_(chain) {}
 
+  /// That of the chain that is current on this thread, which has one.
+  static DrawObserver& current() { return *Chain::current()->find<DrawObserver>(); }
+
   const char* tag_address() const final { return &tag; }
   void settle() final {
     close_run();

@@ -26,13 +26,9 @@ namespace {
 /// More elements in one draw than this are no slices.
 constexpr GLsizei most_elements = 1 << 22;
 
-DrawObserver& here() {
-  return *Chain::current()->find<DrawObserver>();
-}
-
 struct CloseRun {
   static const DispatchTable& before(CallId call) {
-    DrawObserver& observer = here();
+    DrawObserver& observer = DrawObserver::current();
     observer.close_run();
     if (!passes_held_runs(call)) observer.settle_held();
     // The call may be one that is looked at in the phase that is entered now.
@@ -43,7 +39,7 @@ struct CloseRun {
 
 template <auto Slot>
 void APIENTRY switch_capability(GLenum capability) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   observer.close_run();
   if (!passes_held_runs(capability)) observer.settle_held();
   (observer.next().*Slot)(capability);
@@ -51,7 +47,7 @@ void APIENTRY switch_capability(GLenum capability) {
 
 struct IntoRun {
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
-    DrawObserver& observer = here();
+    DrawObserver& observer = DrawObserver::current();
     if (observer.run_open()) {
       observer.run().set_attribute(call, words);
     } else {
@@ -69,7 +65,7 @@ bool joins_run(DrawObserver& observer) {
 }
 
 void APIENTRY begin(GLenum mode) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer)) {
     observer.inside_begin = true;
     return observer.next().Begin(mode);
@@ -81,7 +77,7 @@ void APIENTRY begin(GLenum mode) {
 }
 
 void APIENTRY end_in_run() {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!observer.run_open()) return observer.next().End();
   Run& run = observer.run();
   append_call(run.calls(), &DispatchTable::End);
@@ -89,13 +85,13 @@ void APIENTRY end_in_run() {
 }
 
 void APIENTRY end_while_watching() {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   observer.inside_begin = false;
   observer.next().End();
 }
 
-void APIENTRY call_list(GLuint list) {
-  DrawObserver& observer = here();
+void APIENTRY draw_list(GLuint list) {
+  DrawObserver& observer = DrawObserver::current();
   const auto record = observer.chain().group().list(list);
   const bool slices = record && record->draws && record->only_geometry;
   if (!slices || !joins_run(observer)) {
@@ -154,14 +150,14 @@ bool defer_arrays(DrawObserver& observer, GLenum mode, std::span<const GLint> fi
 }
 
 void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (joins_run(observer) && defer_arrays(observer, mode, {&first, 1}, {&count, 1})) return;
   observer.settle();
   observer.next().DrawArrays(mode, first, count);
 }
 
 void APIENTRY multi_draw_arrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   const auto n = std::size_t(std::max(draws, 0));
   if (n > 0 && joins_run(observer) && defer_arrays(observer, mode, {first, n}, {count, n})) return;
   observer.settle();
@@ -222,28 +218,28 @@ bool joins_run(DrawObserver& observer, GLenum mode, const ElementPart& range, GL
 }
 
 void APIENTRY draw_elements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, {count, indices}, type))
     observer.next().DrawElements(mode, count, type, indices);
 }
 
 void APIENTRY draw_range_elements(GLenum mode, GLuint start, GLuint stop, GLsizei count, GLenum type,
                                   const void* indices) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, {count, indices}, type))
     observer.next().DrawRangeElements(mode, start, stop, count, type, indices);
 }
 
 void APIENTRY draw_elements_base_vertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
                                         GLint base_vertex) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, {count, indices, base_vertex}, type))
     observer.next().DrawElementsBaseVertex(mode, count, type, indices, base_vertex);
 }
 
 void APIENTRY draw_range_elements_base_vertex(GLenum mode, GLuint start, GLuint stop, GLsizei count,
                                               GLenum type, const void* indices, GLint base_vertex) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, {count, indices, base_vertex}, type))
     observer.next().DrawRangeElementsBaseVertex(mode, start, stop, count, type, indices, base_vertex);
 }
@@ -262,7 +258,7 @@ bool joins_run(DrawObserver& observer, GLenum mode, GLsizei draws, const GLsizei
 
 void APIENTRY multi_draw_elements(GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
                                   GLsizei draws) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, draws, count, indices, nullptr, type))
     observer.next().MultiDrawElements(mode, count, type, indices, draws);
 }
@@ -270,7 +266,7 @@ void APIENTRY multi_draw_elements(GLenum mode, const GLsizei* count, GLenum type
 void APIENTRY multi_draw_elements_base_vertex(GLenum mode, const GLsizei* count, GLenum type,
                                               const void* const* indices, GLsizei draws,
                                               const GLint* base_vertices) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run(observer, mode, draws, count, indices, base_vertices, type))
     observer.next().MultiDrawElementsBaseVertex(mode, count, type, indices, draws, base_vertices);
 }
@@ -310,7 +306,7 @@ bool joins_run_instanced(DrawObserver& observer, GLenum mode, const ElementPart&
 }
 
 void APIENTRY draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLsizei instances) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   const GLsizei vertices = first >= 0 ? count : -1;
   if (!joins_run_instanced(observer, mode, vertices, instances, false,
                            [&](Run& run) { run.draw_arrays_instanced(mode, first, count, instances); }))
@@ -319,14 +315,14 @@ void APIENTRY draw_arrays_instanced(GLenum mode, GLint first, GLsizei count, GLs
 
 void APIENTRY draw_elements_instanced(GLenum mode, GLsizei count, GLenum type, const void* indices,
                                       GLsizei instances) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_instanced(observer, mode, {count, indices}, type, instances))
     observer.next().DrawElementsInstanced(mode, count, type, indices, instances);
 }
 
 void APIENTRY draw_elements_instanced_base_vertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
                                                   GLsizei instances, GLint base_vertex) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_instanced(observer, mode, {count, indices, base_vertex}, type, instances))
     observer.next().DrawElementsInstancedBaseVertex(mode, count, type, indices, instances, base_vertex);
 }
@@ -408,25 +404,25 @@ bool joins_run_indirectly(DrawObserver& observer, GLenum mode, GLenum type, cons
 }
 
 void APIENTRY draw_arrays_indirect(GLenum mode, const void* indirect) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_indirectly(observer, mode, indirect, 1, 0)) observer.next().DrawArraysIndirect(mode, indirect);
 }
 
 void APIENTRY draw_elements_indirect(GLenum mode, GLenum type, const void* indirect) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_indirectly(observer, mode, type, indirect, 1, 0))
     observer.next().DrawElementsIndirect(mode, type, indirect);
 }
 
 void APIENTRY multi_draw_arrays_indirect(GLenum mode, const void* indirect, GLsizei draws, GLsizei stride) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_indirectly(observer, mode, indirect, draws, stride))
     observer.next().MultiDrawArraysIndirect(mode, indirect, draws, stride);
 }
 
 void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void* indirect, GLsizei draws,
                                            GLsizei stride) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   if (!joins_run_indirectly(observer, mode, type, indirect, draws, stride))
     observer.next().MultiDrawElementsIndirect(mode, type, indirect, draws, stride);
 }
@@ -435,7 +431,7 @@ void APIENTRY multi_draw_elements_indirect(GLenum mode, GLenum type, const void*
 constexpr std::size_t most_slices = 4096;
 
 void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   const bool slice = observer.run_open() && observer.run().pipeline().stack && target == GL_TEXTURE_2D &&
                      texture != 0 && !observer.run().inside_begin && observer.run().draws < most_slices;
   if (slice) return observer.run().bind_slice(texture);
@@ -445,7 +441,7 @@ void APIENTRY bind_texture_in_run(GLenum target, GLuint texture) {
 
 /// Who names the unit again before every slice changes nothing.
 void APIENTRY active_texture_in_run(GLenum texture) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   const Pipeline* const pipeline = observer.run_open() ? &observer.run().pipeline() : nullptr;
   if (pipeline != nullptr && pipeline->stack && texture == GLenum(GL_TEXTURE0 + pipeline->volume.unit) &&
       !observer.run().inside_begin)
@@ -472,7 +468,7 @@ void fill_instanced_draws(DispatchTable& table) {
 
 void fill_draws(DispatchTable& table) {
   table.Begin = begin;
-  table.CallList = call_list;
+  table.CallList = draw_list;
   table.DrawArrays = draw_arrays;
   table.DrawArraysEXT = draw_arrays;
   table.MultiDrawArrays = multi_draw_arrays;

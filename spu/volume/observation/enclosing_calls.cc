@@ -9,7 +9,7 @@ namespace {
 /// A function for `Slot` that first sets the observer's `Flag` to `Value`.
 template <auto Flag, bool Value, auto Slot, class... Arguments>
 void APIENTRY note(Arguments... arguments) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   observer.*Flag = Value;
   (observer.next().*Slot)(arguments...);
 }

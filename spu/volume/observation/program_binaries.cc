@@ -11,8 +11,8 @@
 namespace understudy::spu {
 namespace {
 
-void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+void APIENTRY known_program_binary(GLuint program, GLenum format, const void* binary, GLsizei length) {
+  DrawObserver& observer = DrawObserver::current();
   const DispatchTable& next = observer.next();
   if (binary == nullptr || length <= 0) return next.ProgramBinary(program, format, binary, length);
   const std::span bytes(static_cast<const std::byte*>(binary), std::size_t(length));
@@ -26,7 +26,7 @@ void APIENTRY program_binary(GLuint program, GLenum format, const void* binary, 
 }  // namespace
 
 void fill_program_binary_slots(DispatchTable& table) {
-  table.ProgramBinary = program_binary;
+  table.ProgramBinary = known_program_binary;
 }
 
 }  // namespace understudy::spu

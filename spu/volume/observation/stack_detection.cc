@@ -21,7 +21,7 @@ void defined(DrawObserver& observer, GLenum target, GLint level, GLsizei width, 
 
 void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GLsizei width, GLsizei height,
                            GLint border, GLenum format, GLenum type, const void* pixels) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   const DispatchTable& next = observer.next();
   next.TexImage2D(target, level, internal_format, width, height, border, format, type, pixels);
   defined(observer, target, level, width, height);
@@ -29,7 +29,7 @@ void APIENTRY tex_image_2d(GLenum target, GLint level, GLint internal_format, GL
 
 void APIENTRY tex_storage_2d(GLenum target, GLsizei levels, GLenum internal_format, GLsizei width,
                              GLsizei height) {
-  DrawObserver& observer = *Chain::current()->find<DrawObserver>();
+  DrawObserver& observer = DrawObserver::current();
   observer.next().TexStorage2D(target, levels, internal_format, width, height);
   defined(observer, target, 0, width, height);
 }

@@ -16,10 +16,6 @@
 namespace understudy::spu {
 namespace {
 
-DrawObserver& here() {
-  return *Chain::current()->find<DrawObserver>();
-}
-
 /// The textures of `dimensions` dimensions bound to the active unit are about to change.
 void bound_textures_change(DrawObserver& observer, int dimensions) {
   constexpr std::array<std::array<GLenum, 2>, 3> bindings = {
@@ -36,7 +32,7 @@ void bound_textures_change(DrawObserver& observer, int dimensions) {
 struct NoteTextureChange {
   static constexpr bool chooses(std::string_view name) { return changes_texture(name); }
   static const DispatchTable& before(CallId call) {
-    DrawObserver& observer = here();
+    DrawObserver& observer = DrawObserver::current();
     if (kind_of(call) == CallKind::bound_texture && !observer.inside_begin) {
       bound_textures_change(observer, texture_dimensions(call));
     } else {
@@ -52,7 +48,7 @@ struct ChangesNamedTexture;
 template <class... A, void (APIENTRY* DispatchTable::*Slot)(GLuint, A...)>
 struct ChangesNamedTexture<Slot> {
   static void APIENTRY call(GLuint texture, A... arguments) {
-    DrawObserver& observer = here();
+    DrawObserver& observer = DrawObserver::current();
     observer.chain().group().texture_changed(texture);
     (observer.next().*Slot)(texture, arguments...);
   }
@@ -68,7 +64,7 @@ volume::TexelBox box_of(GLint x, GLint y, GLint z, GLsizei width, GLsizei height
 
 /// A box of one level of the texture bound to `target` is about to change.
 void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) {
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   GLint texture = 0;
   if (target == GL_TEXTURE_3D && level == 0 && !observer.inside_begin)
     observer.context().gl->GetIntegerv(GL_TEXTURE_BINDING_3D, &texture);
@@ -80,7 +76,7 @@ void bound_box_changes(GLenum target, GLint level, const volume::TexelBox& box) 
 }
 
 void named_box_changes(GLuint texture, GLint level, const volume::TexelBox& box) {
-  ShareGroup& group = here().chain().group();
+  ShareGroup& group = DrawObserver::current().chain().group();
   if (level == 0) {
     group.texture_changed(texture, box);
   } else {
@@ -91,33 +87,36 @@ void named_box_changes(GLuint texture, GLint level, const volume::TexelBox& box)
 void APIENTRY tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
                                GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels) {
   bound_box_changes(target, level, box_of(x, y, z, width, height, depth));
-  here().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels);
+  DrawObserver::current().next().TexSubImage3D(target, level, x, y, z, width, height, depth, format, type,
+                                               pixels);
 }
 
 void APIENTRY copy_tex_sub_image_3d(GLenum target, GLint level, GLint x, GLint y, GLint z, GLint from_x,
                                     GLint from_y, GLsizei width, GLsizei height) {
   bound_box_changes(target, level, box_of(x, y, z, width, height, 1));
-  here().next().CopyTexSubImage3D(target, level, x, y, z, from_x, from_y, width, height);
+  DrawObserver::current().next().CopyTexSubImage3D(target, level, x, y, z, from_x, from_y, width, height);
 }
 
 void APIENTRY texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
                                    GLsizei height, GLsizei depth, GLenum format, GLenum type,
                                    const void* pixels) {
   named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
-  here().next().TextureSubImage3D(texture, level, x, y, z, width, height, depth, format, type, pixels);
+  DrawObserver::current().next().TextureSubImage3D(texture, level, x, y, z, width, height, depth, format, type,
+                                                   pixels);
 }
 
 void APIENTRY copy_texture_sub_image_3d(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLint from_x,
                                         GLint from_y, GLsizei width, GLsizei height) {
   named_box_changes(texture, level, box_of(x, y, z, width, height, 1));
-  here().next().CopyTextureSubImage3D(texture, level, x, y, z, from_x, from_y, width, height);
+  DrawObserver::current().next().CopyTextureSubImage3D(texture, level, x, y, z, from_x, from_y, width, height);
 }
 
 void APIENTRY clear_tex_sub_image(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
                                   GLsizei height, GLsizei depth, GLenum format, GLenum type,
                                   const void* value) {
   named_box_changes(texture, level, box_of(x, y, z, width, height, depth));
-  here().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type, value);
+  DrawObserver::current().next().ClearTexSubImage(texture, level, x, y, z, width, height, depth, format, type,
+                                                  value);
 }
 
 /// Of a copy only the destination changes. Its box is as large as the source's, or smaller where the source is
@@ -129,10 +128,10 @@ void APIENTRY copy_image(GLuint from, GLenum from_target, GLint from_level, GLin
   if (to_target == GL_TEXTURE_3D) {
     named_box_changes(to, to_level, box_of(x, y, z, width, height, depth));
   } else if (to_target != GL_RENDERBUFFER) {
-    here().chain().group().texture_changed(to);
+    DrawObserver::current().chain().group().texture_changed(to);
   }
-  (here().next().*Slot)(from, from_target, from_level, from_x, from_y, from_z, to, to_target, to_level, x, y, z,
-                        width, height, depth);
+  (DrawObserver::current().next().*Slot)(from, from_target, from_level, from_x, from_y, from_z, to, to_target,
+                                         to_level, x, y, z, width, height, depth);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <array>
 #include <variant>
 
+#include "spu/state_value.h"
+
 namespace understudy::spu {
 namespace {
 
@@ -14,12 +16,6 @@ struct Factors {
   GLint destination = 0;
   bool operator==(const Factors&) const = default;
 };
-
-GLint integer(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
 
 /// The operator of an equation that takes no factors.
 std::optional<Operator> extremum(GLint equation) {
@@ -112,13 +108,13 @@ std::optional<std::string> read_alpha(GLint equation, const Factors& factors, Bl
 }  // namespace
 
 std::optional<std::string> read_blending(const DispatchTable& gl, const Target& target, Blending& blending) {
-  const Factors colour{integer(gl, GL_BLEND_SRC_RGB), integer(gl, GL_BLEND_DST_RGB)};
-  const Factors alpha{integer(gl, GL_BLEND_SRC_ALPHA), integer(gl, GL_BLEND_DST_ALPHA)};
-  const GLint alpha_equation = integer(gl, GL_BLEND_EQUATION_ALPHA);
+  const Factors colour{state_value(gl, GL_BLEND_SRC_RGB), state_value(gl, GL_BLEND_DST_RGB)};
+  const Factors alpha{state_value(gl, GL_BLEND_SRC_ALPHA), state_value(gl, GL_BLEND_DST_ALPHA)};
+  const GLint alpha_equation = state_value(gl, GL_BLEND_EQUATION_ALPHA);
   std::array<GLboolean, 4> mask{};
   gl.GetBooleanv(GL_COLOR_WRITEMASK, mask.data());
   const bool alpha_written = mask[3] && target.alpha_bits > 0;
-  const GLint equation = integer(gl, GL_BLEND_EQUATION_RGB);
+  const GLint equation = state_value(gl, GL_BLEND_EQUATION_RGB);
   blending.replaces = !gl.IsEnabled(GL_BLEND) ||
                       (replaces(equation, colour) && (!alpha_written || replaces(alpha_equation, alpha)));
   if (blending.replaces) {

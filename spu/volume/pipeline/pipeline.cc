@@ -3,18 +3,13 @@
 
 #include <algorithm>
 
+#include "spu/state_value.h"
 #include "spu/track/program_sources.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
 
 namespace understudy::spu {
 namespace {
-
-GLint integer(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
 
 GLenum binding_of(GLenum target) {
   switch (target) {
@@ -32,9 +27,9 @@ GLenum binding_of(GLenum target) {
 }
 
 GLuint bound_texture(const DispatchTable& gl, GLenum target, int unit) {
-  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  const GLint active = state_value(gl, GL_ACTIVE_TEXTURE);
   gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
-  const GLint texture = integer(gl, binding_of(target));
+  const GLint texture = state_value(gl, binding_of(target));
   gl.ActiveTexture(GLenum(active));
   return GLuint(texture);
 }
@@ -58,7 +53,7 @@ GLenum target_of_sampler(GLenum type) {
 /// Of the 2-D textures that a program samples, the one on the active unit: who draws slice after slice binds
 /// them there.
 void take_slice(const DispatchTable& gl, Pipeline& pipeline) {
-  const GLint active = integer(gl, GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
+  const GLint active = state_value(gl, GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
   const auto slice = std::ranges::find_if(pipeline.others, [&](const SampledTexture& sampled) {
     return sampled.target == GL_TEXTURE_2D && sampled.unit == active && sampled.texture != 0;
   });
@@ -131,13 +126,13 @@ std::optional<std::string> read_assembly_textures(const GlContext& context, Pipe
   const DispatchTable& gl = *context.gl;
   if (!may_sample_3d(gl)) return std::nullopt;
   pipeline.assembly = true;
-  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
-  const GLint units = integer(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
+  const GLint active = state_value(gl, GL_ACTIVE_TEXTURE);
+  const GLint units = state_value(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
   int volumes = 0;
   for (int unit = 0; unit < units; ++unit) {
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
     for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_RECTANGLE, GL_TEXTURE_3D}) {
-      const auto texture = GLuint(integer(gl, binding_of(target)));
+      const auto texture = GLuint(state_value(gl, binding_of(target)));
       if (texture == 0) continue;
       if (target == GL_TEXTURE_3D) {
         ++volumes;
@@ -156,7 +151,7 @@ std::optional<std::string> read_assembly_textures(const GlContext& context, Pipe
 std::optional<std::string> read_vertex_assembly(const GlContext& context) {
   const DispatchTable& gl = *context.gl;
   if (!context.vertex_assembly || !gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return std::nullopt;
-  const GLint planes = integer(gl, GL_MAX_CLIP_PLANES);
+  const GLint planes = state_value(gl, GL_MAX_CLIP_PLANES);
   for (GLint i = 0; i < planes; ++i) {
     if (gl.IsEnabled(GLenum(GL_CLIP_PLANE0 + i))) return "clip planes cut what a vertex assembly program draws";
   }
@@ -167,11 +162,11 @@ std::optional<std::string> read_vertex_assembly(const GlContext& context) {
 std::optional<std::string> read_fog(const GlContext& context, Pipeline& pipeline) {
   const DispatchTable& gl = *context.gl;
   pipeline.fog = true;
-  if (integer(gl, GL_FOG_COORD_SRC) != GL_FRAGMENT_DEPTH)
+  if (state_value(gl, GL_FOG_COORD_SRC) != GL_FRAGMENT_DEPTH)
     return "fog is enabled, by coordinates of the application's own";
   if (context.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB))
     return "fog is enabled, by coordinates of a vertex assembly program";
-  if (context.fog_distance && integer(gl, GL_FOG_DISTANCE_MODE_NV) == GL_EYE_RADIAL_NV)
+  if (context.fog_distance && state_value(gl, GL_FOG_DISTANCE_MODE_NV) == GL_EYE_RADIAL_NV)
     return "fog is enabled, by the distance from the eye's point";
   return std::nullopt;
 }
@@ -184,12 +179,12 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
     if (!reason && pipeline.volume.texture != 0) reason = read_vertex_assembly(context);
     return reason;
   }
-  const GLint active = integer(gl, GL_ACTIVE_TEXTURE);
+  const GLint active = state_value(gl, GL_ACTIVE_TEXTURE);
   int enabled_units = 0;
   for (int unit = 0; unit < context.fixed_function_units; ++unit) {
     gl.ActiveTexture(GLenum(GL_TEXTURE0 + unit));
     if (gl.IsEnabled(GL_TEXTURE_3D)) {
-      pipeline.volume = {GL_TEXTURE_3D, unit, GLuint(integer(gl, GL_TEXTURE_BINDING_3D)), -1};
+      pipeline.volume = {GL_TEXTURE_3D, unit, GLuint(state_value(gl, GL_TEXTURE_BINDING_3D)), -1};
       ++enabled_units;
     } else if (gl.IsEnabled(GL_TEXTURE_2D) || gl.IsEnabled(GL_TEXTURE_1D) ||
                gl.IsEnabled(GL_TEXTURE_CUBE_MAP)) {
@@ -198,7 +193,7 @@ std::optional<std::string> read_fixed_function_textures(const GlContext& context
   }
   gl.ActiveTexture(GLenum(active));
   if (stacks && pipeline.volume.texture == 0 && enabled_units == 1) {
-    const auto slice = GLuint(integer(gl, GL_TEXTURE_BINDING_2D));
+    const auto slice = GLuint(state_value(gl, GL_TEXTURE_BINDING_2D));
     if (active == GL_TEXTURE0 && slice != 0 && gl.IsEnabled(GL_TEXTURE_2D)) {
       pipeline.stack = true;
       pipeline.volume = {GL_TEXTURE_2D, 0, slice, -1};
@@ -260,8 +255,8 @@ std::optional<std::string> read_rasterisation(const GlContext& context) {
   if (mode[0] != GL_FILL) return "polygons are not filled";
   if (gl.IsEnabled(GL_POLYGON_SMOOTH)) return "polygons are smoothed";
   if (!context.core && gl.IsEnabled(GL_POLYGON_STIPPLE)) return "polygons are stippled";
-  if (context.version >= 450 && (integer(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
-                                 integer(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
+  if (context.version >= 450 && (state_value(gl, GL_CLIP_ORIGIN) != GL_LOWER_LEFT ||
+                                 state_value(gl, GL_CLIP_DEPTH_MODE) != GL_NEGATIVE_ONE_TO_ONE)) {
     return "clip control turns or moves the view volume";
   }
   return std::nullopt;
@@ -270,7 +265,7 @@ std::optional<std::string> read_rasterisation(const GlContext& context) {
 std::optional<std::string> read_depth_test(const DispatchTable& gl, Pipeline& pipeline) {
   pipeline.depth_test = gl.IsEnabled(GL_DEPTH_TEST);
   if (!pipeline.depth_test) return std::nullopt;
-  const GLint compare = integer(gl, GL_DEPTH_FUNC);
+  const GLint compare = state_value(gl, GL_DEPTH_FUNC);
   GLboolean write = GL_FALSE;
   gl.GetBooleanv(GL_DEPTH_WRITEMASK, &write);
   pipeline.depth_write = write;
@@ -297,14 +292,14 @@ std::optional<std::string> read_surroundings(const GlContext& context, Pipeline&
   if (gl.IsEnabled(GL_STENCIL_TEST)) return "the stencil test is enabled";
   if (gl.IsEnabled(GL_COLOR_LOGIC_OP)) return "a logical operation is enabled";
   if (auto reason = read_sample_operations(context, pipeline.target)) return reason;
-  if (integer(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
+  if (state_value(gl, GL_DRAW_BUFFER1) != GL_NONE) return "more than one draw buffer";
   if (auto reason = read_rasterisation(context)) return reason;
   if (auto reason = read_depth_test(gl, pipeline)) return reason;
-  if (!context.core && integer(gl, GL_RENDER_MODE) != GL_RENDER)
+  if (!context.core && state_value(gl, GL_RENDER_MODE) != GL_RENDER)
     return "the application is in feedback or select mode";
   if (auto reason = read_queries(context)) return reason;
   if (context.version >= 400) {
-    if (integer(gl, GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE) != 0) return "transform feedback is active";
+    if (state_value(gl, GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE) != 0) return "transform feedback is active";
   }
   return std::nullopt;
 }
@@ -315,7 +310,7 @@ PipelineFinding read_pipeline(const GlContext& context, const ShareGroup& group,
                               bool stacks) {
   const DispatchTable& gl = *context.gl;
   Pipeline pipeline;
-  pipeline.program = GLuint(integer(gl, GL_CURRENT_PROGRAM));
+  pipeline.program = GLuint(state_value(gl, GL_CURRENT_PROGRAM));
   std::optional<std::string> reason;
   if (pipeline.program != 0) {
     reason = read_program_textures(context, group, samplers, stacks, pipeline);

@@ -29,7 +29,7 @@ constexpr const char* pixel_of_image_source =
     "}\n";
 
 /// What the application has switched on and SavedState switches off, but for blending, which is disabled.
-constexpr std::array<GLenum, 5> kept = {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_MULTISAMPLE,
+constexpr std::array<GLenum, 5> kept_capabilities = {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_MULTISAMPLE,
                                         GL_DITHER};
 
 }  // namespace
@@ -92,7 +92,7 @@ void Replacer::replace(const volume::ImageView& image, const volume::Rgba& other
   if (!prepare()) throw Refusal{"the driver does not link the program that images are drawn with"};
   saved.borrow_texture(GL_TEXTURE_2D, 0);
   show(image, otherwise);
-  for (const GLenum capability : kept) {
+  for (const GLenum capability : kept_capabilities) {
     if (saved.was_enabled(capability)) gl.Enable(capability);
   }
   gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);

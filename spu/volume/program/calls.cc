@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "spu/volume/program/parameters.h"
 #include "spu/volume/program/walk.h"
 
 namespace understudy::spu::program {
@@ -10,14 +11,6 @@ namespace understudy::spu::program {
 using namespace glslang;
 
 namespace {
-
-const TIntermSequence& parameters_of(const Function& function) {
-  return function.node->getSequence().at(0)->getAsAggregate()->getSequence();
-}
-
-bool is_written(TStorageQualifier parameter) {
-  return parameter == EvqOut || parameter == EvqInOut;
-}
 
 std::string plain_name(const TString& mangled) {
   const std::string name = mangled.c_str();

@@ -4,20 +4,13 @@
 #include <algorithm>
 
 #include "spu/volume/program/operators.h"
+#include "spu/volume/program/parameters.h"
 
 namespace understudy::spu::program {
 
 using namespace glslang;
 
 namespace {
-
-bool is_written(TStorageQualifier parameter) {
-  return parameter == EvqOut || parameter == EvqInOut;
-}
-
-const TIntermSequence& parameters_of(const Function& function) {
-  return function.node->getSequence().at(0)->getAsAggregate()->getSequence();
-}
 
 /// The target of an assignment or increment; null for other nodes.
 const TIntermNode* assigned(const TIntermNode& node) {

@@ -11,7 +11,7 @@ using namespace glslang;
 namespace {
 
 /// Places of one node at which values meet.
-enum Meeting : std::uint32_t { at_right = 32 };
+enum ExpressionMeeting : std::uint32_t { at_right = 32 };
 
 bool is_integer(const TType& type) {
   return type.isIntegerDomain();

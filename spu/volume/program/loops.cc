@@ -10,7 +10,7 @@ using namespace glslang;
 
 namespace {
 
-enum Meeting : std::uint32_t { at_test = 8, at_next, at_exit, at_return };
+enum LoopMeeting : std::uint32_t { at_test = 8, at_next, at_exit, at_return };
 
 }  // namespace
 

@@ -12,7 +12,7 @@ using namespace glslang;
 namespace {
 
 /// Places of one node at which values meet.
-enum Meeting : std::uint32_t { before_or_after = 48, of_operands };
+enum OrderMeeting : std::uint32_t { before_or_after = 48, of_operands };
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace understudy::spu::program {
 namespace {
 
 /// The same for all fragments of a draw, or nothing that a viewer can mean.
-bool is_fixed(SourceKind kind) {
+bool is_fixed_for_rays(SourceKind kind) {
   return kind == SourceKind::uniform || kind == SourceKind::uniform_block || kind == SourceKind::texture_size ||
          kind == SourceKind::undefined;
 }
@@ -33,7 +33,7 @@ std::vector<Influence>& list_for(const Influence& influence, SourceKind kind, Ra
 
 /// Texels as data are what is shown.
 bool counts(SourceKind kind, const Influence& influence) {
-  if (is_fixed(kind)) return false;
+  if (is_fixed_for_rays(kind)) return false;
   const bool shown = influence.target == Target::colour && influence.flow == Flow::data;
   return !(shown && of_samples(kind));
 }
@@ -56,7 +56,7 @@ bool is_addressed_by_samples(const StageFacts& facts, const Fetch& fetch, std::s
   if (tables_deep > most_tables_deep) return false;
   const auto allowed = [&](const Dependence& on) {
     const Source& source = facts.sources[on.source];
-    if (source.kind != SourceKind::texel) return is_fixed(source.kind);
+    if (source.kind != SourceKind::texel) return is_fixed_for_rays(source.kind);
     return std::ranges::find(volumes, source.name) != volumes.end() ||
            is_addressed_by_samples(facts, facts.fetches[source.number], volumes, tables_deep + 1);
   };

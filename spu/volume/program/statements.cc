@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t max_steps = 200'000;
 
 /// Places of one node at which ways meet.
-enum Meeting : std::uint32_t { at_end, at_break, at_case };
+enum StatementMeeting : std::uint32_t { at_end, at_break, at_case };
 
 }  // namespace
 

@@ -15,8 +15,8 @@ namespace {
 
 using volume::Vec3;
 
-constexpr double same_place = 1e-4;  // of the box's edge
-constexpr double same_area = 1e-3;   // of its face
+constexpr double same_share_of_edge = 1e-4;  // of the box's edge
+constexpr double same_share_of_face = 1e-3;  // of its face
 
 /// Twice the polygon's area, along its normal.
 Vec3 twice_area(const std::vector<Vec3>& polygon) {
@@ -30,7 +30,7 @@ Vec3 twice_area(const std::vector<Vec3>& polygon) {
 }
 
 /// The part of a polygon in a half-space.
-std::vector<Vec3> kept(const std::vector<Vec3>& polygon, const volume::HalfSpace& half) {
+std::vector<Vec3> part_behind(const std::vector<Vec3>& polygon, const volume::HalfSpace& half) {
   std::vector<Vec3> part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec3& a = polygon[i];
@@ -60,7 +60,7 @@ std::vector<Vec3> face_of_unit_cube(std::size_t face) {
 std::optional<std::size_t> face_under(const std::vector<Vec3>& polygon) {
   for (std::size_t face = 0; face < 6; ++face) {
     const bool on = std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& p) {
-      return std::abs(p[face / 2] - double(face % 2)) <= same_place;
+      return std::abs(p[face / 2] - double(face % 2)) <= same_share_of_edge;
     });
     if (on) return face;
   }
@@ -118,19 +118,19 @@ std::optional<CutBox> cut_box_of(const ObservedPolygons& polygons) {
   if (side < 0) cut = {volume::scale(cut.normal, -1), -cut.offset};
   const auto above = [&](const Vec3& p) { return volume::dot(cut.normal, p) + cut.offset; };
   const bool flat =
-      std::all_of(on_cut.begin(), on_cut.end(), [&](const Vec3& p) { return above(p) <= same_place; });
+      std::all_of(on_cut.begin(), on_cut.end(), [&](const Vec3& p) { return above(p) <= same_share_of_edge; });
   const bool convex =
-      std::all_of(all.begin(), all.end(), [&](const Vec3& p) { return above(p) >= -same_place; });
+      std::all_of(all.begin(), all.end(), [&](const Vec3& p) { return above(p) >= -same_share_of_edge; });
   if (!flat || !convex) return std::nullopt;
 
   // A closed surface has no area in sum: what its other faces lack lies on the cut.
   Vec3 open{};
   for (std::size_t face = 0; face < 6; ++face) {
-    const double expected = volume::length(twice_area(kept(face_of_unit_cube(face), cut))) / 2;
-    if (std::abs(covered[face] - expected) > same_area) return std::nullopt;
+    const double expected = volume::length(twice_area(part_behind(face_of_unit_cube(face), cut))) / 2;
+    if (std::abs(covered[face] - expected) > same_share_of_face) return std::nullopt;
     open[face / 2] += face % 2 == 0 ? expected : -expected;
   }
-  if (std::abs(volume::length(open) - area_of_cut) > same_area) return std::nullopt;
+  if (std::abs(volume::length(open) - area_of_cut) > same_share_of_face) return std::nullopt;
   CutBox found{box, {{}, cut.offset}};
   for (std::size_t k = 0; k < 3; ++k) {
     found.cut.normal[k] = cut.normal[k] / edge[k];

@@ -27,7 +27,7 @@ bool is_scalar(GLenum type) {
   }
 }
 
-std::size_t components(GLenum type) {
+std::size_t components_of_type(GLenum type) {
   switch (type) {
     case GL_FLOAT_VEC2:
       return 2;
@@ -53,7 +53,7 @@ void append_value(const MarchContext& measured, const StageUniform& uniform, std
   if (location < 0) return;
   std::array<GLfloat, 16> value{};
   gl.GetUniformfv(program, location, value.data());
-  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components(uniform.type)));
+  values.insert(values.end(), value.begin(), value.begin() + std::ptrdiff_t(components_of_type(uniform.type)));
 }
 
 /// Whether the uniform reaches where samples lie and when a ray ends, and decides about no fragment or colour.

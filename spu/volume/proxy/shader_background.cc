@@ -28,7 +28,7 @@ double distance(const Vec3& a, const Vec3& b) {
 }
 
 /// Rays that have the same number of samples, told by their colour.
-struct Level {
+struct ColourLevel {
   Ray ray;
   Vec3 colour;
   double along = 0;  ///< from the colour of the shortest ray towards that of the longest
@@ -46,8 +46,8 @@ class BackgroundSearch {
   /// Colours of all values on a ray; none where a fragment is missing or has another alpha.
   std::optional<std::vector<Vec3>> colours_on(const Ray& ray);
   std::vector<std::size_t> clearest_values();
-  std::vector<Level> levels_of(float value);
-  bool take_levels(const std::vector<Level>& levels);
+  std::vector<ColourLevel> levels_of(float value);
+  bool take_levels(const std::vector<ColourLevel>& levels);
   bool take_background();
   void add_longer_rays();
   /// How many samples a longer ray has, by the values that tell best; null where none does.
@@ -94,12 +94,12 @@ std::vector<std::size_t> BackgroundSearch::clearest_values() {
   return {order[0], order[order.size() / 16], order[order.size() / 4]};
 }
 
-std::vector<Level> BackgroundSearch::levels_of(float value) {
+std::vector<ColourLevel> BackgroundSearch::levels_of(float value) {
   constexpr double shortest = 0.03;  // in texels
   constexpr int lengths = 75;        // up to 35 texels
   constexpr double growth = 1.1;
   const std::array one{value};
-  std::vector<Level> seen;
+  std::vector<ColourLevel> seen;
   double length = shortest;
   for (int i = 0; i < lengths; ++i, length *= growth) {
     const Ray ray = ray_of_length(rays_, texels_, length);
@@ -111,18 +111,18 @@ std::vector<Level> BackgroundSearch::levels_of(float value) {
   const Vec3 all = volume::subtract(seen.back().colour, base);
   const double reach = volume::length(all);
   if (reach < 1e-3) return {};
-  for (Level& level : seen) level.along = volume::dot(volume::subtract(level.colour, base), all) / reach;
-  std::ranges::stable_sort(seen, {}, &Level::along);
+  for (ColourLevel& level : seen) level.along = volume::dot(volume::subtract(level.colour, base), all) / reach;
+  std::ranges::stable_sort(seen, {}, &ColourLevel::along);
   const double apart = std::max(10 * float_rounding, 1e-3 * reach);
-  std::vector<Level> levels;
-  for (const Level& level : seen) {
+  std::vector<ColourLevel> levels;
+  for (const ColourLevel& level : seen) {
     if (levels.empty() || level.along - levels.back().along > apart) levels.push_back(level);
   }
   return levels;
 }
 
 /// Three steps between four levels, each the shorter by the same factor. Of a sum they are of one length.
-bool BackgroundSearch::take_levels(const std::vector<Level>& levels) {
+bool BackgroundSearch::take_levels(const std::vector<ColourLevel>& levels) {
   if (levels.size() < 4) return false;
   std::array<double, 3> steps{};
   for (std::size_t i = 0; i < 3; ++i) steps[i] = levels[i + 1].along - levels[i].along;

@@ -63,7 +63,7 @@ class LeastSquares {
   std::array<std::array<double, N + 1>, N> m_{};
 };
 
-double form(const std::array<double, 6>& g, const std::array<double, 6>& p) {
+double linear_form(const std::array<double, 6>& g, const std::array<double, 6>& p) {
   double sum = 0;
   for (std::size_t i = 0; i < 6; ++i) sum += g[i] * p[i];
   return sum;
@@ -91,7 +91,7 @@ double unexplained_part(std::span<const CountedRay> rays, const std::array<doubl
                         double rounding) {
   std::size_t off = 0;
   for (const CountedRay& ray : rays) {
-    const double length = std::sqrt(std::max(form(g, products(ray.way)), 0.0));
+    const double length = std::sqrt(std::max(linear_form(g, products(ray.way)), 0.0));
     off += std::abs(ray.samples - length - offset) > rounding ? 1 : 0;
   }
   return double(off) / double(rays.size());
@@ -127,7 +127,7 @@ std::optional<StepFit> fit_products(std::span<const CountedRay> rays, double off
     LeastSquares<N> refinement;
     for (const CountedRay& ray : rays) {
       auto row = row_of(ray);
-      const double length = std::sqrt(std::max(form(g, products(ray.way)), 1e-9));
+      const double length = std::sqrt(std::max(linear_form(g, products(ray.way)), 1e-9));
       for (double& x : row) x /= 2 * length;
       refinement.add(row, ray.samples - length - offset, 1);
     }

@@ -7,16 +7,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "spu/volume/timing/milliseconds_since.h"
 #include "volume/request.h"
 
 namespace understudy::spu {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Rays of all directions begin at the eye: a step that is not quite known shows more than from outside, and in
 /// other views than the one that is compared.

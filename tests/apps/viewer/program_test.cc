@@ -22,17 +22,17 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int edge = 40;
+constexpr int image_edge = 40;
 
 // A hollow ball around an off-centre dense core, in bytes; smooth, so that interpolating before or after
 // classification differs little.
 std::vector<std::uint8_t> ball() {
   std::vector<std::uint8_t> voxels;
-  for (int z = 0; z < edge; ++z)
-    for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) {
+  for (int z = 0; z < image_edge; ++z)
+    for (int y = 0; y < image_edge; ++y)
+      for (int x = 0; x < image_edge; ++x) {
         const auto radius = [&](double cx, double cy, double cz) {
-          return std::hypot(x - cx, y - cy, z - cz) / edge;
+          return std::hypot(x - cx, y - cy, z - cz) / image_edge;
         };
         const double shell = 0.55 * std::exp(-std::pow((radius(19.5, 19.5, 19.5) - 0.36) / 0.06, 2));
         const double core = std::exp(-std::pow(radius(24, 18, 22) / 0.10, 2));

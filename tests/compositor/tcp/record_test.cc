@@ -20,19 +20,19 @@
 namespace understudy::compositor::testing {
 namespace {
 
-using Buffer = std::vector<std::byte>;
+using RecordBytes = std::vector<std::byte>;
 using ::testing::HasSubstr;
 
-Buffer noise(std::size_t size, unsigned seed = 1) {
-  Buffer bytes(size);
+RecordBytes noise(std::size_t size, unsigned seed = 1) {
+  RecordBytes bytes(size);
   std::generate(bytes.begin(), bytes.end(),
                 [random = std::mt19937(seed)]() mutable { return std::byte(random()); });
   return bytes;
 }
 
 /// What comes of `line`, in pieces of at most `most` bytes.
-Buffer opened(RecordOpener& opener, std::span<const std::byte> line, std::size_t most = 1 << 20) {
-  Buffer all;
+RecordBytes opened(RecordOpener& opener, std::span<const std::byte> line, std::size_t most = 1 << 20) {
+  RecordBytes all;
   while (!line.empty()) {
     const std::span<std::byte> room = opener.room();
     const std::size_t count = std::min({room.size(), most, line.size()});
@@ -48,12 +48,12 @@ Buffer opened(RecordOpener& opener, std::span<const std::byte> line, std::size_t
 
 class RecordTest : public ::testing::Test {
  protected:
-  Buffer sealed(const Buffer& plain) {
+  RecordBytes sealed(const RecordBytes& plain) {
     const auto record = sealer_.seal(plain);
     return {record.begin(), record.end()};
   }
   /// Why an opener does not open `line`; empty: it does.
-  static std::string refusal(RecordOpener& opener, const Buffer& line) {
+  static std::string refusal(RecordOpener& opener, const RecordBytes& line) {
     try {
       opened(opener, line);
     } catch (const MalformedMessage& error) {
@@ -71,19 +71,19 @@ class RecordTest : public ::testing::Test {
 TEST_F(RecordTest, GiveBackWhatWasSealedHoweverItComes) {
   for (const std::size_t size : {0UL, 1UL, 7UL, 4096UL, 65535UL, max_record_bytes})
     for (const std::size_t most : {1UL, 5UL, 1000UL, 1UL << 20}) {
-      const Buffer plain = noise(size);
-      const Buffer record = sealed(plain);
+      const RecordBytes plain = noise(size);
+      const RecordBytes record = sealed(plain);
       EXPECT_EQ(opened(opener_, record, most), plain) << size << " bytes in pieces of " << most;
     }
 }
 
 TEST_F(RecordTest, ShowNothingOfWhatTheyHold) {
   const std::string call = "glDrawArraysInstancedBaseInstance /scans/of_somebody.nrrd";
-  Buffer plain(call.size());
+  RecordBytes plain(call.size());
   std::memcpy(plain.data(), call.data(), call.size());
-  const Buffer once = sealed(plain);
-  const Buffer again = sealed(plain);
-  const auto text = [](const Buffer& bytes) {
+  const RecordBytes once = sealed(plain);
+  const RecordBytes again = sealed(plain);
+  const auto text = [](const RecordBytes& bytes) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
   for (std::size_t i = 0; i + 4 <= call.size(); ++i)
@@ -92,14 +92,14 @@ TEST_F(RecordTest, ShowNothingOfWhatTheyHold) {
 }
 
 TEST_F(RecordTest, AChangedByteIsNeverOpened) {
-  const Buffer line = sealed(noise(40));
+  const RecordBytes line = sealed(noise(40));
   for (std::size_t at = 0; at < line.size(); ++at) {
-    Buffer changed = line;
+    RecordBytes changed = line;
     changed[at] ^= std::byte(4);
     RecordOpener opener(keys_.second.receive);
-    Buffer to(64);
+    RecordBytes to(64);
     // A length that grew waits for more, and more comes.
-    const Buffer more(1 << 17);
+    const RecordBytes more(1 << 17);
     changed.insert(changed.end(), more.begin(), more.end());
     EXPECT_THAT(refusal(opener, changed), HasSubstr("changed")) << "byte " << at;
   }
@@ -107,15 +107,15 @@ TEST_F(RecordTest, AChangedByteIsNeverOpened) {
 
 TEST_F(RecordTest, AReplayedRecordIsRefused) {
   opened(opener_, sealed(noise(40)));
-  const Buffer record = sealed(noise(40));
+  const RecordBytes record = sealed(noise(40));
   EXPECT_EQ(refusal(opener_, record), "");
   EXPECT_THAT(refusal(opener_, record), HasSubstr("replayed"));
 }
 
 TEST_F(RecordTest, ARecordThatWasLeftOutOrComesTooEarlyIsNoticed) {
   opened(opener_, sealed(noise(40)));
-  const Buffer first = sealed(noise(40));
-  const Buffer second = sealed(noise(50));
+  const RecordBytes first = sealed(noise(40));
+  const RecordBytes second = sealed(noise(50));
   EXPECT_THAT(refusal(opener_, second), HasSubstr("left out"));
 }
 
@@ -132,7 +132,7 @@ TEST_F(RecordTest, AnotherSessionOfTheSameSecretOpensNothing) {
 TEST_F(RecordTest, ALengthThatNoRecordHasIsRefusedBeforeAnyMemoryIsGiven) {
   for (const std::uint32_t length : {0U, 16U, std::uint32_t(max_record_bytes + record_seal_bytes + 1), ~0U}) {
     RecordOpener opener(keys_.second.receive);
-    Buffer line(stream_head_bytes + record_length_bytes);
+    RecordBytes line(stream_head_bytes + record_length_bytes);
     for (std::size_t i = 0; i < record_length_bytes; ++i)
       line[stream_head_bytes + i] = std::byte(length >> 8 * i);
     EXPECT_THAT(refusal(opener, line), HasSubstr("length that none has")) << length;
@@ -141,7 +141,7 @@ TEST_F(RecordTest, ALengthThatNoRecordHasIsRefusedBeforeAnyMemoryIsGiven) {
 
 TEST_F(RecordTest, GoOnOverAChangeOfTheKey) {
   for (std::uint32_t i = 0; i < 2 * records_of_a_key + 3; ++i) {
-    const Buffer plain(1, std::byte(i));
+    const RecordBytes plain(1, std::byte(i));
     ASSERT_EQ(opened(opener_, sealed(plain)), plain) << i;
   }
 }

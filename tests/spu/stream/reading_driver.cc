@@ -18,7 +18,7 @@
 namespace understudy::spu::testing {
 namespace {
 
-thread_local ReadingDriver* driver = nullptr;
+thread_local ReadingDriver* reading_driver = nullptr;
 
 /// Buffers of streams that nobody wrote stay small.
 constexpr std::uint64_t most_buffer_bytes = std::uint64_t(1) << 20;
@@ -49,40 +49,42 @@ bool is_of_vertices(CallId call) {
 }  // namespace
 
 struct ReadingDriver::Slots {
-  static std::uint64_t call(CallId call, const std::uint64_t* words) { return driver->call(call, words); }
+  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+    return reading_driver->call(call, words);
+  }
 
   template <class T>
   static void tell(std::optional<std::uint64_t> value, T* to) {
-    if (value && !driver->inside_) *to = T(*value);
+    if (value && !reading_driver->inside_) *to = T(*value);
   }
-  static void APIENTRY get_integer(GLenum name, GLint* value) { tell(driver->integer(name), value); }
+  static void APIENTRY get_integer(GLenum name, GLint* value) { tell(reading_driver->integer(name), value); }
   static void APIENTRY get_pointer(GLenum name, void** value) {
-    if (!driver->inside_) *value = address(driver->pointer(name));
+    if (!reading_driver->inside_) *value = address(reading_driver->pointer(name));
   }
   static GLboolean APIENTRY is_enabled(GLenum name) {
-    const Array* array = driver->array(name);
-    return GLboolean(!driver->inside_ && array != nullptr && array->enabled);
+    const Array* array = reading_driver->array(name);
+    return GLboolean(!reading_driver->inside_ && array != nullptr && array->enabled);
   }
   static GLboolean APIENTRY is_buffer(GLuint name) {
-    return GLboolean(!driver->inside_ && driver->buffers_.contains(name));
+    return GLboolean(!reading_driver->inside_ && reading_driver->buffers_.contains(name));
   }
   static void tell_buffer(const Buffer* buffer, GLenum name, GLint64* value) {
-    if (buffer == nullptr || driver->inside_) return;
+    if (buffer == nullptr || reading_driver->inside_) return;
     if (name == GL_BUFFER_SIZE) *value = GLint64(buffer->bytes.size());
     if (name == GL_BUFFER_MAPPED) *value = buffer->mapped;
     if (name == GL_BUFFER_ACCESS) *value = buffer->access;
   }
   static void APIENTRY get_buffer64(GLenum target, GLenum name, GLint64* value) {
-    tell_buffer(driver->bound(target), name, value);
+    tell_buffer(reading_driver->bound(target), name, value);
   }
   static void APIENTRY get_buffer(GLenum target, GLenum name, GLint* value) {
     GLint64 wide = *value;
-    tell_buffer(driver->bound(target), name, &wide);
+    tell_buffer(reading_driver->bound(target), name, &wide);
     *value = GLint(wide);
   }
   static void APIENTRY get_named_buffer64(GLuint name, GLenum what, GLint64* value) {
-    const auto found = driver->buffers_.find(name);
-    tell_buffer(found == driver->buffers_.end() ? nullptr : &found->second, what, value);
+    const auto found = reading_driver->buffers_.find(name);
+    tell_buffer(found == reading_driver->buffers_.end() ? nullptr : &found->second, what, value);
   }
   static void APIENTRY get_named_buffer(GLuint name, GLenum what, GLint* value) {
     GLint64 wide = *value;
@@ -90,13 +92,13 @@ struct ReadingDriver::Slots {
     *value = GLint(wide);
   }
   static void APIENTRY get_buffer_pointer(GLenum target, GLenum, void** value) {
-    Buffer* buffer = driver->bound(target);
-    if (buffer == nullptr || driver->inside_) return;
+    Buffer* buffer = reading_driver->bound(target);
+    if (buffer == nullptr || reading_driver->inside_) return;
     *value = buffer->mapped ? buffer->bytes.data() + buffer->mapped_at : nullptr;
   }
   static void APIENTRY get_attribute(GLuint index, GLenum name, GLint* value) {
-    if (driver->inside_ || index >= attributes) return;
-    const Array& array = driver->arrays_[3 + index];
+    if (reading_driver->inside_ || index >= attributes) return;
+    const Array& array = reading_driver->arrays_[3 + index];
     switch (name) {
       case GL_VERTEX_ATTRIB_ARRAY_ENABLED:
         *value = array.enabled;
@@ -121,7 +123,8 @@ struct ReadingDriver::Slots {
     }
   }
   static void APIENTRY get_attribute_pointer(GLuint index, GLenum, void** value) {
-    if (!driver->inside_ && index < attributes) *value = address(driver->arrays_[3 + index].pointer);
+    if (!reading_driver->inside_ && index < attributes)
+      *value = address(reading_driver->arrays_[3 + index].pointer);
   }
   static void APIENTRY get_level(GLenum, GLint, GLenum name, GLint* value) {
     *value = name == GL_TEXTURE_DEPTH || name == GL_TEXTURE_COMPRESSED ? 1 : 4;
@@ -131,11 +134,13 @@ struct ReadingDriver::Slots {
   }
   static void APIENTRY get_of_object(GLuint, GLenum, GLint* value) { *value = 3; }
   static void APIENTRY get_named_assembly(GLuint, GLenum, GLenum, GLint* value) { *value = 3; }
-  static void APIENTRY get_assembly(GLenum, GLenum, GLint* value) { *value = GLint(driver->program_text_); }
+  static void APIENTRY get_assembly(GLenum, GLenum, GLint* value) {
+    *value = GLint(reading_driver->program_text_);
+  }
 };
 
 ReadingDriver::ReadingDriver() {
-  driver = this;
+  reading_driver = this;
   AsWords<Slots>::fill(table_);
   table_.GetIntegerv = &Slots::get_integer;
   table_.GetPointerv = &Slots::get_pointer;
@@ -159,7 +164,7 @@ ReadingDriver::ReadingDriver() {
 }
 
 ReadingDriver::~ReadingDriver() {
-  driver = nullptr;
+  reading_driver = nullptr;
 }
 
 void ReadingDriver::read(std::uint64_t from, std::size_t bytes) {

@@ -26,7 +26,7 @@ namespace {
 using namespace volume::testing;
 namespace fs = std::filesystem;
 
-constexpr int edge = 64;
+constexpr int image_edge = 64;
 /// Quadrature of every segment takes its time: so many pixels a side, in the middle of the image.
 constexpr int quadrature_edge = 20;
 
@@ -110,13 +110,14 @@ TEST_P(TenScenes, AreWhatDoublePrecisionSays) {
   }
   LoadedVolume volume = loaded(name);
   Texture& texture = volume.texture;
-  RenderRequest request = orbit_request(texture.description, scene.spacing, scene.camera, edge, edge, 1.3);
+  RenderRequest request =
+      orbit_request(texture.description, scene.spacing, scene.camera, image_edge, image_edge, 1.3);
   request.classification = table_of(scene, volume);
 
   // Segments look beyond a rank's own cells.
   RenderRequest segments = request;
   segments.method = Method::pre_integrated;
-  segments.window = {(edge - quadrature_edge) / 2, (edge - quadrature_edge) / 2, quadrature_edge,
+  segments.window = {(image_edge - quadrature_edge) / 2, (image_edge - quadrature_edge) / 2, quadrature_edge,
                      quadrature_edge};
   texture.description.ghost_layer = ghost_layer_needed(texture.description, segments);
   const BrickStore store = filled(texture);

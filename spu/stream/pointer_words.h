@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pointer of the application's, as the word that a record keeps of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace understudy::spu {
+
+inline const std::byte* address_in(std::uint64_t word) {
+  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(word));
+}
+
+inline std::uint64_t word_of(const void* pointer) {
+  return reinterpret_cast<std::uintptr_t>(pointer);
+}
+
+}  // namespace understudy::spu

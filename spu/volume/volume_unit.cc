@@ -137,7 +137,7 @@ void VolumeUnit::substitute(std::unique_ptr<Run>& run) {
   tidy();
   KnownVolume& volume = volumes_.of(run->volume_texture());
   RecognisedRun seen = stages().recogniser.recognise(*run, known_coordinate(volume.march));
-  if (deferred_depth_.empty() && stages().merger.holds(run, seen, volume)) return;
+  if (deferred_depth.empty() && stages().merger.holds(run, seen, volume)) return;
   settle_held();
   const auto lock = session_->lock();
   compositor::RenderService& service = session_->service();
@@ -179,8 +179,9 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   run.shown = true;
   // Where the image replaces what is there, it is drawn with the box, and that with its depth.
   if (!image.replaces_pixels) {
-    if (const auto watched = stages.depth.settle(run, volume.frames == 0, volume.depth_looked_at)) {
-      count_looks(deferred_depth_.add(*watched));
+    if (const auto watched = stages.depth.settle(run, image.uncut_window.value_or(request.window),
+                                                 volume.frames == 0, volume.depth_looked_at)) {
+      depth_looked_at(deferred_depth.add(*watched));
       chain().set_phase(Phase::depth_deferred);
     }
   }
@@ -194,38 +195,35 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
 
 Phase VolumeUnit::resting_phase() const {
   if (stages_ && !stages_->merger.empty()) return Phase::deferring;
-  return !deferred_depth_.empty() ? Phase::depth_deferred : Phase::watching;
+  return !deferred_depth.empty() ? Phase::depth_deferred : Phase::watching;
 }
 
 void VolumeUnit::settle_held() {
   if (stages_) stages_->merger.settle();
 }
 
-void VolumeUnit::count_looks(const std::vector<GLuint>& volumes) {
+void VolumeUnit::depth_looked_at(const std::vector<GLuint>& volumes) {
+  // The next runs of these volumes write it.
   for (const GLuint texture : volumes) {
     if (KnownVolume* const volume = volumes_.find(texture)) volume->depth_looked_at = true;
   }
-  if (!volumes.empty()) watch_depth_no_longer();
+  if (!volumes.empty()) depth_gone();
 }
 
-void VolumeUnit::depth_cleared_in(GLuint framebuffer) {
-  if (!deferred_depth_.take(framebuffer).empty()) watch_depth_no_longer();
-}
-
-void VolumeUnit::watch_depth_no_longer() {
-  if (deferred_depth_.empty()) chain().set_phase(Phase::watching);
+void VolumeUnit::depth_gone() {
+  if (deferred_depth.empty()) chain().set_phase(Phase::watching);
 }
 
 void VolumeUnit::frame_ended(FrameEnd kind) {
   // Another context may sample a texture that is attached here.
-  if (kind == FrameEnd::make_current) count_looks(deferred_depth_.take_textures_outside(0));
+  if (kind == FrameEnd::make_current) depth_looked_at(deferred_depth.take_textures(std::nullopt));
   if (kind != FrameEnd::swap && kind != FrameEnd::finish) return;
   // After a swap the window's depth is undefined; OSMesa, which has none, keeps it in memory that the
   // application may look at without a call.
-  if (kind == FrameEnd::swap)
-    depth_cleared_in(0);
-  else
-    depth_looked_at_in(0);
+  if (kind != FrameEnd::swap)
+    depth_looked_at(deferred_depth.take(0, 0));
+  else if (!deferred_depth.take_cleared(0, std::nullopt).empty())
+    depth_gone();
   FrameRecord frame = session_->ledger().close(this);
   frame.time_ms = std::chrono::duration<double, std::milli>(Clock::now() - frame_started_).count();
   report_frame(frame, session_->options().explain);

@@ -18,7 +18,6 @@
 #include <optional>
 #include <vector>
 
-#include "spu/volume/depth/deferred_depth.h"
 #include "spu/volume/known_volumes/known_volumes.h"
 #include "spu/volume/observation/draw_observer.h"
 
@@ -38,15 +37,8 @@ class VolumeUnit final : public DrawObserver {
   void abandon() override;
 
   void settle_held() override;
-  void depth_looked_at() override { count_looks(deferred_depth_.take_all()); }
-  void depth_looked_at_in(GLuint framebuffer) override { count_looks(deferred_depth_.take(framebuffer)); }
-  void depth_cleared_in(GLuint framebuffer) override;
-  void framebuffer_bound(GLuint framebuffer) override {
-    count_looks(deferred_depth_.take_textures_outside(framebuffer));
-  }
-  void renderbuffer_attached(GLuint renderbuffer) override {
-    count_looks(deferred_depth_.take_renderbuffer(renderbuffer));
-  }
+  void depth_looked_at(const std::vector<GLuint>& volumes) override;
+  void depth_gone() override;
 
  private:
   struct Recognised;
@@ -66,15 +58,11 @@ class VolumeUnit final : public DrawObserver {
   void substitute(std::unique_ptr<Run>& run);
   void tidy();
   void show(Run& run, const Recognised& recognised, KnownVolume& volume, compositor::RenderService& service);
-  /// The depth that runs of these volumes would have written was looked at: their next ones write it.
-  void count_looks(const std::vector<GLuint>& volumes);
-  void watch_depth_no_longer();
   void forget_deleted_volumes();
 
   std::shared_ptr<RenderSession> session_;
   KnownVolumes volumes_;
   std::unique_ptr<Stages> stages_;
-  DeferredDepth deferred_depth_;
   std::uint64_t tidied_in_frame_ = 0;
   std::chrono::steady_clock::time_point frame_started_;
 };

@@ -403,7 +403,7 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   if (wall > 0) {
     gl().UseProgram(wall_program_);
     gl().Uniform1f(gl().GetUniformLocation(wall_program_, "depth"), wall);
-    gl().DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    gl().DrawArrays(GL_TRIANGLE_STRIP, 0, style.half_a_wall ? 3 : 4);
   }
   if (style.reads_depth) {
     gl().ActiveTexture(GL_TEXTURE2);

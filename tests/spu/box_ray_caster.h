@@ -45,6 +45,7 @@ struct MarchStyle {
   double near = 0.5;    ///< the near plane
   /// The box is cut off before the near plane, and closed there, before it is drawn.
   bool closed_before_eye = false;
+  bool half_a_wall = false;  ///< the wall is a triangle that ends along a diagonal of the window
   /// Planes of a grid of 27 regions, in the dataset's coordinates, and the regions that are kept, x fastest.
   std::array<float, 6> cropping_planes{};
   std::uint32_t kept_regions = all_regions;

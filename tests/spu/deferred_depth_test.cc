@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth that substituted slices would have written: nobody looks at it where a toolkit switches between
 // framebuffers, and it is there for whoever does.
-#include "spu/volume/depth/deferred_depth.h"
+#include "spu/volume/observation/deferred_depth.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,21 +25,30 @@ TEST(DeferredDepth, IsThatOfFramebuffersApart) {
   EXPECT_THAT(depth.add({.framebuffer = 0, .volume = 7}), IsEmpty());
   EXPECT_THAT(depth.add({.framebuffer = 3, .volume = 7, .renderbuffer = 5}), IsEmpty());
   EXPECT_THAT(depth.add({.framebuffer = 3, .volume = 8, .renderbuffer = 5}), IsEmpty());
-  EXPECT_THAT(depth.take(1), IsEmpty());
-  EXPECT_THAT(depth.take(3), ElementsAre(7, 8));
+  EXPECT_THAT(depth.take(1, 0), IsEmpty());
+  EXPECT_THAT(depth.take(1, 6), IsEmpty()) << "another renderbuffer";
+  EXPECT_THAT(depth.take(3, 0), ElementsAre(7, 8));
   EXPECT_FALSE(depth.empty());
   EXPECT_THAT(depth.take_all(), ElementsAre(7));
   EXPECT_TRUE(depth.empty());
 }
 
-TEST(DeferredDepth, InATextureIsForAnybodyOnceAnotherFramebufferIsBound) {
+TEST(DeferredDepth, IsLookedAtThroughAnotherFramebufferThatSharesIt) {
   DeferredDepth depth;
   depth.add({.framebuffer = 3, .volume = 7, .in_texture = true});
   depth.add({.framebuffer = 4, .volume = 8, .renderbuffer = 5});
-  EXPECT_THAT(depth.take_textures_outside(3), IsEmpty());
-  EXPECT_THAT(depth.take_textures_outside(4), ElementsAre(7));
-  EXPECT_THAT(depth.take_renderbuffer(0), IsEmpty());
-  EXPECT_THAT(depth.take_renderbuffer(5), ElementsAre(8));
+  EXPECT_THAT(depth.take_textures(3), IsEmpty());
+  EXPECT_THAT(depth.take_textures(4), ElementsAre(7))
+      << "it may be sampled while another framebuffer is drawn into";
+  EXPECT_THAT(depth.take(6, 5), ElementsAre(8));
+}
+
+TEST(DeferredDepth, IsGoneWhereAllOfItIsCleared) {
+  DeferredDepth depth;
+  depth.add({.framebuffer = 3, .volume = 7, .pixels = {10, 10, 20, 20}});
+  EXPECT_THAT(depth.take_cleared(3, volume::Rect{0, 0, 20, 100}), IsEmpty()) << "half of it";
+  EXPECT_THAT(depth.take_cleared(4, std::nullopt), IsEmpty()) << "another framebuffer's";
+  EXPECT_THAT(depth.take_cleared(3, volume::Rect{10, 10, 20, 20}), ElementsAre(7));
 }
 
 TEST(DeferredDepth, IsWatchedInSoManyFramebuffersAndNoMore) {
@@ -89,14 +99,15 @@ class Framebuffers {
 /// past Understudy.
 float smallest_depth_after_frame(GlApplication& app, const SliceScene& scene,
                                  const Framebuffers& framebuffers) {
-  const DispatchTable& gl = app.gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
-  gl.Enable(GL_DEPTH_TEST);
-  gl.DepthMask(GL_TRUE);
+  // The table changes with the phase of the stream, so every call asks for it.
+  const auto gl = [&]() -> const DispatchTable& { return app.gl(); };
+  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  gl().Enable(GL_DEPTH_TEST);
+  gl().DepthMask(GL_TRUE);
   scene.draw(app, 25);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffers.other());
-  gl.Clear(GL_COLOR_BUFFER_BIT);
+  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.other());
+  gl().Clear(GL_COLOR_BUFFER_BIT);
   std::vector<float> depth(std::size_t(GlApplication::size) * GlApplication::size);
   const DispatchTable& driver = app.driver();
   driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.of_volume());

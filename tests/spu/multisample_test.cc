@@ -2,8 +2,12 @@
 // Slices into multisampled framebuffers, against the driver's own drawing of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <memory>
 
+#include "box_ray_caster.h"
 #include "colour_target.h"
 #include "drawing.h"
 
@@ -65,6 +69,35 @@ TEST_F(Multisampled, OpaqueGeometryHidesWhatLiesBehindIt) {
   std::printf("opaque geometry: %.1f dB\n", psnr(under, bare));
   EXPECT_GE(psnr(under, bare), 40);
   EXPECT_LT(psnr(frame(GL_RGBA8, false, draw(false)), bare), 30) << "the square changes nothing";
+  EXPECT_EQ(app_->error(), GLenum(GL_NO_ERROR));
+}
+
+/// The edge of what stands before a ray caster's box crosses pixels: it hides the box in some of their samples.
+TEST_F(Multisampled, ARayCastersBoxIsHiddenInSomeSamplesOfAPixel) {
+  app_.reset();
+  app_ = GlApplication::start(Profile::core);
+  if (!app_) GTEST_SKIP() << "no EGL context of a core profile here";
+  BoxRayCaster caster(MarchStyle{.half_a_wall = true});
+  caster.set_up(*app_);
+  const auto frame = [&](bool under) {
+    const ColourTarget target(*app_, GL_RGBA8, samples);
+    EXPECT_TRUE(target.complete());
+    app_->use_chain(under);
+    app_->gl().Enable(GL_MULTISAMPLE);
+    constexpr float before_the_box = 0.3F;
+    caster.draw(*app_, 25, before_the_box);
+    app_->end_frame();
+    return target.read();
+  };
+  const auto under = frame(true);
+  EXPECT_EQ(app_->substituted(), 1U) << app_->last_reason();
+  const auto bare = frame(false);
+  double most = 0;
+  for (std::size_t i = 0; i < bare.size(); ++i)
+    most = std::max(most, std::abs(double(bare[i]) - double(under[i])));
+  std::printf("behind an edge: %.1f dB, at most %.3f\n", psnr(under, bare), most);
+  EXPECT_GE(psnr(under, bare), 45);
+  EXPECT_LE(most, 0.03) << "an image that covers all samples of a pixel shows half of the edge: 0.2";
   EXPECT_EQ(app_->error(), GLenum(GL_NO_ERROR));
 }
 

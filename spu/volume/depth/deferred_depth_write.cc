@@ -2,20 +2,19 @@
 #include "spu/volume/depth/deferred_depth_write.h"
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include "dispatch/pass_through.h"
+#include "spu/state_value.h"
 #include "spu/track/call_names.h"
 #include "spu/track/calls.h"
+#include "spu/track/share_group.h"
 #include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/draw_slots.h"
 
 namespace understudy::spu {
 namespace {
-
-DrawObserver& here() {
-  return *Chain::current()->find<DrawObserver>();
-}
 
 constexpr std::string_view depth_readers[] = {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex",
                                               "glCopyImageSubData", "glBlit", "glDrawPixels", "glBitmap",
@@ -24,101 +23,148 @@ constexpr std::string_view depth_readers[] = {"glReadPixels", "glReadnPixels", "
                                               "glGetnTexImage", "glGetTextureImage", "glGetTextureSubImage"};
 
 GLuint bound(const DispatchTable& gl, GLenum binding) {
-  GLint framebuffer = 0;
-  gl.GetIntegerv(binding, &framebuffer);
-  return GLuint(framebuffer);
+  return GLuint(state_value(gl, binding));
 }
 
-GLuint bound_for_drawing(const DispatchTable& gl) {
-  return bound(gl, GL_DRAW_FRAMEBUFFER_BINDING);
+/// What holds the depth of the framebuffer that is bound for drawing, if it is a renderbuffer; else 0.
+GLuint depth_renderbuffer(const DispatchTable& gl, GLuint framebuffer) {
+  if (framebuffer == 0) return 0;
+  const auto attached = [&](GLenum what) {
+    GLint value = 0;
+    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
+    return GLuint(value);
+  };
+  const bool renderbuffer = attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_RENDERBUFFER;
+  return renderbuffer ? attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) : 0;
+}
+
+void note_draw(DrawObserver& observer) {
+  const DispatchTable& gl = *observer.context().gl;
+  observer.depth_looked_at(observer.deferred_depth.take_textures(std::nullopt));
+  if (observer.deferred_depth.empty() || !gl.IsEnabled(GL_DEPTH_TEST)) return;
+  const GLuint framebuffer = bound(gl, GL_DRAW_FRAMEBUFFER_BINDING);
+  observer.depth_looked_at(observer.deferred_depth.take(framebuffer, depth_renderbuffer(gl, framebuffer)));
 }
 
 /// A draw with a depth test, or a read: the answer would depend on the deferred depth.
 struct NoteDepthUse {
   static constexpr bool chooses(std::string_view name) {
     if (name == "glEnd") return false;
-    return is_draw(name) || name == "glCallList" || name == "glCallLists" ||
-           starts_with_any(name, depth_readers);
+    return is_draw(name) || name == "glCallLists" || starts_with_any(name, depth_readers);
   }
   static const DispatchTable& before(CallId call) {
-    DrawObserver& observer = here();
+    DrawObserver& observer = DrawObserver::current();
     // Within glBegin and glEnd nothing may be asked, and glBegin has been looked at.
     if (observer.inside_begin) return observer.chain().face(observer, Phase::watching);
-    const bool draw = kind_of(call) == CallKind::draw || call == CallId::CallList || call == CallId::CallLists;
-    const DispatchTable& gl = *observer.context().gl;
-    if (!draw)
-      observer.depth_looked_at();
-    else if (gl.IsEnabled(GL_DEPTH_TEST))
-      observer.depth_looked_at_in(bound_for_drawing(gl));
+    if (kind_of(call) == CallKind::draw)
+      note_draw(observer);
+    else
+      observer.depth_looked_at(observer.deferred_depth.take_all());
     return observer.chain().face(observer, Phase::watching);
   }
 };
 
+/// What comes next is the phase's that watches for draws.
+const DispatchTable& watching(DrawObserver& observer) {
+  return observer.chain().face(observer, Phase::watching);
+}
+
+/// A list that does more than draw may enable the depth test, or bind another framebuffer, before it does.
+void APIENTRY call_list_after_volume(GLuint list) {
+  DrawObserver& observer = DrawObserver::current();
+  if (!observer.inside_begin) {
+    const auto record = observer.chain().group().list(list);
+    if (record && record->only_geometry)
+      note_draw(observer);
+    else
+      observer.depth_looked_at(observer.deferred_depth.take_all());
+  }
+  watching(observer).CallList(list);
+}
+
+/// Clears as the scissor and the depth mask let it.
 void APIENTRY clear(GLbitfield mask) {
-  DrawObserver& observer = here();
-  if ((mask & GL_DEPTH_BUFFER_BIT) != 0) observer.depth_cleared_in(bound_for_drawing(*observer.context().gl));
+  DrawObserver& observer = DrawObserver::current();
+  const DispatchTable& gl = *observer.context().gl;
+  GLboolean writes = GL_FALSE;
+  gl.GetBooleanv(GL_DEPTH_WRITEMASK, &writes);
+  if ((mask & GL_DEPTH_BUFFER_BIT) != 0 && writes) {
+    std::optional<volume::Rect> part;
+    if (gl.IsEnabled(GL_SCISSOR_TEST)) {
+      std::array<GLint, 4> box{};
+      gl.GetIntegerv(GL_SCISSOR_BOX, box.data());
+      part = volume::Rect{box[0], box[1], box[2], box[3]};
+    }
+    const GLuint framebuffer = bound(gl, GL_DRAW_FRAMEBUFFER_BINDING);
+    if (!observer.deferred_depth.take_cleared(framebuffer, part).empty()) observer.depth_gone();
+  }
   observer.next().Clear(mask);
 }
 
-void note_framebuffer(GLenum target, GLuint framebuffer) {
-  DrawObserver& observer = here();
-  if (target != GL_READ_FRAMEBUFFER && !observer.inside_begin) observer.framebuffer_bound(framebuffer);
+/// What is drawn into another framebuffer may sample a texture.
+void note_framebuffer(DrawObserver& observer, GLenum target, GLuint framebuffer) {
+  if (target != GL_READ_FRAMEBUFFER && !observer.inside_begin)
+    observer.depth_looked_at(observer.deferred_depth.take_textures(framebuffer));
 }
 
 void APIENTRY bind_framebuffer(GLenum target, GLuint framebuffer) {
-  note_framebuffer(target, framebuffer);
-  here().next().BindFramebuffer(target, framebuffer);
+  DrawObserver& observer = DrawObserver::current();
+  note_framebuffer(observer, target, framebuffer);
+  watching(observer).BindFramebuffer(target, framebuffer);
 }
 
 void APIENTRY bind_framebuffer_ext(GLenum target, GLuint framebuffer) {
-  note_framebuffer(target, framebuffer);
-  here().next().BindFramebufferEXT(target, framebuffer);
+  DrawObserver& observer = DrawObserver::current();
+  note_framebuffer(observer, target, framebuffer);
+  watching(observer).BindFramebufferEXT(target, framebuffer);
 }
 
 /// The framebuffer that is bound gets another image; its old one may be looked at in another way.
-void note_attachment(GLenum target, GLuint renderbuffer) {
-  DrawObserver& observer = here();
+void note_attachment(DrawObserver& observer, GLenum target, GLuint renderbuffer) {
   if (observer.inside_begin) return;
-  observer.depth_looked_at_in(bound(*observer.context().gl, target == GL_READ_FRAMEBUFFER
-                                                                ? GL_READ_FRAMEBUFFER_BINDING
-                                                                : GL_DRAW_FRAMEBUFFER_BINDING));
-  observer.renderbuffer_attached(renderbuffer);
+  const GLuint changed =
+      bound(*observer.context().gl,
+            target == GL_READ_FRAMEBUFFER ? GL_READ_FRAMEBUFFER_BINDING : GL_DRAW_FRAMEBUFFER_BINDING);
+  observer.depth_looked_at(observer.deferred_depth.take(changed, renderbuffer));
 }
 
 void APIENTRY framebuffer_renderbuffer(GLenum target, GLenum attachment, GLenum renderbuffer_target,
                                        GLuint renderbuffer) {
-  note_attachment(target, renderbuffer);
-  here().next().FramebufferRenderbuffer(target, attachment, renderbuffer_target, renderbuffer);
+  DrawObserver& observer = DrawObserver::current();
+  note_attachment(observer, target, renderbuffer);
+  watching(observer).FramebufferRenderbuffer(target, attachment, renderbuffer_target, renderbuffer);
 }
 
 void APIENTRY framebuffer_renderbuffer_ext(GLenum target, GLenum attachment, GLenum renderbuffer_target,
                                            GLuint renderbuffer) {
-  note_attachment(target, renderbuffer);
-  here().next().FramebufferRenderbufferEXT(target, attachment, renderbuffer_target, renderbuffer);
+  DrawObserver& observer = DrawObserver::current();
+  note_attachment(observer, target, renderbuffer);
+  watching(observer).FramebufferRenderbufferEXT(target, attachment, renderbuffer_target, renderbuffer);
 }
 
 void APIENTRY framebuffer_texture_2d(GLenum target, GLenum attachment, GLenum texture_target, GLuint texture,
                                      GLint level) {
-  note_attachment(target, 0);
-  here().next().FramebufferTexture2D(target, attachment, texture_target, texture, level);
+  DrawObserver& observer = DrawObserver::current();
+  note_attachment(observer, target, 0);
+  watching(observer).FramebufferTexture2D(target, attachment, texture_target, texture, level);
 }
 
 void use_depth(bool used) {
-  DrawObserver& observer = here();
-  if (used && !observer.inside_begin) observer.depth_looked_at();
+  DrawObserver& observer = DrawObserver::current();
+  if (used && !observer.inside_begin) observer.depth_looked_at(observer.deferred_depth.take_all());
 }
 
 void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
                           void* pixels) {
   use_depth(format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL);
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   observer.chain().face(observer, Phase::watching).ReadPixels(x, y, width, height, format, type, pixels);
 }
 
 void APIENTRY blit_framebuffer(GLint x0, GLint y0, GLint x1, GLint y1, GLint to_x0, GLint to_y0, GLint to_x1,
                                GLint to_y1, GLbitfield mask, GLenum filter) {
   use_depth((mask & GL_DEPTH_BUFFER_BIT) != 0);
-  DrawObserver& observer = here();
+  DrawObserver& observer = DrawObserver::current();
   observer.chain()
       .face(observer, Phase::watching)
       .BlitFramebuffer(x0, y0, x1, y1, to_x0, to_y0, to_x1, to_y1, mask, filter);
@@ -137,6 +183,7 @@ void write_depth(const DispatchTable& gl, const Run& run) {
 void fill_depth_deferred_slots(DispatchTable& table) {
   fill_watching_slots(table);
   PassThrough<NoteDepthUse>::fill_chosen(table);
+  table.CallList = call_list_after_volume;
   table.Clear = clear;
   table.BindFramebuffer = bind_framebuffer;
   table.BindFramebufferEXT = bind_framebuffer_ext;

@@ -14,10 +14,11 @@ namespace understudy::spu {
 namespace {
 
 /// Of the framebuffer that is drawn into.
-DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volume) {
+DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volume,
+                                            const volume::Rect& pixels) {
   GLint framebuffer = 0;
   gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-  if (framebuffer == 0) return {0, volume};
+  if (framebuffer == 0) return {0, volume, pixels};
   const auto attached = [&](GLenum what) {
     GLint value = 0;
     gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
@@ -25,12 +26,13 @@ DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volu
   };
   const GLuint type = attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
   const GLuint renderbuffer = type == GL_RENDERBUFFER ? attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) : 0;
-  return {GLuint(framebuffer), volume, type == GL_TEXTURE, renderbuffer};
+  return {GLuint(framebuffer), volume, pixels, type == GL_TEXTURE, renderbuffer};
 }
 
 }  // namespace
 
-std::optional<DeferredDepth::Watched> DepthWatch::settle(const Run& run, bool first, bool looked_at) {
+std::optional<DeferredDepth::Watched> DepthWatch::settle(const Run& run, const volume::Rect& pixels, bool first,
+                                                         bool looked_at) {
   if (!run.pipeline().depth_test || !run.pipeline().depth_write) return std::nullopt;
   const std::string_view why = first       ? "the first of the volume"
                                : looked_at ? "somebody looked at it"
@@ -50,7 +52,7 @@ std::optional<DeferredDepth::Watched> DepthWatch::settle(const Run& run, bool fi
   });
   if (!why.empty()) count_done(Optimization::unseen_depth, why);
   if (looked_at) return std::nullopt;
-  return depth_of_framebuffer(*context_.gl, run.volume_texture());
+  return depth_of_framebuffer(*context_.gl, run.volume_texture(), pixels);
 }
 
 }  // namespace understudy::spu

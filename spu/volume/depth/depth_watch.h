@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "spu/volume/depth/deferred_depth.h"
+#include "spu/volume/observation/deferred_depth.h"
 #include "spu/volume/observation/run.h"
 
 namespace understudy::spu {
@@ -19,8 +19,10 @@ class DepthWatch {
       : context_(context), session_(session), account_(account) {}
 
   /// `run` was substituted, the first of its volume or not: draws the depth that it writes where somebody may
-  /// look at it, as `looked_at` says of earlier frames. Set where its use is to be watched from now on.
-  std::optional<DeferredDepth::Watched> settle(const Run& run, bool first, bool looked_at);
+  /// look at it, as `looked_at` says of earlier frames. It would be written in `pixels`. Set where its use is
+  /// to be watched from now on.
+  std::optional<DeferredDepth::Watched> settle(const Run& run, const volume::Rect& pixels, bool first,
+                                               bool looked_at);
 
  private:
   const GlContext& context_;

@@ -9,9 +9,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "spu/chain.h"
 #include "spu/volume/context/context.h"
+#include "spu/volume/observation/deferred_depth.h"
 #include "spu/volume/observation/run.h"
 #include "spu/volume/observation/stack_watch.h"
 #include "spu/volume/pipeline/program_samplers.h"
@@ -57,15 +59,11 @@ class DrawObserver : public Unit {
   /// Many 2-D textures of one size: what is drawn with them may be a stack of slices.
   void stack_defined();
 
-  /// The depth that substituted runs would have written is being used: that of any framebuffer, or of this one.
-  virtual void depth_looked_at() = 0;
-  virtual void depth_looked_at_in(GLuint framebuffer) = 0;
-  /// It is gone, unused.
-  virtual void depth_cleared_in(GLuint framebuffer) = 0;
-  /// This framebuffer is what is drawn into from now on.
-  virtual void framebuffer_bound(GLuint framebuffer) = 0;
-  /// A framebuffer gets this renderbuffer.
-  virtual void renderbuffer_attached(GLuint renderbuffer) = 0;
+  DeferredDepth deferred_depth;
+  /// Depth that runs of these volumes would have written is being used: it is watched no longer.
+  virtual void depth_looked_at(const std::vector<GLuint>& volumes) = 0;
+  /// Some of it is gone, unused.
+  virtual void depth_gone() = 0;
 
   const GlContext& context();
   const DispatchTable& next() const { return chain_.below(*this); }

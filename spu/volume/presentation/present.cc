@@ -6,9 +6,9 @@
 
 #include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
+#include "spu/volume/presentation/image_blending.h"
 #include "spu/volume/presentation/own_program.h"
 #include "spu/volume/refusal/refusal.h"
-#include "volume/blending_operator.h"
 
 namespace understudy::spu {
 namespace {
@@ -29,12 +29,6 @@ constexpr const char* fragment_source =
     "  if (shown >= 0.0) colour.rgb = clamp(colour.rgb - shown, 0.0, 1.0);\n"
     "  if (first_as_alpha) colour.a = colour.r;\n"
     "}\n";
-
-/// Blending that puts an image made with `op` where its samples would have gone one by one.
-void set_blending(const DispatchTable& gl, volume::Operator op) {
-  gl.BlendEquation(op == volume::Operator::max ? GL_MAX : op == volume::Operator::min ? GL_MIN : GL_FUNC_ADD);
-  gl.BlendFunc(GL_ONE, op == volume::Operator::over ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE);
-}
 
 }  // namespace
 
@@ -92,7 +86,8 @@ void Presenter::present_front_to_back(FrontToBack kind, const volume::ImageView&
 void Presenter::present_alpha(const AlphaBlending& alpha, const volume::ImageView& image) const {
   const DispatchTable& gl = *context_.gl;
   if (image.rect.empty()) return;
-  set_blending(gl, alpha.op == volume::Operator::over && alpha.squared ? volume::Operator::add : alpha.op);
+  set_image_blending(gl,
+                     alpha.op == volume::Operator::over && alpha.squared ? volume::Operator::add : alpha.op);
   gl.Uniform1i(first_as_alpha_, alpha.squared ? 1 : 0);
   show(image);
 }
@@ -121,7 +116,7 @@ void Presenter::present(const volume::ImageView& image, const Blending& blending
   if (!image.rect.empty()) {
     gl.ColorMask(mask[0], mask[1], mask[2], mask[3] && !blending.alpha.untouched && !apart);
     if (blending.front_to_back == FrontToBack::no) {
-      set_blending(gl, blending.op);
+      set_image_blending(gl, blending.op);
       show(image);
     } else {
       present_front_to_back(blending.front_to_back, image, target, mask);

@@ -75,6 +75,8 @@ void Presentation::present(compositor::RenderService& service, const ImageToShow
   const Blending& blending = what.pipeline.blending;
   const Target& target = what.pipeline.target;
   if (what.image.replaces_pixels) return replacer_.replace(image.shown, what.image.no_ray, *what.box);
+  if (what.image.covers_samples && what.box != nullptr)
+    return replacer_.blend(image.shown, blending.op, !blending.alpha.untouched, *what.box);
   if (!blending.alpha_stands_apart()) return presenter_.present(image.shown, blending, target, nullptr);
   if (what.image.ray_caster) {
     const volume::Image alpha = alpha_of_fragments(image.shown, blending.alpha);

@@ -6,6 +6,7 @@
 
 #include "spu/volume/context/context.h"
 #include "spu/volume/context/saved_state.h"
+#include "spu/volume/presentation/image_blending.h"
 #include "spu/volume/presentation/own_program.h"
 #include "spu/volume/refusal/refusal.h"
 
@@ -29,8 +30,8 @@ constexpr const char* pixel_of_image_source =
     "}\n";
 
 /// What the application has switched on and SavedState switches off, but for blending, which is disabled.
-constexpr std::array<GLenum, 5> kept_capabilities = {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_MULTISAMPLE,
-                                        GL_DITHER};
+constexpr std::array<GLenum, 5> kept_capabilities = {GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE,
+                                                     GL_MULTISAMPLE, GL_DITHER};
 
 }  // namespace
 
@@ -81,8 +82,9 @@ void Replacer::draw(const ObservedPolygons& box) const {
   gl.DrawArrays(GL_TRIANGLES, 0, GLsizei(positions.size()));
 }
 
-void Replacer::replace(const volume::ImageView& image, const volume::Rgba& otherwise,
-                       const ObservedPolygons& box) {
+void Replacer::draw_once_more(const volume::ImageView& image, const volume::Rgba& otherwise,
+                              const ObservedPolygons& box, std::optional<volume::Operator> blended,
+                              bool alpha) {
   const DispatchTable& gl = *context_.gl;
   std::array<GLboolean, 4> mask{};
   GLboolean depth_mask = GL_FALSE;
@@ -95,9 +97,24 @@ void Replacer::replace(const volume::ImageView& image, const volume::Rgba& other
   for (const GLenum capability : kept_capabilities) {
     if (saved.was_enabled(capability)) gl.Enable(capability);
   }
-  gl.ColorMask(mask[0], mask[1], mask[2], mask[3]);
-  gl.DepthMask(depth_mask);
+  if (blended) {
+    gl.Enable(GL_BLEND);
+    set_image_blending(gl, *blended);
+  }
+  gl.ColorMask(mask[0], mask[1], mask[2], alpha ? mask[3] : GLboolean(GL_FALSE));
+  // Blended fragments leave the depth to DepthWatch.
+  gl.DepthMask(blended ? GLboolean(GL_FALSE) : depth_mask);
   draw(box);
+}
+
+void Replacer::replace(const volume::ImageView& image, const volume::Rgba& otherwise,
+                       const ObservedPolygons& box) {
+  draw_once_more(image, otherwise, box, std::nullopt, true);
+}
+
+void Replacer::blend(const volume::ImageView& image, volume::Operator op, bool alpha,
+                     const ObservedPolygons& box) {
+  draw_once_more(image, {}, box, op, alpha);
 }
 
 }  // namespace understudy::spu

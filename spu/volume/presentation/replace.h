@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where blending is disabled, the box of a ray caster is drawn again, clip position by clip position, and its
-// fragments take the image's pixels: they cover, hide and are hidden as the application's fragments would.
+// Where blending is disabled, or a pixel has several samples, the box of a ray caster is drawn again, clip
+// position by clip position, and its fragments take the image's pixels: they cover, hide and are hidden as the
+// application's would.
 #pragma once
+
+#include <optional>
 
 #include "dispatch/table.h"
 #include "spu/volume/geometry/polygon.h"
+#include "volume/blending_operator.h"
 #include "volume/image.h"
 #include "volume/rgba.h"
 
@@ -21,11 +25,17 @@ class Replacer {
   /// outside of `image`, or where that is all zero, becomes `otherwise`. Throws Refusal, and has drawn nothing
   /// then, where the driver does not link the program.
   void replace(const volume::ImageView& image, const volume::Rgba& otherwise, const ObservedPolygons& box);
+  /// The same where fragments are blended by `op`, each pixel's at most once; with `alpha`, the framebuffer's
+  /// alpha, too. A fragment outside of `image`, or where that is all zero, changes nothing: `op` is none that
+  /// this would change (min).
+  void blend(const volume::ImageView& image, volume::Operator op, bool alpha, const ObservedPolygons& box);
 
  private:
   bool prepare();
   void show(const volume::ImageView& image, const volume::Rgba& otherwise) const;
   void draw(const ObservedPolygons& box) const;
+  void draw_once_more(const volume::ImageView& image, const volume::Rgba& otherwise,
+                      const ObservedPolygons& box, std::optional<volume::Operator> blended, bool alpha);
 
   const GlContext& context_;
   GLuint program_ = 0;

@@ -160,6 +160,16 @@ bool replaces_pixels(const Pipeline& pipeline, const March& march) {
   return pipeline.blending.replaces || march.background;
 }
 
+/// Whether the box is drawn again to blend its image: it covers some samples of a pixel, and is hidden in some.
+/// Where its back faces are drawn as well, the image holds what both leave, and two fragments would be too
+/// many.
+bool covers_samples(const GlContext& context, const Pipeline& pipeline, const March& march) {
+  const Blending& blending = pipeline.blending;
+  return pipeline.target.samples > 0 && !replaces_pixels(pipeline, march) &&
+         blending.front_to_back == FrontToBack::no && !blending.alpha_stands_apart() &&
+         blending.op != volume::Operator::min && context.gl->IsEnabled(GL_CULL_FACE);
+}
+
 Refusal no_coordinate() {
   return "no output of the vertex shader is a texture coordinate over the whole box";
 }
@@ -351,6 +361,8 @@ volume::RenderRequest RayCasterStage::compose(const Draw& draw, const March& mar
   if (!draw.ends_at_geometry &&
       geometry_inside(request, texture_to_clip, {texture_to_clip, box.region, box.cuts}))
     throw Refusal{"opaque geometry stands in the ray caster's box, and rays do not end at it"};
+  // Of several samples of a pixel some are hidden, others are not.
+  if (covers_samples(context_, pipeline, march) && !draw.ends_at_geometry) request.depth.reset();
   return request;
 }
 
@@ -360,6 +372,7 @@ ImageRequest RayCasterStage::ask(const Draw& draw, const March& march, const Pro
   image.request = std::move(composed);
   image.ray_caster = true;
   image.replaces_pixels = replaces_pixels(draw.run.pipeline(), march);
+  image.covers_samples = covers_samples(context_, draw.run.pipeline(), march);
   if (march.background) image.no_ray = over_background(*march.background, {});
   image.eye_inside = draw.eye_inside;
   image.opaque = image.request.depth;

@@ -20,7 +20,9 @@ struct ImageRequest {
   volume::Rgba
       no_ray{};  ///< what fragments show, where they replace pixels, whose ray misses the box for rounding
   bool replaces_pixels = false;  ///< its fragments take the place of what is there
-  bool eye_inside = false;       ///< its box has been cut before the eye
+  /// The box covers, and is hidden in, each sample of a multisampled framebuffer's pixels by itself.
+  bool covers_samples = false;
+  bool eye_inside = false;  ///< its box has been cut before the eye
   /// No ray of its image has a visible sample: the program's own background, which it shows, proves nothing.
   bool background_alone = false;
   bool unproven = false;  ///< measured for this image, and perhaps right in this view alone

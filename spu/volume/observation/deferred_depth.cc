@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spu/volume/depth/deferred_depth.h"
+#include "spu/volume/observation/deferred_depth.h"
 
 namespace understudy::spu {
 
@@ -24,20 +24,24 @@ std::vector<GLuint> DeferredDepth::add(const Watched& watched) {
   return looked_at;
 }
 
-std::vector<GLuint> DeferredDepth::take(GLuint framebuffer) {
-  return take_if([&](const Watched& each) { return each.framebuffer == framebuffer; });
-}
-
 std::vector<GLuint> DeferredDepth::take_all() {
   return take_if([](const Watched&) { return true; });
 }
 
-std::vector<GLuint> DeferredDepth::take_textures_outside(GLuint framebuffer) {
-  return take_if([&](const Watched& each) { return each.in_texture && each.framebuffer != framebuffer; });
+std::vector<GLuint> DeferredDepth::take(GLuint framebuffer, GLuint renderbuffer) {
+  return take_if([&](const Watched& each) {
+    return each.framebuffer == framebuffer || (renderbuffer != 0 && each.renderbuffer == renderbuffer);
+  });
 }
 
-std::vector<GLuint> DeferredDepth::take_renderbuffer(GLuint renderbuffer) {
-  return take_if([&](const Watched& each) { return renderbuffer != 0 && each.renderbuffer == renderbuffer; });
+std::vector<GLuint> DeferredDepth::take_cleared(GLuint framebuffer, const std::optional<volume::Rect>& part) {
+  return take_if([&](const Watched& each) {
+    return each.framebuffer == framebuffer && (!part || intersection(*part, each.pixels) == each.pixels);
+  });
+}
+
+std::vector<GLuint> DeferredDepth::take_textures(std::optional<GLuint> but_of) {
+  return take_if([&](const Watched& each) { return each.in_texture && each.framebuffer != but_of; });
 }
 
 }  // namespace understudy::spu

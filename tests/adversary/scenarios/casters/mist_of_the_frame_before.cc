@@ -17,8 +17,8 @@ Scenario mist_of_the_frame_before() {
       .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
         const Gl& gl = canvas.gl;
-        const std::array<std::shared_ptr<Offscreen>, 2> targets{
-            std::make_shared<Offscreen>(canvas, GL_RGBA8), std::make_shared<Offscreen>(canvas, GL_RGBA8)};
+        const std::array<std::shared_ptr<Offscreen>, 2> targets{std::make_shared<Offscreen>(canvas, GL_RGBA8),
+                                                                std::make_shared<Offscreen>(canvas, GL_RGBA8)};
         std::array<GLuint, 2> depths{};
         gl.GenTextures(2, depths.data());
         gl.ActiveTexture(GL_TEXTURE6);

@@ -40,7 +40,8 @@ void main() { colour = vec4(at.x, 1.0, at.y, 1.0); }
           scene->draw_slices(camera);
           if (frame >= 12) {
             canvas.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, labelled->framebuffer());
-            canvas.gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            canvas.gl.BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
+                                      GL_NEAREST);
             canvas.gl.BindFramebuffer(GL_FRAMEBUFFER, labelled->framebuffer());
             canvas.gl.Disable(GL_BLEND);
             opaque->use();

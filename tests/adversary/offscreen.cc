@@ -56,6 +56,17 @@ Offscreen::Offscreen(const Canvas& canvas, GLenum format, int samples)
     throw std::runtime_error("this OpenGL cannot draw into a framebuffer object of the format");
 }
 
+void Offscreen::attach_depth(GLenum format) const {
+  const Gl& gl = canvas_.gl;
+  GLuint depth = 0;
+  gl.GenRenderbuffers(1, &depth);
+  gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
+  gl.RenderbufferStorage(GL_RENDERBUFFER, format, canvas_.width(), canvas_.height());
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  const GLenum attachment = format == GL_DEPTH24_STENCIL8 ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT;
+  gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, depth);
+}
+
 void Offscreen::begin(float red, float green, float blue, float alpha) const {
   canvas_.gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   canvas_.gl.Viewport(0, 0, canvas_.width(), canvas_.height());

@@ -12,6 +12,9 @@ class Offscreen {
   /// `samples` above 1: a multisampled one, which is resolved before it is shown.
   Offscreen(const Canvas& canvas, GLenum format, int samples = 1);
 
+  /// A renderbuffer of its own, of this format: depth, or depth and stencil.
+  void attach_depth(GLenum format) const;
+
   GLuint framebuffer() const { return framebuffer_; }
   /// Binds it and clears it.
   void begin(float red, float green, float blue, float alpha) const;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -95,71 +96,111 @@ class Framebuffers {
   std::array<GLuint, 3> buffers_{};
 };
 
-/// A frame that ends with another framebuffer bound; then the smallest depth that lies in the volume's, read
-/// past Understudy.
-float smallest_depth_after_frame(GlApplication& app, const SliceScene& scene,
-                                 const Framebuffers& framebuffers) {
+class DeferredDepthOfFrames : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    app_ = GlApplication::start(Profile::compatibility);
+    if (!app_) GTEST_SKIP() << "no EGL context here; install libegl1 and libgl1-mesa-dri";
+    scene_.set_up(*app_);
+    app_->use_chain(true);
+  }
+
   // The table changes with the phase of the stream, so every call asks for it.
-  const auto gl = [&]() -> const DispatchTable& { return app.gl(); };
-  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
-  gl().Enable(GL_DEPTH_TEST);
-  gl().DepthMask(GL_TRUE);
-  scene.draw(app, 25);
-  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
-  gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.other());
-  gl().Clear(GL_COLOR_BUFFER_BIT);
-  std::vector<float> depth(std::size_t(GlApplication::size) * GlApplication::size);
-  const DispatchTable& driver = app.driver();
-  driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.of_volume());
-  driver.ReadPixels(0, 0, GlApplication::size, GlApplication::size, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
-  driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.other());
-  app.end_frame();
-  return *std::min_element(depth.begin(), depth.end());
-}
+  const DispatchTable& gl() const { return app_->gl(); }
 
-TEST(DeferredDepth, IsNotDrawnWhereAToolkitSwitchesFramebuffers) {
-  auto app = GlApplication::start(Profile::compatibility);
-  if (!app) GTEST_SKIP() << "no EGL context here";
-  const SliceScene scene = immediate_rgba();
-  scene.set_up(*app);
-  app->use_chain(true);
-  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/false);
-  EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "the first frame draws it";
+  void draw_volume(const Framebuffers& framebuffers) {
+    gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+    gl().Enable(GL_DEPTH_TEST);
+    gl().DepthMask(GL_TRUE);
+    scene_.draw(*app_, 25);
+  }
+
+  /// Of what lies in the volume's framebuffer, read past Understudy; then the frame ends.
+  float smallest_depth(const Framebuffers& framebuffers) {
+    std::vector<float> depth(std::size_t(GlApplication::size) * GlApplication::size);
+    const DispatchTable& driver = app_->driver();
+    GLint bound = 0;
+    driver.GetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &bound);
+    driver.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers.of_volume());
+    driver.ReadPixels(0, 0, GlApplication::size, GlApplication::size, GL_DEPTH_COMPONENT, GL_FLOAT,
+                      depth.data());
+    driver.BindFramebuffer(GL_READ_FRAMEBUFFER, GLuint(bound));
+    app_->end_frame();
+    return *std::min_element(depth.begin(), depth.end());
+  }
+
+  /// A frame that ends with another framebuffer bound.
+  float smallest_depth_after_frame(const Framebuffers& framebuffers) {
+    draw_volume(framebuffers);
+    gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+    gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.other());
+    gl().Clear(GL_COLOR_BUFFER_BIT);
+    return smallest_depth(framebuffers);
+  }
+
+  std::unique_ptr<GlApplication> app_;
+  const SliceScene scene_ = immediate_rgba();
+};
+
+TEST_F(DeferredDepthOfFrames, IsNotDrawnWhereAToolkitSwitchesFramebuffers) {
+  const Framebuffers framebuffers(app_->gl(), /*depth_in_texture=*/false);
+  EXPECT_LT(smallest_depth_after_frame(framebuffers), 1) << "the first frame draws it";
   for (std::uint64_t frame = 2; frame <= 4; ++frame) {
-    EXPECT_EQ(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "frame " << frame;
-    EXPECT_EQ(app->substituted(), frame) << app->last_reason();
+    EXPECT_EQ(smallest_depth_after_frame(framebuffers), 1) << "frame " << frame;
+    EXPECT_EQ(app_->substituted(), frame) << app_->last_reason();
   }
 }
 
-TEST(DeferredDepth, IsDrawnIntoATextureThatMayBeSampled) {
-  auto app = GlApplication::start(Profile::compatibility);
-  if (!app) GTEST_SKIP() << "no EGL context here";
-  const SliceScene scene = immediate_rgba();
-  scene.set_up(*app);
-  app->use_chain(true);
-  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/true);
+TEST_F(DeferredDepthOfFrames, IsDrawnIntoATextureThatMayBeSampled) {
+  const Framebuffers framebuffers(app_->gl(), /*depth_in_texture=*/true);
   for (std::uint64_t frame = 1; frame <= 3; ++frame) {
-    EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1) << "frame " << frame;
-    EXPECT_EQ(app->substituted(), frame) << app->last_reason();
+    EXPECT_LT(smallest_depth_after_frame(framebuffers), 1) << "frame " << frame;
+    EXPECT_EQ(app_->substituted(), frame) << app_->last_reason();
   }
 }
 
-TEST(DeferredDepth, IsThereFromTheSecondLookOnInAFramebufferThatIsBoundAgain) {
-  auto app = GlApplication::start(Profile::compatibility);
-  if (!app) GTEST_SKIP() << "no EGL context here";
-  const SliceScene scene = immediate_rgba();
-  scene.set_up(*app);
-  app->use_chain(true);
-  const Framebuffers framebuffers(app->gl(), /*depth_in_texture=*/false);
-  for (int frame = 1; frame <= 2; ++frame) smallest_depth_after_frame(*app, scene, framebuffers);
+TEST_F(DeferredDepthOfFrames, IsThereFromTheSecondLookOnInAFramebufferThatIsBoundAgain) {
+  const Framebuffers framebuffers(app_->gl(), /*depth_in_texture=*/false);
+  for (int frame = 1; frame <= 2; ++frame) smallest_depth_after_frame(framebuffers);
   // Into the volume's framebuffer, with a depth test and without a clear.
-  app->gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
-  app->gl().Enable(GL_DEPTH_TEST);
-  app->gl().Begin(GL_TRIANGLES);
-  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}) app->gl().Vertex3d(x, y, 0.5);
-  app->gl().End();
-  app->end_frame();
-  EXPECT_LT(smallest_depth_after_frame(*app, scene, framebuffers), 1);
+  app_->gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffers.of_volume());
+  app_->gl().Enable(GL_DEPTH_TEST);
+  app_->gl().Begin(GL_TRIANGLES);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}) app_->gl().Vertex3d(x, y, 0.5);
+  app_->gl().End();
+  app_->end_frame();
+  EXPECT_LT(smallest_depth_after_frame(framebuffers), 1);
+}
+
+constexpr const char* reads_a_texel =
+    "#version 430\n"
+    "layout(local_size_x = 1) in;\n"
+    "uniform sampler2D depth;\n"
+    "layout(std430, binding = 0) buffer To { float to; };\n"
+    "void main() { to = texelFetch(depth, ivec2(48), 0).r; }\n";
+
+/// Nothing is drawn or bound between the volume and the compute shader.
+TEST_F(DeferredDepthOfFrames, IsThereForAComputeShaderFromTheSecondFrameOn) {
+  const Framebuffers framebuffers(app_->gl(), /*depth_in_texture=*/true);
+  const GLuint shader = gl().CreateShader(GL_COMPUTE_SHADER);
+  gl().ShaderSource(shader, 1, &reads_a_texel, nullptr);
+  gl().CompileShader(shader);
+  const GLuint program = gl().CreateProgram();
+  gl().AttachShader(program, shader);
+  gl().LinkProgram(program);
+  GLuint buffer = 0;
+  gl().GenBuffers(1, &buffer);
+  gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
+  gl().BufferData(GL_SHADER_STORAGE_BUFFER, sizeof(float), nullptr, GL_STATIC_DRAW);
+  for (int frame = 1; frame <= 3; ++frame) {
+    draw_volume(framebuffers);
+    gl().UseProgram(program);
+    gl().DispatchCompute(1, 1, 1);
+    gl().UseProgram(0);
+    EXPECT_LT(smallest_depth(framebuffers), 1) << "frame " << frame;
+  }
+  EXPECT_EQ(app_->error(), GLenum(GL_NO_ERROR));
+  EXPECT_EQ(app_->substituted(), 3U) << app_->last_reason();
 }
 
 }  // namespace

@@ -10,32 +10,24 @@
 #include "spu/track/call_names.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
+#include "spu/volume/depth/depth_attachment.h"
 #include "spu/volume/observation/draw_observer.h"
 #include "spu/volume/observation/draw_slots.h"
 
 namespace understudy::spu {
 namespace {
 
-constexpr std::string_view depth_readers[] = {"glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex",
-                                              "glCopyImageSubData", "glBlit", "glDrawPixels", "glBitmap",
-                                              // Framebuffers that change may give their depth away.
-                                              "glFramebuffer", "glNamedFramebuffer", "glGetTexImage",
-                                              "glGetnTexImage", "glGetTextureImage", "glGetTextureSubImage"};
+constexpr std::string_view depth_readers[] = {
+    "glReadPixels", "glReadnPixels", "glCopyPixels", "glCopyTex", "glCopyImageSubData", "glBlit",
+    "glDrawPixels", "glBitmap",
+    // Framebuffers that change may give their depth away.
+    "glFramebuffer", "glNamedFramebuffer", "glGetTexImage", "glGetnTexImage", "glGetTextureImage",
+    "glGetTextureSubImage",
+    // Draws that no volume is made of, and what samples textures without one.
+    "glDrawTransformFeedback", "glDrawMeshTasks", "glDrawCommands", "glCallCommandList", "glDispatchCompute"};
 
 GLuint bound(const DispatchTable& gl, GLenum binding) {
   return GLuint(state_value(gl, binding));
-}
-
-/// What holds the depth of the framebuffer that is bound for drawing, if it is a renderbuffer; else 0.
-GLuint depth_renderbuffer(const DispatchTable& gl, GLuint framebuffer) {
-  if (framebuffer == 0) return 0;
-  const auto attached = [&](GLenum what) {
-    GLint value = 0;
-    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
-    return GLuint(value);
-  };
-  const bool renderbuffer = attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_RENDERBUFFER;
-  return renderbuffer ? attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) : 0;
 }
 
 void note_draw(DrawObserver& observer) {
@@ -43,7 +35,8 @@ void note_draw(DrawObserver& observer) {
   observer.depth_looked_at(observer.deferred_depth.take_textures(std::nullopt));
   if (observer.deferred_depth.empty() || !gl.IsEnabled(GL_DEPTH_TEST)) return;
   const GLuint framebuffer = bound(gl, GL_DRAW_FRAMEBUFFER_BINDING);
-  observer.depth_looked_at(observer.deferred_depth.take(framebuffer, depth_renderbuffer(gl, framebuffer)));
+  observer.depth_looked_at(
+      observer.deferred_depth.take(framebuffer, depth_attachment(gl, framebuffer).renderbuffer()));
 }
 
 /// A draw with a depth test, or a read: the answer would depend on the deferred depth.

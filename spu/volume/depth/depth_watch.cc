@@ -4,8 +4,10 @@
 #include <string_view>
 
 #include "spu/report/optimization.h"
+#include "spu/state_value.h"
 #include "spu/volume/context/context.h"
 #include "spu/volume/depth/deferred_depth_write.h"
+#include "spu/volume/depth/depth_attachment.h"
 #include "spu/volume/session/render_session.h"
 #include "spu/volume/timing/frame_account.h"
 
@@ -16,17 +18,9 @@ namespace {
 /// Of the framebuffer that is drawn into.
 DeferredDepth::Watched depth_of_framebuffer(const DispatchTable& gl, GLuint volume,
                                             const volume::Rect& pixels) {
-  GLint framebuffer = 0;
-  gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
-  if (framebuffer == 0) return {0, volume, pixels};
-  const auto attached = [&](GLenum what) {
-    GLint value = 0;
-    gl.GetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, what, &value);
-    return GLuint(value);
-  };
-  const GLuint type = attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
-  const GLuint renderbuffer = type == GL_RENDERBUFFER ? attached(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) : 0;
-  return {GLuint(framebuffer), volume, pixels, type == GL_TEXTURE, renderbuffer};
+  const auto framebuffer = GLuint(state_value(gl, GL_DRAW_FRAMEBUFFER_BINDING));
+  const DepthAttachment attachment = depth_attachment(gl, framebuffer);
+  return {framebuffer, volume, pixels, attachment.type == GL_TEXTURE, attachment.renderbuffer()};
 }
 
 }  // namespace

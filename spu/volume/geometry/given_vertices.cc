@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "spu/state_value.h"
 #include "spu/volume/geometry/transform_feedback.h"
 
 namespace understudy::spu {
@@ -27,24 +28,18 @@ constexpr const char* attribute_shader =
     "  gl_Position = gl_Vertex;\n"
     "}\n";
 
-GLint asked(const DispatchTable& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
-
 /// In scope, the vertex arrays are `data` alone; afterwards they, and the current attributes, are as before.
 class ArraysInMemory {
  public:
   ArraysInMemory(const GlContext& context, std::span<const float> data) : gl_(*context.gl) {
     gl_.GetFloatv(GL_CURRENT_COLOR, colour_.data());
     gl_.GetFloatv(GL_CURRENT_NORMAL, normal_.data());
-    active_ = asked(gl_, GL_ACTIVE_TEXTURE);
+    active_ = state_value(gl_, GL_ACTIVE_TEXTURE);
     gl_.ActiveTexture(GL_TEXTURE0);
     gl_.GetFloatv(GL_CURRENT_TEXTURE_COORDS, coordinate_.data());
     gl_.ActiveTexture(GLenum(active_));
-    vertex_array_ = asked(gl_, GL_VERTEX_ARRAY_BINDING);
-    array_buffer_ = asked(gl_, GL_ARRAY_BUFFER_BINDING);
+    vertex_array_ = state_value(gl_, GL_VERTEX_ARRAY_BINDING);
+    array_buffer_ = state_value(gl_, GL_ARRAY_BUFFER_BINDING);
     // Only the default object may have arrays in memory.
     gl_.BindVertexArray(0);
     gl_.PushClientAttrib(GL_CLIENT_VERTEX_ARRAY_BIT);
@@ -53,7 +48,7 @@ class ArraysInMemory {
       gl_.ClientActiveTexture(GLenum(GL_TEXTURE0 + unit));
       gl_.DisableClientState(GL_TEXTURE_COORD_ARRAY);
     }
-    const GLint attributes = asked(gl_, GL_MAX_VERTEX_ATTRIBS);
+    const GLint attributes = state_value(gl_, GL_MAX_VERTEX_ATTRIBS);
     for (GLint i = 0; i < attributes; ++i) gl_.DisableVertexAttribArray(GLuint(i));
     gl_.InterleavedArrays(GL_T4F_C4F_N3F_V4F, 0, data.data());
   }
@@ -85,7 +80,7 @@ bool GivenVertices::can_tell(const Run& run) const {
   if (!run.only_polygons) return false;
   // It may read attributes of any kind.
   if (context_.vertex_assembly && gl.IsEnabled(GL_VERTEX_PROGRAM_ARB)) return false;
-  return asked(gl, GL_CLIENT_ATTRIB_STACK_DEPTH) < asked(gl, GL_MAX_CLIENT_ATTRIB_STACK_DEPTH);
+  return state_value(gl, GL_CLIENT_ATTRIB_STACK_DEPTH) < state_value(gl, GL_MAX_CLIENT_ATTRIB_STACK_DEPTH);
 }
 
 bool GivenVertices::prepare() {

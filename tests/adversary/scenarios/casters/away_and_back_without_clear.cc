@@ -14,16 +14,10 @@ Scenario away_and_back_without_clear() {
               "first, which is not cleared, triangles are tested against the depth.",
           .expectation = Expectation::either,
           .start = [](Canvas& canvas) -> DrawFrame {
-            const Gl& gl = canvas.gl;
             auto main_view = std::make_shared<Offscreen>(canvas, GL_RGBA8);
             auto inset = std::make_shared<Offscreen>(canvas, GL_RGBA8);
             for (const auto& offscreen : {main_view, inset}) {
-              GLuint depth = 0;
-              gl.GenRenderbuffers(1, &depth);
-              gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
-              gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, canvas.width(), canvas.height());
-              gl.BindFramebuffer(GL_FRAMEBUFFER, offscreen->framebuffer());
-              gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+              offscreen->attach_depth(GL_DEPTH_COMPONENT24);
             }
             auto opaque = std::make_shared<GlslProgram>(canvas, caster_vertex_shader, R"(#version 330 core
 in vec3 at;

@@ -15,16 +15,10 @@ Scenario backing_store_with_its_own_depth() {
           "to a backing store, where triangles are tested against depth of its own; nobody looks at the box's.",
       .expectation = Expectation::must_be_substituted,
       .start = [](Canvas& canvas) -> DrawFrame {
-        const Gl& gl = canvas.gl;
         auto widget = std::make_shared<Offscreen>(canvas, GL_RGBA8);
         auto backing = std::make_shared<Offscreen>(canvas, GL_RGBA8);
         for (const auto& offscreen : {widget, backing}) {
-          GLuint depth = 0;
-          gl.GenRenderbuffers(1, &depth);
-          gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
-          gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, canvas.width(), canvas.height());
-          gl.BindFramebuffer(GL_FRAMEBUFFER, offscreen->framebuffer());
-          gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth);
+          offscreen->attach_depth(GL_DEPTH24_STENCIL8);
         }
         auto opaque = std::make_shared<GlslProgram>(canvas, caster_vertex_shader, R"(#version 330 core
 in vec3 at;

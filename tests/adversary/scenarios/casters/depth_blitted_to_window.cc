@@ -15,14 +15,8 @@ Scenario depth_blitted_to_window() {
           "10 on its depth is, too, and triangles are drawn in the window, tested against it.",
       .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
-        const Gl& gl = canvas.gl;
         auto offscreen = std::make_shared<Offscreen>(canvas, GL_RGBA8);
-        GLuint depth = 0;
-        gl.GenRenderbuffers(1, &depth);
-        gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
-        gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, canvas.width(), canvas.height());
-        gl.BindFramebuffer(GL_FRAMEBUFFER, offscreen->framebuffer());
-        gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth);
+        offscreen->attach_depth(GL_DEPTH24_STENCIL8);
         auto opaque = std::make_shared<GlslProgram>(canvas, caster_vertex_shader, R"(#version 330 core
 in vec3 at;
 out vec4 colour;

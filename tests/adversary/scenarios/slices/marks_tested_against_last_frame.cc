@@ -17,12 +17,7 @@ Scenario marks_tested_against_last_frame() {
       .start = [](Canvas& canvas) -> DrawFrame {
         const Gl& gl = canvas.gl;
         auto offscreen = std::make_shared<Offscreen>(canvas, GL_RGBA8);
-        GLuint depth = 0;
-        gl.GenRenderbuffers(1, &depth);
-        gl.BindRenderbuffer(GL_RENDERBUFFER, depth);
-        gl.RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, canvas.width(), canvas.height());
-        gl.BindFramebuffer(GL_FRAMEBUFFER, offscreen->framebuffer());
-        gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+        offscreen->attach_depth(GL_DEPTH_COMPONENT24);
         gl.Clear(GL_DEPTH_BUFFER_BIT);
         auto opaque = std::make_shared<GlslProgram>(canvas, slice_vertex_shader, R"(#version 330 core
 in vec3 at;

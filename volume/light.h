@@ -5,17 +5,32 @@
 //
 // with l the direction to the light and e that to the eye, both from the point. The normal n is the direction
 // in which the field falls fastest: its gradient is taken by central differences of the linearly filtered
-// field, one texel to both sides of the point on each axis. (Beyond the texture the filter's wrapping holds; on
-// an axis that repeats, what is looked at stays within half a texel of the texture.) Points without a gradient,
-// because the field is even or not a number around them, keep their colour. A gradient that is all but nothing
-// has a direction made of rounding: below `full_slope` what is lit fades into that colour, as
+// field, `reach` texels to both sides of the point on each axis. (Beyond the texture the filter's wrapping
+// holds; on an axis that repeats, what is looked at stays within half a texel of the texture.) Points without a
+// gradient, because the field is even or not a number around them, show `even` c. A gradient that is all but
+// nothing has a direction made of rounding: below `full_slope` what is lit fades into that colour, as
 //
-//     s lit + (1 - s) c,   s = |gradient| / full_slope
+//     s lit + (1 - s) even c,   s = |gradient| / full_slope
+//
+// Shading of another kind, with light that shines from the eye, is a function of the cosine between normal and
+// ray alone: `response` holds it, point by point, in place of |n . l| and |n . h|^shininess.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 namespace understudy::volume {
+
+/// What stands for |n . l| and for |n . h|^shininess.
+struct LightResponse {
+  float diffuse = 0;
+  float specular = 0;
+  bool operator==(const LightResponse&) const = default;
+};
+
+constexpr std::size_t max_light_responses = 4096;
 
 /// The default is understudy render's --material.
 struct Light {
@@ -33,6 +48,14 @@ struct Light {
   bool two_sided = true;
   /// False: surfaces alone are lit; what the transfer function shows keeps its colour.
   bool on_samples = true;
+  std::array<double, 3> reach{1, 1, 1};
+  /// So much of their colour do points without a gradient keep.
+  std::array<float, 3> even{1, 1, 1};
+  /// No more than so many times its opacity does a lit point show in any channel: programs clamp colours.
+  float brightest = std::numeric_limits<float>::infinity();
+  /// If not empty: at cosines from -1 to 1, evenly spaced; interpolated linearly in between. `direction` is
+  /// zero, `shininess` and `two_sided` are not looked at.
+  std::vector<LightResponse> response;
 
   bool operator==(const Light&) const = default;
 };

@@ -208,6 +208,14 @@ void write(Writer& out, const std::optional<Light>& light) {
   out.real(light->full_slope);
   out.integer(light->two_sided);
   out.integer(light->on_samples);
+  write(out, light->reach);
+  write_shares(out, light->even);
+  out.real(light->brightest);
+  out.integer(std::int64_t(light->response.size()));
+  for (const LightResponse& entry : light->response) {
+    out.real(entry.diffuse);
+    out.real(entry.specular);
+  }
 }
 
 std::optional<Light> read_light(Reader& in) {
@@ -222,6 +230,14 @@ std::optional<Light> read_light(Reader& in) {
   light.full_slope = in.real32("light.full_slope");
   light.two_sided = in.flag("light.two_sided");
   light.on_samples = in.flag("light.on_samples");
+  read(in, "light.reach", light.reach);
+  read_shares(in, "light.even", light.even);
+  light.brightest = in.real32("light.brightest");
+  light.response.resize(std::size_t(in.integer("light.response", 0, std::int64_t(max_light_responses))));
+  for (LightResponse& entry : light.response) {
+    entry.diffuse = in.real32("light.response.diffuse");
+    entry.specular = in.real32("light.response.specular");
+  }
   return light;
 }
 

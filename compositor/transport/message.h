@@ -5,7 +5,7 @@
 // own: compositor/service/{launcher,node,load}_protocol.h, spu/remote/gl_server_protocol.h,
 // transport/tcp/line_protocol.h. Beside its enum it defines
 //
-//     constexpr Protocol protocol_of(NodeMessage) { return {2, 12, std::uint16_t(NodeMessage::last)}; }
+//     constexpr Protocol protocol_of(NodeMessage) { return {2, 13, std::uint16_t(NodeMessage::last)}; }
 //
 // and its enumerators then are types of messages.
 #pragma once

@@ -10,7 +10,7 @@ import socket
 import struct
 
 HELLO = b"UNDERLNK"
-LINK_VERSION = 4
+LINK_VERSION = 5
 ONLY_ASKS, PLAIN = 1, 2
 MESSAGE_MAGIC = 0x59445355
 MESSAGE_HEAD = struct.Struct("<IBBHQQ")
@@ -18,7 +18,7 @@ BLOCK_BYTES = 1 << 18
 RECORD_BYTES = 1 << 16
 STREAM_HEAD_BYTES, SEAL_BYTES = 24, 17
 # Protocol, version, number: compositor/service/launcher_protocol.h, spu/remote/gl_server_protocol.h, line_protocol.h.
-TYPES = {"hello_client": (1, 12, 1), "hello_nodes": (1, 12, 2), "accepted": (1, 12, 4), "refused": (1, 12, 5),
+TYPES = {"hello_client": (1, 13, 1), "hello_nodes": (1, 13, 2), "accepted": (1, 13, 4), "refused": (1, 13, 5),
          "calls": (4, 12, 1), "answered": (4, 12, 2), "image": (4, 12, 3), "line_alive": (5, 1, 1)}
 NAMES = {number: name for name, number in TYPES.items()}
 

@@ -68,8 +68,13 @@ RenderRequest some_request(bool colours, bool depth) {
                     {0.4F, 0.5F, 0.6F},
                     {0.7F, 0.8F, 0.9F},
                     12,
+                    0.5F,
                     false,
-                    false};
+                    false,
+                    {1, 2, 0.5},
+                    {0.5F, 0.25F, 1},
+                    1.5F,
+                    {{1, -0.5F}, {0.25F, 0}, {0, 2}}};
   }
   if (!colours) r.fog = Fog{{0.5, -0.25, 2}, 0.125, {{0, 0, 0, 1}, {0.1F, 0.2F, 0.3F, 0.5F}}};
   r.termination = 1e-5F;

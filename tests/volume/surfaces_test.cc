@@ -315,6 +315,49 @@ TEST(Light, OnSlicesIsWhatDoublePrecisionSays) {
     }
 }
 
+/// Light from the eye that is no one's formula.
+Light some_response() {
+  Light light = some_light();
+  light.direction = {};
+  light.even = {0.5F, 0.25F, 1};
+  light.response.clear();
+  for (int i = 0; i <= 64; ++i) {
+    const float cosine = float(i) / 32 - 1;
+    light.response.push_back({1 + 0.5F * std::sin(3 * cosine), 0.3F * cosine * cosine * cosine});
+  }
+  return light;
+}
+
+TEST(Light, OfAnyResponseAndReachIsWhatDoublePrecisionSays) {
+  struct Case {
+    TexelType type;
+    Filter filter;
+    Vec3 reach;
+  };
+  for (const Case& c :
+       {Case{TexelType::u8, Filter::linear, {1, 1, 1}}, Case{TexelType::u8, Filter::linear_8_bit, {1, 1, 1}},
+        Case{TexelType::u8, Filter::linear_8_bit, {1.25, 2, 0.5}},
+        Case{TexelType::u16, Filter::linear, {0.5, 1, 3}}, Case{TexelType::f32, Filter::linear, {1, 1, 1}}}) {
+    Texture texture = sampled(describe({40, 37, 43}, c.type), marschner_lobb_field());
+    RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 60);
+    request.filter = c.filter;
+    request.light = some_response();
+    request.light->reach = c.reach;
+    give_ghost_layer(texture, request);
+    FrameCounts counts;
+    const Image image = drawn(texture, request, counts);
+    const Field field = texture_field(texture.description, c.filter, texture.texels);
+    const auto shade = [&](const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
+      return illuminated(field, texture.description, *request.light, t, way, colour);
+    };
+    const Difference d = difference(image, slice_sum(field, request, request.window, shade), 1e-3);
+    std::printf("type %d, filter %d, reach %g: max %.2e, rms %.2e\n", int(c.type), int(c.filter), c.reach[0],
+                d.max, d.rms);
+    EXPECT_LE(d.pixels_over, pixels_that_graze);
+    EXPECT_LE(d.rms, 1e-4);
+  }
+}
+
 TEST(Light, ThatIsEverywhereTheSameChangesNothing) {
   Texture texture = noise(describe({40, 37, 43}, TexelType::u8), 4);
   RenderRequest request = request_on_steps(texture);
@@ -349,6 +392,13 @@ TEST(Surfaces, AndLightWithoutSenseAreRefused) {
   refused("shininess", [](RenderRequest& r) { r.light->shininess = -1; });
   refused("full slope", [](RenderRequest& r) { r.light->full_slope = -1; });
   refused("diffuse", [](RenderRequest& r) { r.light->diffuse[1] = NAN; });
+  refused("even", [](RenderRequest& r) { r.light->even[0] = -1; });
+  refused("reach", [](RenderRequest& r) { r.light->reach[2] = 0; });
+  refused("response of one entry", [](RenderRequest& r) {
+    r.light->direction = {};
+    r.light->response = {{1, 0}};
+  });
+  refused("response to light from elsewhere", [](RenderRequest& r) { r.light->response = {{1, 0}, {1, 0}}; });
   --texture.description.ghost_layer;
   EXPECT_THROW(validate(texture.description, good), std::invalid_argument) << "margin";
   Texture colours = noise(describe({9, 9, 9}, TexelType::rgba8), 1);

@@ -181,10 +181,11 @@ class SegmentWalk {
     std::array<double, 3> gradient{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Place beside = p;
-      beside[axis] = p[axis] + 1;
+      const float reach = prepared_light.reach[axis];
+      beside[axis] = p[axis] + reach;
       const double ahead = value_at(beside);
-      beside[axis] = p[axis] - 1;
-      gradient[axis] = (ahead - value_at(beside)) / 2;
+      beside[axis] = p[axis] - reach;
+      gradient[axis] = (ahead - value_at(beside)) / (2 * double(reach));
     }
     double square = 0, to_light = 0, to_half = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -193,7 +194,12 @@ class SegmentWalk {
       to_light -= gradient[i] * double(light_[i]);
       to_half -= gradient[i] * double(half_[i]);
     }
-    if (!(square > 0)) return;
+    Rgba even = colour;
+    for (std::size_t k = 0; k < 3; ++k) even[k] *= prepared_light.model.even[k];
+    if (!(square > 0)) {
+      colour = even;
+      return;
+    }
     const auto cosine = [&](double projection) {
       const double c = projection / std::sqrt(square);
       return std::min(prepared_light.model.two_sided ? std::abs(c) : std::max(c, 0.0), 1.0);
@@ -201,14 +207,21 @@ class SegmentWalk {
     const double slope = std::sqrt(square);
     const double share =
         slope < double(prepared_light.full_slope) ? slope / double(prepared_light.full_slope) : 1;
-    const double diffuse = cosine(to_light);
-    const double gleam = std::pow(cosine(to_half), double(prepared_light.model.shininess));
+    double diffuse = cosine(to_light);
+    double gleam = std::pow(cosine(to_half), double(prepared_light.model.shininess));
+    if (!prepared_light.model.response.empty()) {
+      const LightResponse response = prepared_light.response_at(float(to_light / std::sqrt(square)));
+      diffuse = double(response.diffuse);
+      gleam = double(response.specular);
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       const double own = double(colour[k]);
-      const double lit =
+      double lit =
           (double(prepared_light.model.ambient[k]) + double(prepared_light.model.diffuse[k]) * diffuse) * own +
           double(prepared_light.model.specular[k]) * gleam * double(colour[3]);
-      colour[k] = float(own + share * (lit - own));
+      if (std::isfinite(prepared_light.model.brightest))
+        lit = std::min(lit, double(prepared_light.model.brightest) * double(colour[3]));
+      colour[k] = float(double(even[k]) + share * (lit - double(even[k])));
     }
   }
 

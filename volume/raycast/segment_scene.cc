@@ -26,6 +26,17 @@ bool all_finite(const Range& values) {
   return std::all_of(values.begin(), values.end(), [](auto v) { return std::isfinite(v); });
 }
 
+void validate_response(const Light& light) {
+  const std::vector<LightResponse>& response = light.response;
+  if (response.empty()) return;
+  demand(response.size() >= 2 && response.size() <= max_light_responses,
+         "a light's response has at least 2 and at most 4096 entries");
+  demand(light.direction == std::array<double, 3>{}, "a light with a response shines from the eye");
+  for (const LightResponse& entry : response)
+    demand(std::isfinite(entry.diffuse) && std::isfinite(entry.specular),
+           "the light's response holds a value that is not finite");
+}
+
 bool not_negative(const std::array<float, 3>& colour) {
   return std::all_of(colour.begin(), colour.end(), [](float v) { return std::isfinite(v) && v >= 0; });
 }
@@ -100,7 +111,8 @@ int ghost_layer_needed(const VolumeDescription& volume, const RenderRequest& req
   if (has_segments(request) && request.steps)
     for (const double along : step_reach(volume, request)) reach = std::max(reach, along);
   constexpr double rounding = 1e-6;  // of the reach, in cells
-  const double gradient = request.light ? 1 : 0;
+  double gradient = 0;
+  if (request.light) gradient = *std::ranges::max_element(request.light->reach);
   return int(std::min(std::ceil(reach + gradient - rounding), 1e9));
 }
 
@@ -124,7 +136,9 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
       "surfaces, light and pre-integration need a transfer function (of clear entries, if surfaces alone are "
       "to be seen)");
   demand(request.op == Operator::over, "surfaces, light and pre-integration need the operator over");
-  demand(request.filter == Filter::linear, "surfaces, light and pre-integration need a linear filter");
+  const bool lit_samples = !has_segments(request) && request.light->on_samples;
+  demand(request.filter == Filter::linear || (request.filter == Filter::linear_8_bit && lit_samples),
+         "surfaces, light and pre-integration need a linear filter, which has 8 bits for lit samples alone");
   demand(!request.fog, "there is no fog with surfaces, light or pre-integration");
   if (has_segments(request)) {
     demand(request.steps.has_value(),
@@ -152,6 +166,11 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
                std::isfinite(light->shininess) && light->shininess >= 0 && std::isfinite(light->full_slope) &&
                light->full_slope >= 0,
            "the light's colours, shininess and full slope must be finite and not negative");
+    demand(std::ranges::all_of(light->reach, [](double cells) { return cells >= 0.125 && cells <= 16; }),
+           "a light's gradients reach 1/8 to 16 texels");
+    demand(not_negative(light->even), "what points without a gradient keep must be finite and not negative");
+    demand(light->brightest > 0, "lit points show less than nothing");
+    validate_response(*light);
   }
   if (const int cells = ghost_layer_needed(volume, request); cells > volume.ghost_layer)
     throw std::invalid_argument(fmt::format(
@@ -164,7 +183,10 @@ PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume
     : model(light),
       full_slope(float(light.full_slope * largest_texel(volume.type))),
       inverse_(inverse_of(light.space)) {
-  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = volume.size[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    size_[axis] = volume.size[axis];
+    reach[axis] = float(light.reach[axis]);
+  }
   const double largest =
       std::max({std::abs(light.direction[0]), std::abs(light.direction[1]), std::abs(light.direction[2])});
   if (largest > 0) {
@@ -199,6 +221,16 @@ std::array<float, 3> PreparedLight::half(const std::array<float, 3>& step) const
   const Vec3 sum = volume::length(direction_) > 0 ? add(direction_, eye) : eye;
   const double distance = volume::length(sum);
   return over_gradients(distance > 1e-9 ? scale(sum, 1 / distance) : Vec3{});
+}
+
+LightResponse PreparedLight::response_at(float cosine) const {
+  const float last = float(model.response.size() - 1);
+  const float place = std::clamp((cosine + 1) / 2 * last, 0.0F, last);
+  const std::size_t entry = std::min(std::size_t(place), model.response.size() - 2);
+  const LightResponse &below = model.response[entry], &above = model.response[entry + 1];
+  const float share = place - float(entry);
+  return {below.diffuse + share * (above.diffuse - below.diffuse),
+          below.specular + share * (above.specular - below.specular)};
 }
 
 SegmentScene::SegmentScene(const VolumeDescription& volume, const RenderRequest& request)

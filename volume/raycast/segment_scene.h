@@ -44,10 +44,13 @@ struct PreparedLight {
   std::array<float, 3> half(const std::array<float, 3>& step) const;
   /// `light` of the same ray.
   std::array<float, 3> light(const std::array<float, 3>& step) const;
+  /// The model's response, which is not empty, at a cosine.
+  LightResponse response_at(float cosine) const;
 
   Light model;
   std::array<float, 9> metric{};
-  float full_slope = 0;  ///< the model's, in units of the texel type
+  float full_slope = 0;                 ///< the model's, in units of the texel type
+  std::array<float, 3> reach{1, 1, 1};  ///< the model's
 
  private:
   Vec3 to_eye(const std::array<float, 3>& step) const;

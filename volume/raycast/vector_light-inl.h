@@ -100,15 +100,33 @@ HWY_INLINE bool look_around(const Position& p, Mask wanted, const SegmentConstan
   return true;
 }
 
+/// The field in the cells beside the rays' own.
+template <typename Source>
+HWY_INLINE Floats value_beside(const Neighbours& beside, const Located& at, const Constants& constants,
+                               Source source) {
+  Located there = at;
+  there.block = beside.block;
+  there.corner = beside.corner;
+  return value_of(there, constants, source);
+}
+
 template <typename Source>
 HWY_INLINE void find_slope(const Surroundings& around, const SegmentConstants& constants, Source source,
                            Slope& slope) {
 #pragma GCC unroll 3
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    slope[axis] = difference_of(around.ahead[axis], around.behind[axis], around.at, constants, source);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if constexpr (std::is_same_v<Source, RoundedBytes8>) {
+      // Each of the two is rounded by itself.
+      slope[axis] = hn::Sub(value_beside(around.ahead[axis], around.at, constants, source),
+                            value_beside(around.behind[axis], around.at, constants, source));
+    } else {
+      slope[axis] = difference_of(around.ahead[axis], around.behind[axis], around.at, constants, source);
+    }
+  }
 }
 
-/// Near the end of what is held, where places beside the rays' are clamped.
+/// Near the end of what is held, where places beside the rays' are clamped, and where gradients reach farther
+/// or less far than to the next cell.
 template <typename Source>
 HWY_NOINLINE void find_clamped_slope(const Position& p, const SegmentConstants& constants, Source source,
                                      Slope& slope) {
@@ -118,16 +136,19 @@ HWY_NOINLINE void find_clamped_slope(const Position& p, const SegmentConstants& 
     Position there;
 #pragma GCC unroll 3
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float away = axis != i / 2 ? 0.0F : i % 2 == 0 ? 1.0F : -1.0F;
+      const float reach = constants.reach[axis];
+      const float away = axis != i / 2 ? 0.0F : i % 2 == 0 ? reach : -reach;
       there.free[axis] = hn::Add(p.free[axis], hn::Set(FloatTag(), away));
     }
     clamp_to_held(there, constants);
     locate(there, constants, beside[i]);
   }
 #pragma GCC unroll 1
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    slope[axis] = hn::Sub(value_of(beside[2 * axis], constants, source),
-                          value_of(beside[2 * axis + 1], constants, source));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Floats difference = hn::Sub(value_of(beside[2 * axis], constants, source),
+                                      value_of(beside[2 * axis + 1], constants, source));
+    slope[axis] = hn::Mul(difference, hn::Set(FloatTag(), 1 / constants.reach[axis]));
+  }
 }
 
 /// No gradient is so flat, but for what rounding leaves.
@@ -139,6 +160,21 @@ struct Brightness {
   Floats diffuse, gleam;
   Floats lit;  // the light's share: 1, less where it fades, and 0 where there is no slope
 };
+
+/// The light's response to cosines between -1 and 1.
+HWY_INLINE void find_response(Floats cosine, const SegmentConstants& constants, Brightness& out) {
+  const FloatTag f;
+  const IntTag d;
+  const Floats place = hn::MulAdd(cosine, constants.half_last_response, constants.half_last_response);
+  const Ints entry = hn::Min(truncated(place), constants.last_response);
+  const Floats share = hn::Sub(place, hn::ConvertTo(f, entry));
+  const Ints from = hn::ShiftLeft<1>(entry);
+  const auto at = [&](std::int32_t offset) HWY_ATTR {
+    return hn::GatherIndex(f, constants.responses, hn::Add(from, hn::Set(d, offset)));
+  };
+  out.diffuse = mix(at(0), at(2), share);
+  out.gleam = mix(at(1), at(3), share);
+}
 
 template <typename Source>
 HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, const SegmentConstants& constants,
@@ -166,13 +202,21 @@ HWY_INLINE void find_cosines(const SegmentPacket& rays, const Slope& slope, cons
   const Floats estimate = hn::ApproximateReciprocalSqrt(safe);
   const Floats rest = hn::NegMulAdd(hn::Mul(safe, estimate), estimate, one);
   const Floats unit = hn::MulAdd(hn::Mul(hn::Set(f, 0.5F), estimate), rest, estimate);
+  const auto projection = [&](const std::array<Floats, 3>& direction) HWY_ATTR {
+    return hn::Mul(times(direction[0], direction[1], direction[2]), unit);
+  };
   const auto cosine = [&](const std::array<Floats, 3>& direction) HWY_ATTR {
-    const Floats c = hn::Mul(times(direction[0], direction[1], direction[2]), unit);
+    const Floats c = projection(direction);
     return hn::Min(constants.two_sided ? hn::Abs(c) : hn::Max(c, zero), one);
   };
-  out.diffuse = cosine(rays.light);
-  // What is below would only end in powers too small for normal floats.
-  out.gleam = hn::Max(cosine(rays.half), constants.least_cosine);
+  if (constants.responses != nullptr) {
+    const Floats c = hn::IfThenElseZero(slopes, projection(rays.light));
+    find_response(hn::Min(hn::Max(c, hn::Neg(one)), one), constants, out);
+  } else {
+    out.diffuse = cosine(rays.light);
+    // What is below would only end in powers too small for normal floats.
+    out.gleam = hn::Max(cosine(rays.half), constants.least_cosine);
+  }
   out.lit = hn::IfThenElseZero(slopes, one);
   if (!constants.fades) return;
   const Floats steepness = hn::Mul(hn::Mul(size, constants.share_of_slope), hn::Mul(safe, unit));
@@ -205,7 +249,8 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
   const auto shown = [&](Floats colour, Floats bright, Floats gleam) HWY_ATTR {
     const Floats share = hn::MulAdd(constants.diffuse, bright, constants.ambient);
     const Floats white = hn::Mul(hn::Mul(constants.specular, gleam), hn::Broadcast<3>(colour));
-    return hn::MulAdd(colour, share, white);
+    const Floats lit = hn::MulAdd(colour, share, white);
+    return constants.is_limited ? hn::Min(lit, hn::Mul(constants.brightest, hn::Broadcast<3>(colour))) : lit;
   };
   const Floats first = shown(colours[0], hn::Broadcast<0>(at.diffuse), hn::Broadcast<0>(at.gleam));
   const Floats second = shown(colours[1], hn::Broadcast<1>(at.diffuse), hn::Broadcast<1>(at.gleam));
@@ -214,7 +259,8 @@ HWY_INLINE void light_up(const Brightness& at, const SegmentConstants& constants
   const Floats zero = hn::Zero(f);
   const bool all_lit = hn::AllTrue(f, hn::Ge(at.lit, hn::Set(f, 1.0F)));
   const auto put = [&](Floats lit, Floats with, Floats& colour) HWY_ATTR {
-    colour = all_lit ? with : hn::IfThenElse(hn::Gt(lit, zero), mix(colour, with, lit), colour);
+    const Floats even = hn::Mul(constants.even, colour);
+    colour = all_lit ? with : hn::IfThenElse(hn::Gt(lit, zero), mix(even, with, lit), even);
   };
   put(hn::Broadcast<0>(at.lit), first, colours[0]);
   put(hn::Broadcast<1>(at.lit), second, colours[1]);

@@ -289,6 +289,9 @@ void walk_segments(const Scene& scene, const RayPacket& packet, float* rgba, Ker
   };
   switch (scene.store->description().type) {
     case TexelType::u8:
+      if constexpr (!pre_integrated)
+        if (scene.filter == Filter::linear_8_bit)
+          return walk_segments_of_packet<false, true>(scene, packet, RoundedBytes8(), rgba, counts);
       return walk(Bytes8());
     case TexelType::u16:
       return walk(Shorts16());

@@ -28,6 +28,10 @@ struct SegmentConstants : Constants {
     prepared_light = segments.prepared_light ? &*segments.prepared_light : nullptr;
     if (prepared_light == nullptr) return;
     set_neighbourhood(scene);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      reach[axis] = prepared_light->reach[axis];
+      has_inner = has_inner && reach[axis] == 1;
+    }
     // Of the size of one, so that squares of slopes lie far from the ends of what a float holds.
     const std::array<float, 9>& of_light = prepared_light->metric;
     const float unit = 1 / std::sqrt(std::max({of_light[0], of_light[4], of_light[8]}));
@@ -52,6 +56,16 @@ struct SegmentConstants : Constants {
     shininess = hn::Set(f, exponent);
     least_cosine = hn::Set(f, std::max(std::exp(-40 / exponent), 1e-30F));
     gleams = prepared_light->model.specular != std::array<float, 3>{};
+    even = colour(prepared_light->model.even, 1);
+    is_limited = std::isfinite(prepared_light->model.brightest);
+    const float most = prepared_light->model.brightest;
+    brightest = colour({most, most, most}, 1);
+    const std::vector<LightResponse>& response = prepared_light->model.response;
+    if (response.empty()) return;
+    responses = &response.front().diffuse;
+    half_last_response = hn::Set(f, 0.5F * float(response.size() - 1));
+    last_response = hn::Set(IntTag(), std::int32_t(response.size() - 2));
+    gleams = false;
   }
 
   /// Where blocks and their neighbours are held.
@@ -82,11 +96,18 @@ struct SegmentConstants : Constants {
   Floats shininess, least_cosine;
   std::optional<unsigned> whole_shininess;
   bool gleams = false, two_sided = false;
+  Floats even;  // components side by side: what points without a slope keep
+  bool is_limited = false;
+  Floats brightest;                  // times opacity; components side by side
+  const float* responses = nullptr;  // pairs of diffuse and specular; null: light is Blinn's and Phong's
+  Floats half_last_response;
+  Ints last_response;     // the last but one entry
   bool fades = false;     // where slopes are less than the light's full slope
   Floats share_of_slope;  // what a slope in the units of `metric` is multiplied with
 
   std::array<Floats, 3> inner_low, inner_high;  // one cell away from the ends of what is held
-  bool has_inner = true;
+  bool has_inner = true;                        // and gradients reach the next cell
+  std::array<float, 3> reach{1, 1, 1};
   std::array<Ints, 3> blocks_along;  // blocks from one to the next on each axis
 };
 

@@ -9,9 +9,10 @@
 
 namespace understudy::volume {
 
-/// The field's gradient at t per texel of `volume`; what is looked at on a repeating axis stays within half a
-/// texel of the texture.
-Vec3 texel_gradient(const Field& field, const VolumeDescription& volume, const Vec3& t);
+/// The field's gradient at t per texel of `volume`, by central differences over so many texels; what is looked
+/// at on a repeating axis stays within half a texel of the texture.
+Vec3 texel_gradient(const Field& field, const VolumeDescription& volume, const Vec3& t,
+                    const Vec3& reach = {1, 1, 1});
 
 /// What `light` makes of the premultiplied `colour` of the point t, on a ray that goes along `way` in texture
 /// space.

@@ -27,7 +27,7 @@ constexpr const char* fragment_source =
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
-    "in vec3 corner_between; out vec4 colour;\n"
+    "in vec3 corner_between; out vec4 colour; uniform bool lit_from_eye; uniform vec3 tap; vec3 to_eye;\n"
     "vec4 classified(vec3 at) {\n"
     "  vec4 c = texture(table, texture(field, at).r);\n"
     "  if (lit) {\n"
@@ -36,6 +36,20 @@ constexpr const char* fragment_source =
     "                  texture(gradients, at + h.yxy).r - texture(gradients, at - h.yxy).r,\n"
     "                  texture(gradients, at + h.yyx).r - texture(gradients, at - h.yyx).r);\n"
     "    c.rgb *= length(g) > 0.0 ? 0.2 + 0.8 * abs(normalize(g).x) : 0.2;\n"
+    "  }\n"
+    "  if (lit_from_eye) {\n"
+    "    vec3 h = tap;\n"
+    "    vec3 g = vec3(texture(field, at + h * vec3(1.0, 0.0, 0.0)).r - texture(field, at - h * vec3(1.0, 0.0, "
+    "0.0)).r,\n"
+    "                  texture(field, at + h * vec3(0.0, 1.0, 0.0)).r - texture(field, at - h * vec3(0.0, 1.0, "
+    "0.0)).r,\n"
+    "                  texture(field, at + h * vec3(0.0, 0.0, 1.0)).r - texture(field, at - h * vec3(0.0, 0.0, "
+    "1.0)).r) /\n"
+    "             (h * extent);\n"
+    "    float steepness = length(g);\n"
+    "    float facing = steepness > 0.0 ? abs(dot(g / steepness, to_eye)) : 0.0;\n"
+    "    float white = steepness > 0.0 ? 0.2 * pow(max(2.0 * facing * facing - 1.0, 0.0), 8.0) : 0.0;\n"
+    "    c.rgb = c.rgb * (0.3 + 0.6 * facing) + white;\n"
     "  }\n"
     "  return vec4(c.rgb * c.a, c.a);\n"
     "}\n"
@@ -61,6 +75,7 @@ constexpr const char* fragment_source =
     "    place += along * max(to_entry.x, max(to_entry.y, to_entry.z));\n"
     "  }\n"
     "  vec3 step = along / length(along * extent) * one_step;\n"
+    "  to_eye = -normalize(along * extent);\n"
     "  vec3 to_exit = (vec3(greaterThan(step, vec3(0.0))) - place) / step;\n"
     "  float steps = min(to_exit.x, min(to_exit.y, to_exit.z));\n"
     "  float first = 1.0, count = floor(steps);\n"
@@ -433,6 +448,8 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("straight"), style.premultiplied ? 0 : 1);
   gl().Uniform1i(at("divided"), style.divided ? 1 : 0);
   gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
+  gl().Uniform1i(at("lit_from_eye"), style.lit_from_eye ? 1 : 0);
+  gl().Uniform3fv(at("tap"), 1, style.tap.data());
   gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
   gl().Uniform1i(at("discards"), style.discards ? 1 : 0);

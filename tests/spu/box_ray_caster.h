@@ -34,7 +34,10 @@ struct MarchStyle {
   bool face_by_face = false;  ///< each face of the box is a draw
   bool whole_rays = false;    ///< rays begin at the nearest face, whichever face makes the fragment
   bool lit = false;           ///< brightness by the gradient
-  bool jittered = false;      ///< every ray starts at a place of its own
+  /// Diffuse and specular light that shines from the eye, on central differences over 2 `tap`.
+  bool lit_from_eye = false;
+  std::array<float, 3> tap{0.3F / 24, 0.3F / 20, 0.3F / 17};  ///< in texture coordinates
+  bool jittered = false;                                      ///< every ray starts at a place of its own
   bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window
   /// The noise is filtered by a sampler object: the texture's own filter asks for levels that it does not have.
   bool noise_sampler = false;

@@ -38,6 +38,12 @@ std::vector<Kind> kinds() {
        {.premultiplied = false, .divided = true, .extent = stretched}},
       {"over, parallel projection", {.parallel = true, .extent = of_cubes}},
       {"over, noise at the beginning of rays", {.noisy = true, .extent = stretched}},
+      {"over, light from the eye", {.lit_from_eye = true, .extent = stretched}},
+      {"over, light from the eye, gradients over a texel, straight colours",
+       {.premultiplied = false,
+        .lit_from_eye = true,
+        .tap = {0.5F / 24, 0.5F / 20, 0.5F / 17},
+        .extent = of_cubes}},
       {"over, alpha applied twice", {.alpha_twice = true, .extent = stretched}},
       {"over, face by face", {.face_by_face = true, .extent = stretched}},
       {"over, front and back faces", {.both_faces = true, .extent = stretched}},
@@ -307,9 +313,7 @@ TEST(Proxies, WhatIsNotUnderstoodIsLeftBitIdentical) {
   for (const Refusal& refusal :
        {Refusal{"the samples of a ray are not composed by over (a plain sum, or lighting)",
                 {.composition = Composition::sum}},
-        Refusal{"the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
-                "lighting)",
-                {.lit = true}},
+        Refusal{"the light does not shine from the eye", {.lit = true}},
         Refusal{"samples do not lie on constant steps from the box's faces (jitter, cropping)",
                 {.jittered = true}},
         Refusal{"rays that begin at the back faces of the box show something, too",

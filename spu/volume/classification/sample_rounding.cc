@@ -14,13 +14,15 @@ void round_samples(volume::RenderRequest& request) {
     request.filter = volume::Filter::linear_8_bit;
 }
 
+bool may_be_rounded(const TextureDescription& texture) {
+  // Drivers filter with a border in float.
+  return texture.type == volume::TexelType::u8 && texture.filter == volume::Filter::linear &&
+         std::find(texture.wrap.begin(), texture.wrap.end(), volume::Wrap::border) == texture.wrap.end();
+}
+
 bool SampleRounding::try_after_loss(const TextureDescription& texture) {
   if (state_ == State::tried) state_ = State::refuted;
-  if (state_ != State::exact) return false;
-  if (texture.type != volume::TexelType::u8 || texture.filter != volume::Filter::linear) return false;
-  // Drivers filter with a border in float.
-  if (std::find(texture.wrap.begin(), texture.wrap.end(), volume::Wrap::border) != texture.wrap.end())
-    return false;
+  if (state_ != State::exact || !may_be_rounded(texture)) return false;
   state_ = State::tried;
   return true;
 }

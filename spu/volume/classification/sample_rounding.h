@@ -21,6 +21,9 @@ namespace understudy::spu {
 /// are.
 void round_samples(volume::RenderRequest& request);
 
+/// Whether a driver may round the samples of a texture.
+bool may_be_rounded(const TextureDescription& texture);
+
 /// Whether a volume's samples are taken exactly or rounded: exactly, until a comparison with the viewer's own
 /// image is lost; then rounded, if that comparison is won.
 class SampleRounding {

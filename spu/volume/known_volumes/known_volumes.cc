@@ -114,6 +114,7 @@ void count_speed(KnownVolume& volume, bool shown, const FrameShares& spent, cons
   const auto now = SpeedGuard::Clock::now();
   if (!shown) {
     volume.speed.refused(ours_ms, now);
+    if (std::exchange(volume.refusals.explained_otherwise, false)) volume.speed.allow_another();
   } else if (const auto native_ms = volume.verified.schedule.native_ms()) {
     volume.speed.shown(ours_ms, *native_ms, now);
   }
@@ -131,7 +132,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   Refusal refusal = refusal_of(comparison->difference);
   if (volume.colours.rounding.try_after_loss(volume.sent.texture)) {
     volume.refusals.pause(frame, 1);
-    volume.speed.allow_another();
+    volume.refusals.explained_otherwise = true;
     schedule.ask_for_whole();
     refusal.reason += "; tried again with samples rounded to 8 bits";
     throw Refusal{std::move(refusal)};

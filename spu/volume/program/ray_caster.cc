@@ -98,7 +98,51 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const RayFinding& f
   return reasons;
 }
 
+/// What of a fetch's coordinate is not the same for the whole draw, component by component.
+std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, const Fetch& fetch) {
+  std::vector<std::set<std::uint32_t>> places;
+  for (const Dependences& component : fetch.coordinate) {
+    std::set<std::uint32_t> sources;
+    for (const Dependence& on : component) {
+      if (!is_fixed_for_rays(facts.sources[on.source].kind)) sources.insert(on.source);
+    }
+    places.push_back(std::move(sources));
+  }
+  return places;
+}
+
 }  // namespace
+
+bool are_neighbours(const StageFacts& fragment, std::span<const std::size_t> fetches) {
+  // A probe's textures are of other sizes.
+  const auto on_size = [&](const Dependences& component) {
+    return std::ranges::any_of(component, [&](const Dependence& on) {
+      return fragment.sources[on.source].kind == SourceKind::texture_size;
+    });
+  };
+  return std::ranges::all_of(fetches, [&](std::size_t index) {
+    const Fetch& fetch = fragment.fetches[index];
+    const Fetch& first = fragment.fetches[fetches.front()];
+    const bool plain = fetch.function == FetchFunction::filtered && !fetch.offset && !fetch.level &&
+                       !fetch.gradient && !fetch.bias;
+    return plain && fetch.loop == first.loop && std::ranges::none_of(fetch.coordinate, on_size) &&
+           varying_places(fragment, fetch) == varying_places(fragment, first);
+  });
+}
+
+bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches) {
+  return std::ranges::all_of(fragment.fetches, [&](const Fetch& table) {
+    std::set<std::uint32_t> places;
+    for (const Dependences& component : table.coordinate) {
+      for (const Dependence& on : component) {
+        const Source& source = fragment.sources[on.source];
+        if (source.kind == SourceKind::texel && std::ranges::find(fetches, source.number) != fetches.end())
+          places.insert(fragment.fetches[source.number].place);
+      }
+    }
+    return places.size() <= 1;
+  });
+}
 
 RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes) {
   const std::vector<Influence> all = influences(fragment, volumes);

@@ -40,6 +40,13 @@ struct RayFinding {
   std::vector<std::string> reasons;  ///< why of_one_texel_each() does not hold, one for each thing
 };
 
+/// Whether the places of these fetches differ by nothing but what is the same for the whole draw, as those of a
+/// gradient do: the point, and neighbours at constant distances.
+bool are_neighbours(const StageFacts& fragment, std::span<const std::size_t> fetches);
+
+/// Whether every table that more than one of these fetches could address is addressed by one of them alone.
+bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches);
+
 /// `volumes` names the samplers that are set to the volume's texture.
 RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes);
 

@@ -100,6 +100,15 @@ bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, 
   });
 }
 
+/// The fetches of the volume that samples are made of.
+std::vector<std::size_t> fetches_of_samples(const program::RayFinding& finding, const StageFacts& facts,
+                                            const SamplerRoles& roles) {
+  std::vector<std::size_t> fetches;
+  std::ranges::copy_if(finding.samples, std::back_inserter(fetches),
+                       [&](std::size_t index) { return !contains(roles.idle, facts.fetches[index].sampler); });
+  return fetches;
+}
+
 Refusal of_fragment_shader(const std::string& text) {
   return {"the fragment shader: " + text};
 }
@@ -192,11 +201,24 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
   const program::RayFinding& finding = *findings.ray;
   if (!finding.loop) return "no loop of the fragment shader samples the volume";
   if (auto refusal = refusal_of_tables(facts, finding.tables, findings.roles)) return refusal;
-  if (mixes_samples(facts, finding, findings.roles))
-    return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
-           "lighting)";
-  if (!finding.data.empty()) return of_fragment_shader(texts(facts, finding.data).front());
+  std::vector<Influence> unexplained = finding.data;
+  if (mixes_samples(facts, finding, findings.roles)) {
+    if (!takes_gradients(findings))
+      return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
+             "lighting)";
+    // Light comes from somewhere: what it shows of slopes is measured on several rays.
+    std::erase_if(unexplained, [&](const Influence& influence) {
+      return facts.sources[influence.source].kind == SourceKind::varying;
+    });
+  }
+  if (!unexplained.empty()) return of_fragment_shader(texts(facts, unexplained).front());
   return {};
+}
+
+bool takes_gradients(const ProgramFindings& findings) {
+  const StageFacts& facts = findings.facts;
+  const std::vector<std::size_t> fetches = fetches_of_samples(*findings.ray, facts, findings.roles);
+  return fetches.size() > 1 && are_neighbours(facts, fetches) && address_tables_alone(facts, fetches);
 }
 
 VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,

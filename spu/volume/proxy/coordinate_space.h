@@ -41,6 +41,7 @@ struct MarchContext {
   bool ends_at_geometry = false;  ///< at the opaque geometry, whose depth the program fetches
   /// Pixels of the window where the program keeps fragments, where it discards others by their place.
   std::optional<volume::Rect> kept{};
+  bool takes_gradients = false;   ///< as program_check.h has it: samples may be lit
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 

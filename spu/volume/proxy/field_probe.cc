@@ -165,6 +165,51 @@ std::vector<volume::Rgba> FieldProbe::at_slope(double x, double y, std::span<con
 }
 
 std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<const float> values, float rise) {
+  return drawn_at(x, y, values.size(), [&](std::size_t i) {
+    std::array<float, 8> corners;
+    for (std::size_t c = 0; c < 8; ++c) {
+      const float height = float(c & 1) + float(c >> 1 & 1) + float(c >> 2 & 1);
+      corners[c] = values[i] + rise * (height / 3 - 0.5F);
+    }
+    show(corners);
+  });
+}
+
+std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<const float> values,
+                                                  const EvenSlope& slope) {
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = slope.gradient[axis] == 0 ? 1 : slope.texels;
+  const auto height = [&](std::size_t axis, int i) {
+    return slope.gradient[axis] * ((i + 0.5) / size[axis] - slope.middle[axis]);
+  };
+  std::vector<float> heights;
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i) heights.push_back(float(height(0, i) + height(1, j) + height(2, k)));
+    }
+  }
+  std::vector<float> texels(heights.size());
+  return drawn_at(x, y, values.size(), [&](std::size_t v) {
+    std::ranges::transform(heights, texels.begin(), [&](float h) { return values[v] + h; });
+    show(texels, size, GL_LINEAR);
+  });
+}
+
+std::vector<volume::Rgba> FieldProbe::at_stripes(double x, double y, std::span<const StripedField> fields) {
+  return drawn_at(x, y, fields.size(), [&](std::size_t f) {
+    const StripedField& field = fields[f];
+    std::array<int, 3> size{1, 1, 1};
+    size[field.axis] = field_texels;
+    std::vector<float> texels;
+    texels.reserve(field_texels);
+    for (int i = 0; i < field_texels; ++i)
+      texels.push_back(field.values[std::size_t((i + field.begin) / field.width % 2)]);
+    show(texels, size, GL_NEAREST);
+  });
+}
+
+std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::size_t wanted,
+                                               const std::function<void(std::size_t)>& show_field) {
   // Every draw puts the one pixel that is looked at to a place of its own, so that one read gets them all.
   const int px = std::clamp(int(std::floor((x + 1) / 2 * fine_)), 0, fine_ - 1);
   const int py = std::clamp(int(std::floor((y + 1) / 2 * fine_)), 0, fine_ - 1);
@@ -173,21 +218,15 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<con
   const int left = free_.x;
   const int bottom = free_.y;
   std::vector<volume::Rgba> colours;
-  while (colours.size() < values.size()) {
-    const std::size_t count =
-        std::min(std::size_t(columns) * std::size_t(most_rows), values.size() - colours.size());
+  while (colours.size() < wanted) {
+    const std::size_t count = std::min(std::size_t(columns) * std::size_t(most_rows), wanted - colours.size());
     const int rows = (int(count) + columns - 1) / columns;
     gl_.Scissor(left, bottom, columns, rows);
     clear();
     for (std::size_t i = 0; i < count; ++i) {
       const int column = left + int(i) % columns;
       const int row = bottom + int(i) / columns;
-      std::array<float, 8> corners;
-      for (std::size_t c = 0; c < 8; ++c) {
-        const float height = float(c & 1) + float(c >> 1 & 1) + float(c >> 2 & 1);
-        corners[c] = values[colours.size() + i] + rise * (height / 3 - 0.5F);
-      }
-      show(corners);
+      show_field(colours.size() + i);
       gl_.Viewport(column - px, row - py, fine_, fine_);
       gl_.Scissor(column, row, 1, 1);
       run_.replay(gl_);

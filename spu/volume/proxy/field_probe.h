@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -47,6 +48,25 @@ class FieldProbe {
 
   /// The same over fields that rise by `rise` through the volume, in the middle of which they have the value.
   std::vector<volume::Rgba> at_slope(double x, double y, std::span<const float> values, float rise);
+
+  /// The same over fields that rise evenly, and have the value at `middle`; half a texel from the faces they
+  /// are even. Backgrounds stay.
+  struct EvenSlope {
+    volume::Vec3 gradient{};
+    volume::Vec3 middle{};
+    int texels = 2;  ///< along each axis on which it rises
+  };
+  std::vector<volume::Rgba> at_gradient(double x, double y, std::span<const float> values,
+                                        const EvenSlope& slope);
+
+  /// The same over fields that take two values in turn along the texture coordinate `axis`.
+  struct StripedField {
+    std::size_t axis = 0;
+    int width = 1;  ///< of a stripe, in multiples of split_unit
+    int begin = 0;  ///< of a stripe, likewise
+    std::array<float, 2> values{};
+  };
+  std::vector<volume::Rgba> at_stripes(double x, double y, std::span<const StripedField> fields);
 
   bool culls_faces() const { return saved_.was_enabled(GL_CULL_FACE); }
 
@@ -122,6 +142,9 @@ class FieldProbe {
   void clear();
   std::vector<volume::Rgba> in_place(int column, int row, int width, int height);
   std::vector<volume::Rgba> drawn_into(const volume::Rect& viewport, const volume::Rect& pixels);
+  /// `count` fragments, each over the field that `show_field` shows.
+  std::vector<volume::Rgba> drawn_at(double x, double y, std::size_t count,
+                                     const std::function<void(std::size_t)>& show_field);
   std::vector<volume::Rgba> drawn_at(double x, double y, std::span<const float> values, float rise);
   void learn_contrasts(std::span<const float> values);
   /// Of fragments whose samples have one of two values.

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "spu/volume/classification/sample_rounding.h"
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -78,6 +80,7 @@ class MarchMeasurement {
   std::optional<Refusal> find_places();
   /// Of the rules, counted from where rays enter or leave the box, that which explains most rays.
   double least_misplaced(bool from_exit);
+  void add_lit_marches(March march, std::vector<March>& marches) const;
   void add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                    std::vector<March>& marches) const;
 
@@ -89,6 +92,8 @@ class MarchMeasurement {
   std::vector<float> values_;  ///< all over the range
   std::vector<Rgba> through_;  ///< their colours on a ray through the middle
   March march_;
+  bool lit_ = false;                   ///< whether slopes have another colour than even fields
+  std::vector<volume::Light> lights_;  ///< any of which may be the program's
   std::vector<volume::RaySteps> rules_;
   std::size_t extremes_seen_ =
       0;  ///< so many first ones of `rules_` were seen of an extreme, in the first space
@@ -142,8 +147,12 @@ std::optional<Refusal> MarchMeasurement::find_translucent_value() {
     if (!translucent) return "no value is translucent on any ray: samples cannot be counted";
     found = *translucent;
   }
-  if (depends_on_gradient(measured_, probe_, found.ray, found.value))
-    return "the colour depends on the gradient (lighting)";
+  if (measured_.takes_gradients || depends_on_gradient(measured_, probe_, found.ray, found.value)) {
+    if (!measured_.takes_gradients || march_.shows_one_colour() || march_.sum || march_.alpha_twice ||
+        march_.background)
+      return "the colour depends on the gradient (lighting)";
+    lit_ = true;
+  }
   march_.translucent = found.value;
   return std::nullopt;
 }
@@ -232,6 +241,12 @@ std::optional<Refusal> MarchMeasurement::measure() {
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
     return "a value that may hide what lies behind it has the colour of the shader's background";
+  if (lit_) {
+    march_.steps = rules_.front();
+    auto lights = measure_headlight(measured_, probe_, box_, march_);
+    if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
+    lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
+  }
   if (auto refusal = take_offsets()) return refusal;
   return find_places();
 }
@@ -270,6 +285,17 @@ std::optional<Refusal> MarchMeasurement::find_places() {
   return take_offsets();
 }
 
+void MarchMeasurement::add_lit_marches(March march, std::vector<March>& marches) const {
+  for (const volume::Light& light : lights_) {
+    march.light = light;
+    for (const bool rounds : {false, true}) {
+      if (rounds && !may_be_rounded(measured_.texture)) continue;
+      march.rounds_samples = rounds;
+      marches.push_back(march);
+    }
+  }
+}
+
 void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::RaySteps& rule, bool seen,
                                    std::vector<March>& marches) const {
   March march = march_;
@@ -282,6 +308,10 @@ void MarchMeasurement::add_marches(const CoordinateSpace& space, const volume::R
   for (const double past_planes : {march.steps.past_depth, 1 - march.steps.past_depth}) {
     if (!measured_.clipped && past_planes != march.steps.past_depth) continue;
     march.past_planes = past_planes;
+    if (!lights_.empty()) {
+      add_lit_marches(march, marches);
+      continue;
+    }
     marches.push_back(march);
     // Fields of one value do not tell which extreme it is.
     if (!march.extreme) continue;

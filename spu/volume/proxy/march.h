@@ -18,6 +18,7 @@
 #include "volume/blending_operator.h"
 #include "volume/classification.h"
 #include "volume/image.h"
+#include "volume/light.h"
 #include "volume/sampling.h"
 
 namespace understudy::volume {
@@ -59,12 +60,16 @@ struct March {
   /// blending multiplies them by it once more.
   bool alpha_twice = false;
   std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
-  volume::TransferFunction table;  ///< premultiplied; of one sample
-  float translucent = 0;           ///< a value whose field lets light through a ray, the longest that does
-  bool clipped = false;            ///< whether there were clipping planes
-  bool from_exit = false;          ///< `steps` are counted from where rays leave the box (exit_steps.h)
-  bool from_inside = false;        ///< whether the steps were measured with the eye inside
-  double past_planes = 0;          ///< samples up to so many steps behind one by which a ray leaves still count
+  volume::TransferFunction table;  ///< premultiplied; of one sample, in an even field where there is light
+  std::optional<volume::Light> light;
+  /// Samples are rounded as some drivers do (classification/sample_rounding.h): gradients of few texel values
+  /// are seen best.
+  bool rounds_samples = false;
+  float translucent = 0;     ///< a value whose field lets light through a ray, the longest that does
+  bool clipped = false;      ///< whether there were clipping planes
+  bool from_exit = false;    ///< `steps` are counted from where rays leave the box (exit_steps.h)
+  bool from_inside = false;  ///< whether the steps were measured with the eye inside
+  double past_planes = 0;    ///< samples up to so many steps behind one by which a ray leaves still count
 };
 
 /// Either marches that may be the application's, or why there are none, in words that end in the report.

@@ -10,6 +10,7 @@
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/extreme_steps.h"
 #include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/mean_steps.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -160,6 +161,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
             ray_of_length(rays, march.steps, march.shows_one_colour() ? length + 1 : length + first));
       }))
     return false;
+  if (march.light && !still_lit(measured, probe, box, march)) return false;
   if (march.shows_one_colour() || !looked_at.long_ray) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "spu/volume/classification/sample_rounding.h"
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -60,6 +61,8 @@ void ask_nodes(const March& march, volume::RenderRequest& request) {
     // Alpha counts the samples of a mean.
     for (Rgba& entry : table.entries) entry[3] = march.mean ? 1 : entry[3];
     request.classification = std::move(table);
+    request.light = march.light;
+    if (march.rounds_samples) round_samples(request);
   }
 }
 

@@ -27,6 +27,10 @@
 namespace understudy::spu {
 namespace {
 
+/// Cells that bricks keep around their own for light: a block, beyond which no gradient that is recognised
+/// looks.
+constexpr int gradient_ghost_layer = 8;
+
 /// A box whose texture coordinates are known by name: measured again when the program or the texture changes.
 ProxyBox box_in(const MarchContext& measured, const CoordinateSpace& space) {
   const auto box = proxy_box(measured, space);
@@ -188,6 +192,7 @@ struct RayCasterStage::Draw {
   Cuts cuts{};
   bool eye_inside = false;
   bool ends_at_geometry = false;  ///< as in MarchContext
+  bool takes_gradients = false;   ///< likewise
   std::span<const std::string> tables_of_samples{};
   std::optional<volume::Rect>
       kept{};  ///< part of the window where fragments are, where some are discarded by place
@@ -202,6 +207,7 @@ struct RayCasterStage::Draw {
             !cuts.clipping.empty(),
             ends_at_geometry,
             kept,
+            takes_gradients,
             &*seen.capture};
   }
 };
@@ -297,10 +303,13 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   }
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
+  draw.takes_gradients = takes_gradients(says);
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
   // Says what values there are.
-  uploader_.upload({pipeline, {}, seen.texture_version, box.region, {}}, known.sent, known.counters, service);
+  uploader_.upload(
+      {pipeline, {}, seen.texture_version, box.region, {}, draw.takes_gradients ? gradient_ghost_layer : 0},
+      known.sent, known.counters, service);
 
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;

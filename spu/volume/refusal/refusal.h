@@ -27,9 +27,10 @@ struct NothingVisible {};
 
 /// What is remembered of the refusals of one volume.
 struct RefusalHistory {
-  std::string handed_back;  ///< why the volume is not substituted for good; empty: it is not
-  std::string last_reason;  ///< the last that was said
-  int in_a_row = 0;         ///< since it was last substituted
+  std::string handed_back;           ///< why the volume is not substituted for good; empty: it is not
+  std::string last_reason;           ///< the last that was said
+  int in_a_row = 0;                  ///< since it was last substituted
+  bool explained_otherwise = false;  ///< the last comparison was lost, and there is another explanation to try
   std::uint64_t left_in_frame = ~std::uint64_t(0);
   std::uint64_t next_try = 0;  ///< the frame from which on it is tried again, after a lost comparison
   /// The same by the clock. A context whose images other contexts show, as a widget of Qt's, may draw for long

@@ -36,6 +36,7 @@ struct TexelsWanted {
   std::uint64_t texture_version = 0;                ///< as the texture is now
   volume::Box region;                               ///< of texture space
   std::span<const ObservedSegment> slice_segments;  ///< whose far ends lie outside of it
+  int ghost_layer = 0;                              ///< cells that gradients reach
 };
 
 class Uploader {

@@ -78,6 +78,23 @@ TEST(RayCasters, CountTheTexelsOfASample) {
   EXPECT_THAT(words(lit.facts, lit.finding.guards), ElementsAre("texel of 'volume'.x decides between colours"));
 }
 
+TEST(RayCasters, TellNeighboursByWhatTheirPlacesDependOn) {
+  const std::string at =
+      "float at(vec3 p, vec3 by) { return texture(volume, p + by).r - texture(volume, p - by).r; }";
+  const Found constant = caster("v.rgb *= at(p, vec3(u.y, 0, 0));", "", at);
+  EXPECT_TRUE(are_neighbours(constant.facts, constant.finding.samples));
+  EXPECT_TRUE(address_tables_alone(constant.facts, constant.finding.samples));
+  const Found by_place = caster("v.rgb *= at(p, vec3(a.w, 0, 0));", "", at);
+  EXPECT_FALSE(are_neighbours(by_place.facts, by_place.finding.samples));
+  const Found by_value = caster("v.rgb *= at(p, vec3(v.r, 0, 0));", "", at);
+  EXPECT_FALSE(are_neighbours(by_value.facts, by_value.finding.samples));
+  const Found by_size = caster("v.rgb *= at(p, 1.0 / vec3(textureSize(volume, 0)));", "", at);
+  EXPECT_FALSE(are_neighbours(by_size.facts, by_size.finding.samples));
+  const Found by_slope = caster("v.a *= texture(table, at(p, vec3(u.y, 0, 0))).a;", "", at);
+  EXPECT_TRUE(are_neighbours(by_slope.facts, by_slope.finding.samples));
+  EXPECT_FALSE(address_tables_alone(by_slope.facts, by_slope.finding.samples));
+}
+
 TEST(RayCasters, NameTexelsThatDecide) {
   const Found guarded = caster("if (v.a < list[2]) { p += step; continue; }");
   EXPECT_TRUE(guarded.finding.of_one_texel_each());

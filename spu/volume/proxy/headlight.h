@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that shines from the eye along every ray, as ray casters have it by default, measured on what they
+// draw.
+//
+// Over a field that rises evenly all samples of a ray have one normal, and so one colour: that of the whole ray
+// over its opacity. By the angle between normal and ray it is a multiple of the colour that the same value has
+// in an even field (ambient and diffuse light), and something white (specular light). Both are measured angle
+// by angle, whatever the program's formula.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "spu/volume/proxy/field_probe.h"
+#include "spu/volume/proxy/march.h"
+#include "volume/light.h"
+
+namespace understudy::spu {
+
+/// What `march`, whose steps and table are known, needs to show the light; or why it is another light. Two
+/// where no colour that is looked at is bright enough to tell whether the program clamps it.
+std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchContext& measured,
+                                                                    FieldProbe& probe, const ProxyBox& box,
+                                                                    const March& march);
+
+/// Whether a ray over two slopes looks as `march`, which has light, says.
+bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
+
+}  // namespace understudy::spu

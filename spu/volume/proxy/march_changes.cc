@@ -63,16 +63,12 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
   if (!way) return std::nullopt;
-  float nearest = 0.48F;
-  const auto& table = changed.table;
-  for (std::size_t i = 0; i < table.entries.size() && !march.shows_one_colour(); ++i) {
-    const float through = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, *way)));
-    if (std::abs(through - 0.5F) >= nearest) continue;
-    nearest = std::abs(through - 0.5F);
-    changed.translucent = value_at(measured.range, double(i) / double(table.entries.size() - 1));
+  if (!march.shows_one_colour()) {
+    const auto value = half_seen_value(changed, *way);
+    if (!value) return std::nullopt;
+    changed.translucent = *value;
   }
-  if ((nearest == 0.48F && !march.shows_one_colour()) || !still_marches(measured, changed, box, {.values = 16}))
-    return std::nullopt;
+  if (!still_marches(measured, changed, box, {.values = 16})) return std::nullopt;
   return changed;
 }
 

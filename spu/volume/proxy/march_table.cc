@@ -168,4 +168,17 @@ std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& p
   return std::nullopt;
 }
 
+std::optional<float> half_seen_value(const March& march, const volume::Vec3& way) {
+  float nearest = 0.48F;
+  std::optional<float> value;
+  const volume::TransferFunction& table = march.table;
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    const float seen = amount(march, ray_of(march, table.entries[i], steps_of_way(march.steps, way)));
+    if (std::abs(seen - 0.5F) >= nearest) continue;
+    nearest = std::abs(seen - 0.5F);
+    value = value_at({table.low, table.high}, double(i) / double(table.entries.size() - 1));
+  }
+  return value;
+}
+
 }  // namespace understudy::spu

@@ -14,4 +14,8 @@ namespace understudy::spu {
 std::optional<Refusal> measure_table(const MarchContext& measured, FieldProbe& probe,
                                      const RaysThroughBox& rays, const volume::RaySteps& rule, March& march);
 
+/// Of the march's table, the value whose field lets most nearly half of the light through a ray that goes
+/// `way`; null: none lets a part through.
+std::optional<float> half_seen_value(const March& march, const volume::Vec3& way);
+
 }  // namespace understudy::spu

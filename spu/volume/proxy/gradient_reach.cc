@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/gradient_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "spu/volume/proxy/light_space.h"
+
+namespace understudy::spu {
+namespace {
+
+/// How many texels away gradients look along an axis, where the ray shows it: between stripes of nearly one
+/// value, samples are lit that have another stripe within their reach.
+std::optional<double> reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
+                                  std::size_t axis, int size) {
+  constexpr double tells = 0.05;
+  const double cosine = LightSpace(light.space, ray.way.way).cosine_across(axis);
+  const Tint even = tint_of(ray.even.front());
+  Tint lit{};
+  for (const double side : {cosine, -cosine}) {
+    const Tint one = lit_tint(light, side, even);
+    for (std::size_t c = 0; c < 3; ++c) lit[c] += one[c] / 2;
+  }
+  std::size_t channel = 0;
+  for (std::size_t c = 1; c < 3; ++c) {
+    if (std::abs(lit[c] - even[c]) > std::abs(lit[channel] - even[channel])) channel = c;
+  }
+  const double contrast = lit[channel] - even[channel];
+  if (std::abs(contrast) < tells) return std::nullopt;
+  // Narrow stripes tell a short reach better, and no long one.
+  std::optional<double> reach;
+  for (const int width : {64, 16}) {
+    const double part = (slopes.over_stripes(ray, axis, width)[channel] - even[channel]) / contrast;
+    constexpr double most_part = 0.5;
+    if (!reach || part < most_part) reach = part * width * FieldProbe::split_unit / 2 * size;
+  }
+  return reach;
+}
+
+}  // namespace
+
+std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
+                                                    const volume::Light& light,
+                                                    const std::array<int, 3>& size) {
+  constexpr double least = 0.2;
+  constexpr double most = 8;
+  std::array<std::optional<double>, 3> seen;
+  std::vector<double> known;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    seen[axis] = reach_along(slopes, ray, light, axis, size[axis]);
+    if (!seen[axis]) continue;
+    // Whole texels, but for what counting samples leaves open.
+    const double whole = std::round(*seen[axis]);
+    if (whole >= 1 && std::abs(*seen[axis] - whole) < 0.1) seen[axis] = whole;
+    known.push_back(*seen[axis]);
+  }
+  std::array<double, 3> reach{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    reach[axis] = seen[axis].value_or(known.empty() ? 1 : *std::ranges::max_element(known));
+    if (!(reach[axis] >= least && reach[axis] <= most)) return std::nullopt;
+  }
+  return reach;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a program's gradients look from a sample, measured by the light that they make.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "spu/volume/proxy/slope_probe.h"
+#include "volume/light.h"
+
+namespace understudy::spu {
+
+/// In texels along each axis of a texture of `size`; axes that the ray does not show look as far as the others.
+/// Null: nearer or farther than is recognised (up to eight texels).
+std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
+                                                    const volume::Light& light, const std::array<int, 3>& size);
+
+}  // namespace understudy::spu

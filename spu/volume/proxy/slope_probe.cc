@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/slope_probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/ray_probes.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+using volume::Vec3;
+
+namespace {
+
+/// By so much of the range of values does a field rise along its steepest axis. Neighbours that are a texel
+/// apart then differ by hundreds of a float's last bits, and the values on the ray by a few entries of the
+/// table.
+constexpr float least_share = 0.003F;
+
+constexpr float least_seen = 0.08F;
+constexpr float most_seen = 0.92F;
+
+std::optional<LitRay> ray_at(const RaysThroughBox& rays, double x, double y) {
+  const auto way = rays.through(x, y);
+  if (!way) return std::nullopt;
+  return LitRay{x, y, *way, {}, {}};
+}
+
+}  // namespace
+
+Tint tint_of(const Rgba& premultiplied) {
+  const double alpha = double(premultiplied[3]);
+  return {double(premultiplied[0]) / alpha, double(premultiplied[1]) / alpha, double(premultiplied[2]) / alpha};
+}
+
+double difference(const Tint& a, const Tint& b) {
+  return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+double brightest(const std::vector<Tint>& tints) {
+  double most = 0;
+  for (const Tint& tint : tints) most = std::max({most, tint[0], tint[1], tint[2]});
+  return most;
+}
+
+std::vector<Tint> tints_of(const std::vector<Rgba>& colours) {
+  std::vector<Tint> tints;
+  tints.reserve(colours.size());
+  for (const Rgba& colour : colours) tints.push_back(tint_of(colour));
+  return tints;
+}
+
+bool is_translucent(const Rgba& colour) {
+  return reached(colour) && colour[3] > least_seen && colour[3] < most_seen;
+}
+
+Tint lit_tint(const volume::Light& light, double cosine, const Tint& even) {
+  // Entries are so close that the nearest one does.
+  const double place = (std::clamp(cosine, -1.0, 1.0) + 1) / 2 * double(light.response.size() - 1);
+  const volume::LightResponse& response = light.response[std::size_t(std::lround(place))];
+  Tint lit;
+  for (std::size_t c = 0; c < 3; ++c)
+    lit[c] = std::min(double(response.diffuse) * even[c] + double(response.specular), double(light.brightest));
+  return lit;
+}
+
+SlopeProbe::SlopeProbe(const MarchContext& measured, FieldProbe& probe, const March& march)
+    : probe_(probe), premultiplied_(premultiplied_already(measured, march)), range_(measured.range) {}
+
+float SlopeProbe::least_rise() const {
+  return least_share * (range_[1] - range_[0]);
+}
+
+std::vector<Rgba> SlopeProbe::premultiplied_all(std::vector<Rgba> fragments) const {
+  for (Rgba& fragment : fragments) {
+    if (reached(fragment)) fragment = premultiplied(fragment, premultiplied_);
+  }
+  return fragments;
+}
+
+std::vector<Rgba> SlopeProbe::even(double x, double y, const std::vector<float>& values) {
+  return premultiplied_all(probe_.at(x, y, values));
+}
+
+std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& values, const Vec3& gradient,
+                                   double steepness, int texels) {
+  const Vec3 middle = volume::add(ray.way.entry, volume::scale(ray.way.way, 0.5));
+  return premultiplied_all(probe_.at_gradient(
+      ray.x, ray.y, values, {volume::scale(gradient, steepness * double(least_rise())), middle, texels}));
+}
+
+float SlopeProbe::rise_along(double steepness) const {
+  constexpr double part = 0.75;  // a ray is longer than an edge of the box, but seldom goes through both ends
+  return float(part * std::abs(steepness)) * least_rise();
+}
+
+Tint SlopeProbe::over_stripes(const LitRay& ray, std::size_t axis, int width) {
+  constexpr int shifts = 16;
+  const float half = 0.25F * least_rise();
+  std::vector<FieldProbe::StripedField> fields;
+  fields.reserve(shifts);
+  for (int i = 0; i < shifts; ++i)
+    fields.push_back(
+        {axis, width, 2 * width * i / shifts, {ray.values.front() - half, ray.values.front() + half}});
+  Tint mean{};
+  for (const Rgba& colour : premultiplied_all(probe_.at_stripes(ray.x, ray.y, fields))) {
+    const Tint tint = tint_of(colour);
+    for (std::size_t c = 0; c < 3; ++c) mean[c] += tint[c] / shifts;
+  }
+  return mean;
+}
+
+LitRay SlopeProbe::with_values(LitRay ray) {
+  constexpr std::size_t most = 3;
+  constexpr double same = 0.02;
+  const std::vector<float> values = values_over(range_);
+  const float beside = 0.5F * least_rise();
+  std::vector<float> all;
+  for (const float value : values) all.insert(all.end(), {value - beside, value, value + beside});
+  const std::vector<Rgba> shown = even(ray.x, ray.y, all);
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::array around{shown[3 * i], shown[3 * i + 1], shown[3 * i + 2]};
+    if (values[i] - beside < range_[0] || values[i] + beside > range_[1]) continue;
+    if (!std::ranges::all_of(around, is_translucent)) continue;
+    const Tint tint = tint_of(around[1]);
+    if (difference(tint, tint_of(around[0])) > same || difference(tint, tint_of(around[2])) > same) continue;
+    candidates.push_back(i);
+  }
+  // Light makes colours several times as bright as they are in even fields, and programs clamp them.
+  constexpr double bright = 0.25;
+  constexpr double dark = 0.02;
+  const auto brightness = [&](std::size_t i) { return difference(tint_of(shown[3 * i + 1]), {}); };
+  const auto is_moderate = [&](std::size_t i) { return brightness(i) > dark && brightness(i) < bright; };
+  if (std::ranges::any_of(candidates, is_moderate))
+    std::erase_if(candidates, [&](std::size_t i) { return !is_moderate(i); });
+  while (!candidates.empty() && ray.values.size() < most) {
+    const std::vector<Tint> chosen = tints_of(ray.even);
+    // The first is the brightest; then the one that is farthest from all others.
+    const auto distance = [&](std::size_t i) {
+      const Tint tint = tint_of(shown[3 * i + 1]);
+      if (chosen.empty()) return brightness(i);
+      double least = difference(tint, chosen.front());
+      for (const Tint& other : chosen) least = std::min(least, difference(tint, other));
+      return least;
+    };
+    const std::size_t best = *std::ranges::max_element(candidates, {}, distance);
+    if (!chosen.empty() && distance(best) < 1e-3) break;
+    ray.values.push_back(values[best]);
+    ray.even.push_back(shown[3 * best + 1]);
+  }
+  return ray;
+}
+
+std::vector<LitRay> long_rays(const RaysThroughBox& rays, const volume::RaySteps& steps) {
+  const auto middle = rays.middle();
+  std::vector<LitRay> found;
+  if (const auto ray = ray_at(rays, middle[0], middle[1])) found.push_back(*ray);
+  if (found.empty()) return found;
+  const double longest = steps_of_way(steps, found.front().way.way);
+  for (const double part : {0.75, 0.5}) {
+    const Ray other = ray_of_length(rays, steps, part * longest);
+    if (const auto ray = ray_at(rays, other.x, other.y)) found.push_back(*ray);
+  }
+  return found;
+}
+
+}  // namespace understudy::spu

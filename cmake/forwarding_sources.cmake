@@ -4,5 +4,10 @@
 
 # compile_forwarding(SOURCE…): sources of this folder's targets; for those that are not on the way of a viewer's calls.
 function(compile_forwarding)
+  if(UNDERSTUDY_SANITIZE)
+    # Nothing is optimised further there; by themselves, as sources with options of their own are.
+    set_property(SOURCE ${ARGN} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    return()
+  endif()
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O1>)
 endfunction()

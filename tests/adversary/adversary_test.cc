@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -18,6 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int frames = 30;
+
+/// Pixels on both edges of the window: fewer than in `./run test --full`, which draws for three times as long.
+std::string pixels_of_an_edge() {
+  const char* const asked = std::getenv("ADVERSARY_EDGE");
+  return asked != nullptr ? asked : "128";
+}
 
 std::string contents(const fs::path& path) {
   std::ifstream file(path);
@@ -50,7 +57,7 @@ class Adversary : public testing::TestWithParam<NamedScenario> {
   void draw(const std::string& into, std::vector<std::string> before = {},
             const std::vector<std::string>& after = {}) {
     before.insert(before.end(), {ADVERSARY_PROGRAM, "run", GetParam().name, (folder_ / into).string(),
-                                 "--frames", std::to_string(frames)});
+                                 "--frames", std::to_string(frames), "--edge", pixels_of_an_edge()});
     before.insert(before.end(), after.begin(), after.end());
     const fs::path log = folder_ / (into + ".log");
     // A viewer that is faster by itself would be left to itself, and nothing would be tested.

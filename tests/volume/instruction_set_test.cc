@@ -41,7 +41,7 @@ struct Drawn {
 std::vector<Drawn> draw_on_all(const BrickStore& store, const RenderRequest& request) {
   const std::int64_t here = hwy::SupportedTargets();
   std::vector<Drawn> all;
-  for (const std::int64_t target : {HWY_EMU128, HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+  for (const std::int64_t target : {HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
     if (target != HWY_EMU128 && (here & target) == 0) continue;
     const OnlyTarget only(target);
     Drawn drawn{instruction_set(), Image(request.window), {}};
@@ -121,7 +121,7 @@ TEST(InstructionSets, MixedRanksStillCountEverySampleOnce) {
   raycast(filled(texture), request, image, whole);
   const KdTree tree(texture.description, 5);
   const std::int64_t here = hwy::SupportedTargets();
-  const std::int64_t targets[] = {HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_SSSE3, HWY_AVX3};
+  const std::int64_t targets[] = {HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_EMU128, HWY_AVX3};
   for (int rank = 0; rank < tree.ranks(); ++rank) {
     const std::int64_t target = targets[rank];
     const OnlyTarget only(target == HWY_EMU128 || (here & target) ? target : HWY_EMU128);

@@ -159,7 +159,7 @@ TEST(Segments, AllInstructionSetsDrawTheSameImage) {
     const BrickStore store = filled(texture);
     const std::int64_t here = hwy::SupportedTargets();
     std::optional<Image> plain;
-    for (const std::int64_t target : {HWY_EMU128, HWY_SSSE3, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
+    for (const std::int64_t target : {HWY_EMU128, HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
       if (target != HWY_EMU128 && (here & target) == 0) continue;
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());

@@ -72,9 +72,9 @@ HWY_INLINE Floats mix(Floats a, Floats b, Floats s) {
 
 /// Truncation of values that are known to fit, without the care for others that ConvertTo takes.
 HWY_INLINE Ints truncated(Floats v) {
-#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX3
   return Ints{_mm512_cvttps_epi32(v.raw)};
-#elif HWY_TARGET == HWY_AVX2
+#elif HWY_TARGET <= HWY_AVX2
   return Ints{_mm256_cvttps_epi32(v.raw)};
 #else
   return Ints{_mm_cvttps_epi32(v.raw)};

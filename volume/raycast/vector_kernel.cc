@@ -10,6 +10,7 @@
 
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_caster.h"
+#include "volume/raycast/vector_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_kernel.cc"
@@ -20,10 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace understudy::volume {
 namespace HWY_NAMESPACE {
 
-// The multiply-add below must sum neighbouring products, which Highway leaves open; so x86 alone takes this
-// path.
-#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || \
-    HWY_TARGET == HWY_AVX3_DL
+#if UNDERSTUDY_VECTOR_KERNEL
 
 #include "volume/blending_operator.h"
 #include "volume/raycast/vector_field-inl.h"

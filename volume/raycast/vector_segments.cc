@@ -11,6 +11,7 @@
 #include "volume/raycast/kernel.h"
 #include "volume/raycast/ray_caster.h"
 #include "volume/raycast/surface_search.h"
+#include "volume/raycast/vector_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/raycast/vector_segments.cc"
@@ -23,9 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace understudy::volume {
 namespace HWY_NAMESPACE {
 
-// As in vector_kernel.cc.
-#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || \
-    HWY_TARGET == HWY_AVX3_DL
+#if UNDERSTUDY_VECTOR_KERNEL
 
 #include "volume/raycast/vector_segments-inl.h"
 

@@ -20,6 +20,10 @@ namespace {
 
 using namespace testing;
 
+/// For all images of a test: what costs least may take more messages, or more bytes, for smaller parts.
+constexpr ExchangeSettings one_exchange{Algorithm::direct_send, Layout::rgba32f, Gather::direct, Overlap::off,
+                                        false};
+
 TEST_F(NodeGroupTest, RanksWithNothingToShowAreIdleAndExchangeNothing) {
   start(3);
   const auto linked = connect();
@@ -34,9 +38,7 @@ TEST_F(NodeGroupTest, RanksWithNothingToShowAreIdleAndExchangeNothing) {
 }
 
 TEST_F(NodeGroupTest, FootprintsLeaveOutWhatWholeWindowsWouldCost) {
-  // One exchange for both: what costs least may take more messages for the smaller parts.
-  start(3, limits::stall_patience, {},
-        {Algorithm::direct_send, Layout::rgba32f, Gather::direct, Overlap::off, false});
+  start(3, limits::stall_patience, {}, one_exchange);
   const auto linked = connect();
   const Texture texture = some_texture();
   upload(*linked, texture);
@@ -98,7 +100,7 @@ TEST_F(NodeGroupTest, WhatIsBehindOpaqueTilesIsNotSent) {
   for (volume::Rgba& entry : std::get<volume::TransferFunction>(request.classification).entries)
     entry[3] = 0.9F;
   for (const int ranks : {3, 5}) {
-    const Group& group = start(ranks);
+    const Group& group = start(ranks, limits::stall_patience, {}, one_exchange);
     const auto linked = connect();
     upload(*linked, texture);
     request.termination = 0;

@@ -51,8 +51,8 @@ vec3 gradient(vec3 world) {
 
 void main() {
   vec3 view = normalize(worldPos - cameraWorld);
-  vec3 slabs = 1.0 / view;
-  vec3 low = (boxMin - cameraWorld) * slabs, high = (boxMax - cameraWorld) * slabs;
+  vec3 inverse_view = 1.0 / view;
+  vec3 low = (boxMin - cameraWorld) * inverse_view, high = (boxMax - cameraWorld) * inverse_view;
   vec3 nearest = min(low, high), farthest = max(low, high);
   float tNear = max(nearest.x, max(nearest.y, nearest.z));
   float tFar = min(farthest.x, min(farthest.y, farthest.z));

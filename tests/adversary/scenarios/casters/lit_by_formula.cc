@@ -13,15 +13,15 @@ Scenario lit_by_formula() {
           "highlights; gradients over a fixed 0.01, which is less than a voxel.",
       .expectation = Expectation::must_be_substituted,
       .start = [](Canvas& canvas) -> DrawFrame {
-        // A shell with waves on it, and a knot within.
+        // A shell with waves on it, and a ring within.
         const Field field = [](float x, float y, float z) {
           const float a = x - 0.5F, b = y - 0.5F, c = z - 0.5F;
           const float radius = std::sqrt(a * a + b * b + c * c);
           const float wave = 0.025F * std::sin(14 * a + 3) * std::sin(12 * b) * std::cos(13 * c);
           const float shell = 0.34F * std::exp(-170 * std::pow(radius - 0.38F + wave, 2.0F));
           const float p = std::hypot(a, c) - 0.16F, q = b - 0.05F * std::sin(3 * std::atan2(c, a));
-          const float knot = 0.95F * std::exp(-170 * (p * p + q * q));
-          return 1 - (1 - shell) * (1 - knot);
+          const float ring = 0.95F * std::exp(-170 * (p * p + q * q));
+          return 1 - (1 - shell) * (1 - ring);
         };
         auto scene = caster_scene(canvas, {.fragment = R"(#version 400 core
 uniform sampler3D volume;

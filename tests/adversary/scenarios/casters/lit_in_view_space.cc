@@ -14,7 +14,7 @@ namespace adversary::casters {
 Scenario lit_in_view_space() {
   return {
       .sentence =
-          "The lamp is at the origin of view space, where normals are taken to and turned by faceforward(); a "
+          "The light is at the origin of view space, where normals are taken to and turned by faceforward(); a "
           "1-D table, the camera turns by 5 degrees a frame.",
       .expectation = Expectation::must_be_substituted,
       .start = [](Canvas& canvas) -> DrawFrame {

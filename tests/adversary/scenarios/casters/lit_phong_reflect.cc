@@ -14,7 +14,7 @@ namespace adversary::casters {
 Scenario lit_phong_reflect() {
   return {
       .sentence =
-          "Phong's light with reflect(), GLSL 3.30; the lamp's position is a uniform that equals the eye's. "
+          "Phong's light with reflect(), GLSL 3.30; the light's position is a uniform that equals the eye's. "
           "Three balls and a ring.",
       .expectation = Expectation::must_be_substituted,
       .start = [](Canvas& canvas) -> DrawFrame {

@@ -6,10 +6,10 @@
 
 namespace adversary::casters {
 
-Scenario lit_lamp_turns_warm() {
+Scenario lit_light_turns_warm() {
   return {
       .sentence =
-          "The lamp at the eye has a colour by a uniform: white, from frame 10 on orange, from frame 20 on "
+          "The light at the eye has a colour by a uniform: white, from frame 10 on orange, from frame 20 on "
           "blue. The ambient part stays white.",
       .expectation = Expectation::either,
       .key_frames = {10, 20},
@@ -38,8 +38,8 @@ uniform sampler3D volume;
 uniform sampler2D table;
 uniform vec3 eye;
 uniform float step_length;
-struct Lamp { vec3 position; vec3 colour; };
-uniform Lamp lamp;
+struct Source { vec3 position; vec3 colour; };
+uniform Source source;
 in vec3 at;
 out vec4 shown;
 
@@ -61,10 +61,10 @@ void main() {
     vec4 c = texture(table, vec2(texture(volume, p).r, 0.5));
     if (c.a <= 0.0) continue;
     vec3 n = normal_at(p, vec3(1.0 / 64.0));
-    vec3 l = normalize(lamp.position - p);
+    vec3 l = normalize(source.position - p);
     float front = abs(dot(n, l));
-    vec3 light = vec3(0.25) + 0.55 * front * lamp.colour;
-    vec3 gloss = 0.2 * pow(front, 18.0) * lamp.colour;
+    vec3 light = vec3(0.25) + 0.55 * front * source.colour;
+    vec3 gloss = 0.2 * pow(front, 18.0) * source.colour;
     sum += (1.0 - sum.a) * vec4((c.rgb * light + gloss) * c.a, c.a);
   }
   shown = sum;
@@ -76,10 +76,10 @@ void main() {
                                   .orbit = {.azimuth = -15, .elevation = 42, .degrees_each_frame = 2}});
         return [scene](int frame) {
           scene->program.use();
-          scene->program.set("lamp.position", scene->camera(frame).eye);
-          scene->program.set("lamp.colour", frame < 10   ? Vector{1, 1, 1}
-                                            : frame < 20 ? Vector{1, 0.7F, 0.35F}
-                                                         : Vector{0.4F, 0.65F, 1});
+          scene->program.set("source.position", scene->camera(frame).eye);
+          scene->program.set("source.colour", frame < 10   ? Vector{1, 1, 1}
+                                              : frame < 20 ? Vector{1, 0.7F, 0.35F}
+                                                           : Vector{0.4F, 0.65F, 1});
           scene->draw(frame);
         };
       }};

@@ -6,10 +6,10 @@
 
 namespace adversary::casters {
 
-Scenario lit_weak_lamp_in_the_world() {
+Scenario lit_weak_light_in_the_world() {
   return {
       .sentence =
-          "A lamp at the eye, and a weaker one fixed in the world, whose light a short second ray through the "
+          "A light at the eye, and a weaker one fixed in the world, whose light a short second ray through the "
           "table weakens.",
       .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {

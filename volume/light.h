@@ -19,6 +19,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace understudy::volume {
@@ -36,6 +37,9 @@ constexpr std::size_t max_light_responses = 4096;
 struct Light {
   /// Row-major; texture space to the space in which directions are meant and angles are measured.
   std::array<double, 9> space{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  /// What takes rays there instead, where a program compares gradients of one space with rays of another
+  /// (gradients per texel, and rays in texture space); null: `space`.
+  std::optional<std::array<double, 9>> ray_space{};
   /// To the light, of any length; zero: it shines from the eye, along every ray.
   std::array<double, 3> direction{};
   std::array<float, 3> ambient{0.2F, 0.2F, 0.2F};

@@ -202,6 +202,8 @@ void write(Writer& out, const std::optional<Light>& light) {
   out.integer(light.has_value());
   if (!light) return;
   write(out, light->space);
+  out.integer(light->ray_space.has_value());
+  if (light->ray_space) write(out, *light->ray_space);
   write(out, light->direction);
   for (const auto& colour : {light->ambient, light->diffuse, light->specular}) write_shares(out, colour);
   out.real(light->shininess);
@@ -222,6 +224,7 @@ std::optional<Light> read_light(Reader& in) {
   if (!in.flag("light")) return std::nullopt;
   Light light;
   read(in, "light.space", light.space);
+  if (in.flag("light.ray_space")) read(in, "light.ray_space", light.ray_space.emplace());
   read(in, "light.direction", light.direction);
   read_shares(in, "light.ambient", light.ambient);
   read_shares(in, "light.diffuse", light.diffuse);

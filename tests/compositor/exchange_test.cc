@@ -17,6 +17,7 @@
 #include "compositor/exchange/cost.h"
 #include "compositor/exchange/counted_exchange.h"
 #include "compositor/exchange/thread_communicator.h"
+#include "tests/all_cases.h"
 #include "tests/compositor/forwarding_communicator.h"
 #include "volume/blending_operator.h"
 #include "volume/image.h"
@@ -264,7 +265,7 @@ TEST(Exchange, EveryAlgorithmLayoutAndOperatorGivesTheProductInDouble) {
       std::printf("%-11s %2zu B", std::string(name_of(Algorithm(a))).c_str(), bytes_per_pixel(layout));
       for (const Operator op : all_operators) {
         double worst = 0;
-        for (int ranks = 1; ranks <= 16; ++ranks)
+        for (const int ranks : numbers_of_ranks())
           for (unsigned trial = 0; trial < 3; ++trial) {
             const unsigned seed = 1000 * unsigned(ranks) + 100 * unsigned(op) + trial;
             SCOPED_TRACE(::testing::Message() << name_of(Algorithm(a)) << " seed " << seed);
@@ -548,7 +549,7 @@ void expect_counted(const Scene& scene, const Schedule& plan, Layout layout,
 TEST(CountedExchange, EqualsEveryMessageOfEveryAlgorithmLayoutOperatorAndRankCount) {
   for (const Layout layout : {Layout::rgba32f, Layout::rgba16f, Layout::rgba8})
     for (std::size_t a = 0; a < algorithm_count; ++a)
-      for (int ranks = 1; ranks <= 16; ++ranks)
+      for (const int ranks : numbers_of_ranks())
         for (const Operator op : all_operators)
           for (unsigned trial = 0; trial < 3; ++trial) {
             // Narrow numbers follow the same masks: of them one kind for each number of ranks will do.

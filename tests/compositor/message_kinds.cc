@@ -63,6 +63,7 @@ RenderRequest some_request(bool colours, bool depth) {
     r.method = Method::pre_integrated;
     r.surfaces = {{0.25, {0.1F, 0.2F, 0.3F, 0.4F}}, {-7.5, {1, 0.5F, 0, 1}}};
     r.light = Light{{1, 2, 3, 4, 5, 6, 7, 8, 10},
+                    {{2, 0, 0, 0, 3, 0, 0, 0.5, 4}},
                     {0.5, -1, 2},
                     {0.1F, 0.2F, 0.3F},
                     {0.4F, 0.5F, 0.6F},

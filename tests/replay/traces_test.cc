@@ -19,6 +19,7 @@
 #include "apps/understudy/images/image.h"
 #include "live_application.h"
 #include "spu/stream/trace_file.h"
+#include "tests/all_cases.h"
 #include "tests/emulation/precision.h"
 #include "tests/emulation/viewer_frame.h"
 
@@ -237,7 +238,8 @@ TEST(CutOff, TracesPlayToTheirLastWholeBlock) {
       const launcher::Played played = launcher::play({.trace = cut}, options);
       EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("was cut off"));
       EXPECT_EQ(played.frames, std::min<std::uint64_t>(block, frames)) << "cut at byte " << end;
-      EXPECT_EQ(understudy("replay --native " + cut.string()), 0);
+      if (takes_all_cases() || end == starts[block] + 5)
+        EXPECT_EQ(understudy("replay --native " + cut.string()), 0);
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "glsl_program.h"
@@ -27,7 +29,8 @@ constexpr const char* fragment_source =
     "uniform float in_croppingPlanes[6]; uniform int in_croppingFlags[32]; uniform float "
     "in_clippingPlanes[49];\n"
     "uniform mat4 in_volumeMatrix[1], in_textureDatasetMatrix[1], in_inverseTextureDatasetMatrix[1];\n"
-    "in vec3 corner_between; out vec4 colour; uniform bool lit_from_eye; uniform vec3 tap; vec3 to_eye;\n"
+    "in vec3 corner_between; out vec4 colour; uniform bool lit_from_eye; uniform vec3 tap; uniform float "
+    "ambient; vec3 to_eye;\n"
     "vec4 classified(vec3 at) {\n"
     "  vec4 c = texture(table, texture(field, at).r);\n"
     "  if (lit) {\n"
@@ -49,7 +52,7 @@ constexpr const char* fragment_source =
     "    float steepness = length(g);\n"
     "    float facing = steepness > 0.0 ? abs(dot(g / steepness, to_eye)) : 0.0;\n"
     "    float white = steepness > 0.0 ? 0.2 * pow(max(2.0 * facing * facing - 1.0, 0.0), 8.0) : 0.0;\n"
-    "    c.rgb = c.rgb * (0.3 + 0.6 * facing) + white;\n"
+    "    c.rgb = c.rgb * (ambient + 0.6 * facing) + white;\n"
     "  }\n"
     "  return vec4(c.rgb * c.a, c.a);\n"
     "}\n"
@@ -392,7 +395,12 @@ void BoxRayCaster::set_up(GlApplication& app) {
   gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R8, blob.x, blob.y, blob.z, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
 
-  program_ = glsl_program(gl, vertex_source, fragment_source);
+  std::string fragments = fragment_source;
+  constexpr std::string_view of_uniform = "vec3 h = tap;";
+  if (style.tap_of_a_texel)
+    fragments.replace(fragments.find(of_uniform), of_uniform.size(),
+                      "vec3 h = 1.0 / vec3(textureSize(field, 0));");
+  program_ = glsl_program(gl, vertex_source, fragments.c_str());
   wall_program_ = glsl_program(gl, wall_vertices, wall_fragments);
   const std::vector<GLfloat> triangles = box_triangles();
   gl.GenVertexArrays(1, &box_);
@@ -450,6 +458,7 @@ void BoxRayCaster::draw(GlApplication& app, double angle, float wall) {
   gl().Uniform1i(at("lit"), style.lit ? 1 : 0);
   gl().Uniform1i(at("lit_from_eye"), style.lit_from_eye ? 1 : 0);
   gl().Uniform3fv(at("tap"), 1, style.tap.data());
+  gl().Uniform1f(at("ambient"), style.ambient);
   gl().Uniform1i(at("whole_rays"), style.whole_rays ? 1 : 0);
   gl().Uniform1i(at("jittered"), style.jittered ? 1 : 0);
   gl().Uniform1i(at("discards"), style.discards ? 1 : 0);

@@ -36,7 +36,9 @@ struct MarchStyle {
   bool lit = false;           ///< brightness by the gradient
   /// Diffuse and specular light that shines from the eye, on central differences over 2 `tap`.
   bool lit_from_eye = false;
+  float ambient = 0.3F;
   std::array<float, 3> tap{0.3F / 24, 0.3F / 20, 0.3F / 17};  ///< in texture coordinates
+  bool tap_of_a_texel = false;                                ///< by the texture's size instead
   bool jittered = false;                                      ///< every ray starts at a place of its own
   bool noisy = false;  ///< every ray starts later by the number of a texture that repeats over the window
   /// The noise is filtered by a sampler object: the texture's own filter asks for levels that it does not have.

@@ -333,16 +333,19 @@ TEST(Light, OfAnyResponseAndReachIsWhatDoublePrecisionSays) {
     TexelType type;
     Filter filter;
     Vec3 reach;
+    std::optional<std::array<double, 9>> ray_space{};
   };
   for (const Case& c :
        {Case{TexelType::u8, Filter::linear, {1, 1, 1}}, Case{TexelType::u8, Filter::linear_8_bit, {1, 1, 1}},
         Case{TexelType::u8, Filter::linear_8_bit, {1.25, 2, 0.5}},
-        Case{TexelType::u16, Filter::linear, {0.5, 1, 3}}, Case{TexelType::f32, Filter::linear, {1, 1, 1}}}) {
+        Case{TexelType::u16, Filter::linear, {0.5, 1, 3}}, Case{TexelType::f32, Filter::linear, {1, 1, 1}},
+        Case{TexelType::f32, Filter::linear, {1, 1, 1}, {{1.5, 0, 0, 0, 0.5, 0.25, 0, 0, 1}}}}) {
     Texture texture = sampled(describe({40, 37, 43}, c.type), marschner_lobb_field());
     RenderRequest request = request_for(texture, usual_camera(40, 34), 40, 34, 60);
     request.filter = c.filter;
     request.light = some_response();
     request.light->reach = c.reach;
+    request.light->ray_space = c.ray_space;
     give_ghost_layer(texture, request);
     FrameCounts counts;
     const Image image = drawn(texture, request, counts);
@@ -355,6 +358,10 @@ TEST(Light, OfAnyResponseAndReachIsWhatDoublePrecisionSays) {
                 d.max, d.rms);
     EXPECT_LE(d.pixels_over, pixels_that_graze);
     EXPECT_LE(d.rms, 1e-4);
+    if (!c.ray_space) continue;
+    request.light->ray_space.reset();
+    EXPECT_GT(difference(image, drawn(texture, request, counts)).rms, 1e-3)
+        << "the rays' space changes nothing";
   }
 }
 

@@ -160,7 +160,8 @@ void validate_segments(const VolumeDescription& volume, const RenderRequest& req
     demand(surface.colour[3] >= 0 && surface.colour[3] <= 1, "a surface's opacity is outside [0, 1]");
   }
   if (const auto& light = request.light) {
-    demand(regular(light->space), "the matrix from texture space to the light's space is singular");
+    demand(regular(light->space) && regular(light->ray_space.value_or(light->space)),
+           "the matrix from texture space to the light's space is singular");
     demand(all_finite(light->direction), "the direction to the light holds a value that is not finite");
     demand(not_negative(light->ambient) && not_negative(light->diffuse) && not_negative(light->specular) &&
                std::isfinite(light->shininess) && light->shininess >= 0 && std::isfinite(light->full_slope) &&
@@ -200,7 +201,7 @@ PreparedLight::PreparedLight(const Light& light, const VolumeDescription& volume
 
 Vec3 PreparedLight::to_eye(const std::array<float, 3>& step) const {
   const Vec3 way{-double(step[0]) / size_[0], -double(step[1]) / size_[1], -double(step[2]) / size_[2]};
-  const Vec3 eye = transformed(model.space, way);
+  const Vec3 eye = transformed(model.ray_space.value_or(model.space), way);
   const double distance = volume::length(eye);
   return distance > 0 ? scale(eye, 1 / distance) : Vec3{};
 }

@@ -14,6 +14,10 @@ Vec3 unit(const Vec3& v) {
   return l > 0 ? scale(v, 1 / l) : Vec3{};
 }
 
+Matrix4 linear(const std::array<double, 9>& m) {
+  return {m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0, 0, 0, 0, 1};
+}
+
 }  // namespace
 
 Vec3 texel_gradient(const Field& field, const VolumeDescription& volume, const Vec3& t, const Vec3& reach) {
@@ -35,22 +39,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
                                   const Vec3& t, const Vec3& way, const std::array<double, 4>& colour) {
   Vec3 gradient = texel_gradient(field, volume, t, light.reach);
   for (std::size_t axis = 0; axis < 3; ++axis) gradient[axis] *= volume.size[axis];
-  const Matrix4 space{light.space[0],
-                      light.space[1],
-                      light.space[2],
-                      0,
-                      light.space[3],
-                      light.space[4],
-                      light.space[5],
-                      0,
-                      light.space[6],
-                      light.space[7],
-                      light.space[8],
-                      0,
-                      0,
-                      0,
-                      0,
-                      1};
+  const Matrix4 space = linear(light.space);
   const Matrix4 back = inverse(space).value();
   // The gradient's image is that under the inverse, transposed.
   Vec3 normal{};
@@ -61,7 +50,7 @@ std::array<double, 4> illuminated(const Field& field, const VolumeDescription& v
   for (std::size_t k = 0; k < 3; ++k) even[k] *= double(light.even[k]);
   if (!(slope > 0)) return even;
   normal = scale(normal, 1 / slope);
-  const Vec4 forward = transform(space, {way[0], way[1], way[2], 0});
+  const Vec4 forward = transform(linear(light.ray_space.value_or(light.space)), {way[0], way[1], way[2], 0});
   const Vec3 eye = unit({-forward[0], -forward[1], -forward[2]});
   const Vec3 to_light = length(light.direction) > 0 ? unit(light.direction) : eye;
   const auto cosine = [&](const Vec3& direction) {

@@ -98,36 +98,90 @@ std::vector<std::string> reasons_of(const StageFacts& facts, const RayFinding& f
   return reasons;
 }
 
-/// What of a fetch's coordinate is not the same for the whole draw, component by component.
-std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, const Fetch& fetch) {
+/// The loop in one iteration of which all these fetches are executed; null: there is none.
+std::optional<std::size_t> common_loop(const StageFacts& facts, std::span<const std::size_t> fetches) {
+  const auto is_around_all = [&](std::size_t loop) {
+    return std::ranges::all_of(fetches, [&](std::size_t fetch) {
+      return facts.fetches[fetch].loop && is_within(facts, *facts.fetches[fetch].loop, loop);
+    });
+  };
+  for (const std::size_t fetch : fetches) {
+    const auto loop = facts.fetches[fetch].loop;
+    if (loop && is_around_all(*loop)) return loop;
+  }
+  return std::nullopt;
+}
+
+/// Whether all fragments run through a loop equally often, whatever they have gathered: one over the axes.
+bool runs_equally_often(const StageFacts& facts, std::size_t loop) {
+  return std::ranges::all_of(facts.loops[loop].condition, [&](const Dependence& on) {
+    const Source& source = facts.sources[on.source];
+    return is_fixed_for_rays(source.kind) || (source.kind == SourceKind::iteration && source.number == loop);
+  });
+}
+
+/// What of a fetch's coordinate is neither the same for the whole draw nor counted by a loop within `around`,
+/// component by component.
+std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, const Fetch& fetch,
+                                                    std::size_t around) {
+  const auto is_counted = [&](const Source& source) {
+    return source.kind == SourceKind::iteration && source.number != around &&
+           is_within(facts, source.number, around) && runs_equally_often(facts, source.number);
+  };
   std::vector<std::set<std::uint32_t>> places;
   for (const Dependences& component : fetch.coordinate) {
     std::set<std::uint32_t> sources;
     for (const Dependence& on : component) {
-      if (!is_fixed_for_rays(facts.sources[on.source].kind)) sources.insert(on.source);
+      const Source& source = facts.sources[on.source];
+      if (!is_fixed_for_rays(source.kind) && !is_counted(source)) sources.insert(on.source);
     }
     places.push_back(std::move(sources));
   }
   return places;
 }
 
+/// Whether a number of texels, or the texture's size, decides where the fetch lies.
+bool counts_texels(const StageFacts& facts, const Fetch& fetch) {
+  const auto is_size = [&](const Dependence& on) {
+    return facts.sources[on.source].kind == SourceKind::texture_size;
+  };
+  return fetch.offset || std::ranges::any_of(fetch.coordinate, [&](const Dependences& component) {
+           return std::ranges::any_of(component, is_size);
+         });
+}
+
+/// Whether nothing but its coordinate tells a fetch from another one.
+bool is_plain(const StageFacts& facts, const Fetch& fetch) {
+  const bool fixed = std::ranges::all_of(
+      fetch.modifiers, [&](const Dependence& on) { return is_fixed_for_rays(facts.sources[on.source].kind); });
+  return fetch.function == FetchFunction::filtered && fixed && !fetch.gradient && !fetch.bias;
+}
+
 }  // namespace
 
-bool are_neighbours(const StageFacts& fragment, std::span<const std::size_t> fetches) {
-  // A probe's textures are of other sizes.
-  const auto on_size = [&](const Dependences& component) {
-    return std::ranges::any_of(component, [&](const Dependence& on) {
-      return fragment.sources[on.source].kind == SourceKind::texture_size;
-    });
-  };
-  return std::ranges::all_of(fetches, [&](std::size_t index) {
+bool is_within(const StageFacts& facts, std::size_t inner, std::size_t outer) {
+  for (std::optional<std::size_t> loop = inner; loop; loop = facts.loops[*loop].outer) {
+    if (*loop == outer) return true;
+  }
+  return false;
+}
+
+std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
+                                                    std::span<const std::size_t> fetches) {
+  const auto loop = common_loop(fragment, fetches);
+  if (!loop) return std::nullopt;
+  const auto places = varying_places(fragment, fragment.fetches[fetches.front()], *loop);
+  const bool neighbours = std::ranges::all_of(fetches, [&](std::size_t index) {
     const Fetch& fetch = fragment.fetches[index];
-    const Fetch& first = fragment.fetches[fetches.front()];
-    const bool plain = fetch.function == FetchFunction::filtered && !fetch.offset && !fetch.level &&
-                       !fetch.gradient && !fetch.bias;
-    return plain && fetch.loop == first.loop && std::ranges::none_of(fetch.coordinate, on_size) &&
-           varying_places(fragment, fetch) == varying_places(fragment, first);
+    return is_plain(fragment, fetch) && varying_places(fragment, fetch, *loop) == places;
   });
+  if (!neighbours) return std::nullopt;
+  const auto by_texels = std::ranges::count_if(
+      fetches, [&](std::size_t index) { return counts_texels(fragment, fragment.fetches[index]); });
+  if (by_texels == 0) return NeighbourDistance::in_texture_space;
+  // All but the point itself: distances of both kinds would change differently from texture to texture.
+  if (std::size_t(by_texels) + 1 == fetches.size()) return NeighbourDistance::in_texels;
+  return std::nullopt;
 }
 
 bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches) {

@@ -2,6 +2,7 @@
 // What a fragment stage that marches through a volume shows besides its samples.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,9 +41,20 @@ struct RayFinding {
   std::vector<std::string> reasons;  ///< why of_one_texel_each() does not hold, one for each thing
 };
 
-/// Whether the places of these fetches differ by nothing but what is the same for the whole draw, as those of a
-/// gradient do: the point, and neighbours at constant distances.
-bool are_neighbours(const StageFacts& fragment, std::span<const std::size_t> fetches);
+/// Whether loop `inner` is run through in one iteration of `outer`: it is that loop, or stands in it.
+bool is_within(const StageFacts& fragment, std::size_t inner, std::size_t outer);
+
+/// What the distances between a point and the neighbours that its gradient is taken of are numbers of.
+enum class NeighbourDistance : std::uint8_t {
+  in_texture_space,  ///< constants and uniforms are added to the coordinate
+  in_texels,         ///< of the texture that is bound: textureOffset, or the inverse of textureSize
+};
+
+/// Of fetches whose places differ by nothing but what is the same for the whole draw, as those of a gradient
+/// do: the point, and neighbours at constant distances, one by one or in a loop over the axes. Null: they
+/// differ by more.
+std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
+                                                    std::span<const std::size_t> fetches);
 
 /// Whether every table that more than one of these fetches could address is addressed by one of them alone.
 bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches);

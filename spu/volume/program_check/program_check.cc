@@ -77,14 +77,6 @@ bool is_measured(const ProgramStages& stages, const FragmentInputs& fragment, co
   return influence.target == program::Target::colour && !influence.through_table;
 }
 
-/// Whether loop `inner` is run through in one iteration of `outer`: it is that loop, or stands in it.
-bool is_within(const StageFacts& facts, std::size_t inner, std::size_t outer) {
-  for (std::optional<std::size_t> loop = inner; loop; loop = facts.loops[*loop].outer) {
-    if (*loop == outer) return true;
-  }
-  return false;
-}
-
 /// Light and gradients take several texels in one iteration. Two loops one after the other do not: vispy's
 /// second one looks for the maximum more closely.
 bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, const SamplerRoles& roles) {
@@ -93,7 +85,7 @@ bool mixes_samples(const StageFacts& facts, const program::RayFinding& finding, 
     const program::Fetch& fetch = facts.fetches[index];
     if (contains(roles.idle, fetch.sampler) || !fetch.loop) return false;
     const bool mixes = std::ranges::any_of(loops, [&](std::size_t other) {
-      return is_within(facts, *fetch.loop, other) || is_within(facts, other, *fetch.loop);
+      return program::is_within(facts, *fetch.loop, other) || program::is_within(facts, other, *fetch.loop);
     });
     loops.push_back(*fetch.loop);
     return mixes;
@@ -203,7 +195,7 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
   if (auto refusal = refusal_of_tables(facts, finding.tables, findings.roles)) return refusal;
   std::vector<Influence> unexplained = finding.data;
   if (mixes_samples(facts, finding, findings.roles)) {
-    if (!takes_gradients(findings))
+    if (!neighbours_of_gradients(findings))
       return "the fragment shader: a sample's colour depends on several texels of the volume (gradient, "
              "lighting)";
     // Light comes from somewhere: what it shows of slopes is measured on several rays.
@@ -215,10 +207,11 @@ std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings) {
   return {};
 }
 
-bool takes_gradients(const ProgramFindings& findings) {
+std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings) {
   const StageFacts& facts = findings.facts;
   const std::vector<std::size_t> fetches = fetches_of_samples(*findings.ray, facts, findings.roles);
-  return fetches.size() > 1 && are_neighbours(facts, fetches) && address_tables_alone(facts, fetches);
+  if (fetches.size() < 2 || !address_tables_alone(facts, fetches)) return std::nullopt;
+  return neighbour_distance(facts, fetches);
 }
 
 VerificationSchedule::Inputs uniform_inputs(const ProgramFindings& findings,

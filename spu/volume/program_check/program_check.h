@@ -78,9 +78,10 @@ std::optional<Refusal> refusal_of_slices(const ProgramStages& stages, const Prog
 /// the comparison of the first image and in sentinels (spu/volume/verification).
 std::optional<Refusal> refusal_of_ray_caster(const ProgramFindings& findings);
 
-/// Whether a ray caster's samples are made of a texel and its neighbours at constant distances, and tables are
-/// addressed by one of them: central differences, which light needs.
-bool takes_gradients(const ProgramFindings& findings);
+/// How far away the neighbours are where a ray caster's samples are made of a texel and its neighbours at
+/// constant distances, and tables are addressed by one of them: central differences, which light needs. Null:
+/// they are not.
+std::optional<program::NeighbourDistance> neighbours_of_gradients(const ProgramFindings& findings);
 
 /// Uniforms of slices as inputs of a comparison: what a change of those does that decide about fragments or
 /// move samples is unknown.

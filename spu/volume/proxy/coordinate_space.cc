@@ -27,6 +27,37 @@ bool is_cut(const CutBox& body) {
   return volume::length(body.cut.normal) > 0;
 }
 
+/// What an input may be whose values fill `box`.
+std::vector<CoordinateSpace> spaces_of(const std::string& input, const volume::Box& box,
+                                       const std::array<int, 3>& size) {
+  bool unit = true;
+  bool texels = true;
+  bool whole = true;
+  CoordinateSpace in_texels{input};
+  CoordinateSpace of_box{.input = input, .of_whole_box = true};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double n = size[k];
+    const double slack = 1.01 / n;
+    const double edge = box.high[k] - box.low[k];
+    unit = unit && box.low[k] >= -slack && box.high[k] <= 1 + slack;
+    whole = whole && edge >= 1 - 2 * slack;
+    texels = texels && box.low[k] >= -1.01 && box.high[k] <= n + 1.01;
+    in_texels.scale[k] = 1 / n;
+    of_box.scale[k] = 1 / edge;
+    of_box.offset[k] = -box.low[k] / edge;
+  }
+  std::vector<CoordinateSpace> spaces;
+  if (unit) {
+    spaces.push_back({input});
+  } else if (texels) {
+    spaces.push_back(in_texels);
+    for (std::size_t k = 0; k < 3; ++k) in_texels.offset[k] = 0.5 / size[k];
+    spaces.push_back(in_texels);
+  }
+  if (!unit || !whole) spaces.push_back(of_box);
+  return spaces;
+}
+
 }  // namespace
 
 bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen) {
@@ -41,33 +72,20 @@ bool draws_box(const GlContext& context, const Run& run, const ProgramStages& st
 }
 
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
-  std::vector<CoordinateSpace> of_texels;
+  std::vector<CoordinateSpace> spaces;
   Capture captured;
-  const auto& size = measured.texture.size;
   for (const StageInput& input : measured.stages.inputs) {
     if (input.integer || input.components < 3) continue;
     const Capture& capture = capture_by(measured, input.name, captured);
     if (!capture.fit) continue;
     const auto body = body_of(capture);
     if (!body) continue;
-    const volume::Box& box = body->box;
-    bool unit = true;
-    bool texels = true;
-    CoordinateSpace in_texels{input.name};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double n = size[k];
-      const double slack = 1.01 / n;
-      unit = unit && box.low[k] >= -slack && box.high[k] <= 1 + slack;
-      texels = texels && box.low[k] >= -1.01 && box.high[k] <= n + 1.01;
-      in_texels.scale[k] = 1 / n;
-    }
-    if (unit) return {{input.name}};
-    if (!texels || !of_texels.empty()) continue;
-    of_texels.push_back(in_texels);
-    for (std::size_t k = 0; k < 3; ++k) in_texels.offset[k] = 0.5 / size[k];
-    of_texels.push_back(in_texels);
+    std::vector<CoordinateSpace> of_input = spaces_of(input.name, body->box, measured.texture.size);
+    const CoordinateSpace& likeliest = of_input.front();
+    if (!likeliest.of_whole_box && likeliest.scale == volume::Vec3{1, 1, 1}) return of_input;
+    if (spaces.empty()) spaces = std::move(of_input);
   }
-  return of_texels;
+  return spaces;
 }
 
 std::optional<ProxyBox> proxy_box(const MarchContext& measured, const CoordinateSpace& space) {

@@ -8,6 +8,7 @@
 
 #include "spu/volume/geometry/capture.h"
 #include "spu/volume/pipeline/program_stages.h"
+#include "spu/volume/program/ray_caster.h"
 #include "spu/volume/proxy/box.h"
 #include "spu/volume/proxy/probe_surfaces.h"
 #include "spu/volume/texture/texels.h"
@@ -20,6 +21,7 @@ struct CoordinateSpace {
   std::string input;
   volume::Vec3 scale{1, 1, 1};
   volume::Vec3 offset{};
+  bool of_whole_box = false;  ///< so that the box that was drawn is the whole texture
 };
 
 /// The box of one draw, in texture space.
@@ -41,7 +43,8 @@ struct MarchContext {
   bool ends_at_geometry = false;  ///< at the opaque geometry, whose depth the program fetches
   /// Pixels of the window where the program keeps fragments, where it discards others by their place.
   std::optional<volume::Rect> kept{};
-  bool takes_gradients = false;   ///< as program_check.h has it: samples may be lit
+  /// As program_check.h has it; not null: samples may be lit.
+  std::optional<program::NeighbourDistance> neighbours{};
   const Capture* seen = nullptr;  ///< of this run; where it tells what is asked, the run is not drawn once more
 };
 
@@ -49,8 +52,9 @@ struct MarchContext {
 /// already.
 bool draws_box(const GlContext& context, const Run& run, const ProgramStages& stages, const Capture& seen);
 
-/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole box
-/// that fits the texture's.
+/// The coordinates that may address the volume: inputs of the fragment stage over which the draw is a whole
+/// box, as they are, in texels, or with the box for the whole texture, which they are in the world or in the
+/// object's own space. The likelier ones first; those that differ by an offset alone stand side by side.
 std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured);
 
 /// The box of the draw in the texture space of `space`; null when it is no closed surface (the near plane has

@@ -178,7 +178,7 @@ std::vector<volume::Rgba> FieldProbe::drawn_at(double x, double y, std::span<con
 std::vector<volume::Rgba> FieldProbe::at_gradient(double x, double y, std::span<const float> values,
                                                   const EvenSlope& slope) {
   std::array<int, 3> size{};
-  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = slope.gradient[axis] == 0 ? 1 : slope.texels;
+  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = slope.gradient[axis] == 0 ? 1 : slope.texels[axis];
   const auto height = [&](std::size_t axis, int i) {
     return slope.gradient[axis] * ((i + 0.5) / size[axis] - slope.middle[axis]);
   };

@@ -54,7 +54,7 @@ class FieldProbe {
   struct EvenSlope {
     volume::Vec3 gradient{};
     volume::Vec3 middle{};
-    int texels = 2;  ///< along each axis on which it rises
+    std::array<int, 3> texels{2, 2, 2};  ///< along an axis on which it does not rise there is one
   };
   std::vector<volume::Rgba> at_gradient(double x, double y, std::span<const float> values,
                                         const EvenSlope& slope);

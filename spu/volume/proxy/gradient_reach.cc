@@ -13,42 +13,44 @@ namespace {
 /// How many texels away gradients look along an axis, where the ray shows it: between stripes of nearly one
 /// value, samples are lit that have another stripe within their reach.
 std::optional<double> reach_along(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
-                                  std::size_t axis, int size) {
+                                  std::size_t axis) {
   constexpr double tells = 0.05;
-  const double cosine = LightSpace(light.space, ray.way.way).cosine_across(axis);
-  const Tint even = tint_of(ray.even.front());
+  const double cosine = LightSpace(light, ray.way.way).cosine_across(axis);
+  const Tint base = tint_of(ray.base.front());
+  const Tint plain = lit_tint(light, std::nullopt, base);
   Tint lit{};
   for (const double side : {cosine, -cosine}) {
-    const Tint one = lit_tint(light, side, even);
+    const Tint one = lit_tint(light, side, base);
     for (std::size_t c = 0; c < 3; ++c) lit[c] += one[c] / 2;
   }
   std::size_t channel = 0;
   for (std::size_t c = 1; c < 3; ++c) {
-    if (std::abs(lit[c] - even[c]) > std::abs(lit[channel] - even[channel])) channel = c;
+    if (std::abs(lit[c] - plain[c]) > std::abs(lit[channel] - plain[channel])) channel = c;
   }
-  const double contrast = lit[channel] - even[channel];
+  const double contrast = lit[channel] - plain[channel];
   if (std::abs(contrast) < tells) return std::nullopt;
-  // Narrow stripes tell a short reach better, and no long one.
-  std::optional<double> reach;
-  for (const int width : {64, 16}) {
-    const double part = (slopes.over_stripes(ray, axis, width)[channel] - even[channel]) / contrast;
-    constexpr double most_part = 0.5;
-    if (!reach || part < most_part) reach = part * width * FieldProbe::split_unit / 2 * size;
-  }
-  return reach;
+  const auto reach_by = [&](int width) {
+    const double part = (slopes.over_stripes(ray, axis, width)[channel] - plain[channel]) / contrast;
+    return part * width * FieldProbe::split_unit / 2;
+  };
+  // Narrow stripes tell a short reach better, and none of a quarter of their width.
+  constexpr int wide = 64;
+  constexpr int narrow = 16;
+  double reach = reach_by(wide);
+  if (reach < narrow * FieldProbe::split_unit / 4) reach = reach_by(narrow);
+  return slopes.reach_in_stripes(axis, reach);
 }
 
 }  // namespace
 
 std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
-                                                    const volume::Light& light,
-                                                    const std::array<int, 3>& size) {
+                                                    const volume::Light& light) {
   constexpr double least = 0.2;
   constexpr double most = 8;
   std::array<std::optional<double>, 3> seen;
   std::vector<double> known;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    seen[axis] = reach_along(slopes, ray, light, axis, size[axis]);
+    seen[axis] = reach_along(slopes, ray, light, axis);
     if (!seen[axis]) continue;
     // Whole texels, but for what counting samples leaves open.
     const double whole = std::round(*seen[axis]);

@@ -10,9 +10,9 @@
 
 namespace understudy::spu {
 
-/// In texels along each axis of a texture of `size`; axes that the ray does not show look as far as the others.
-/// Null: nearer or farther than is recognised (up to eight texels).
+/// In texels of the volume along each axis; axes that the ray does not show look as far as the others. Null:
+/// nearer or farther than is recognised (up to eight texels).
 std::optional<std::array<double, 3>> gradient_reach(SlopeProbe& slopes, const LitRay& ray,
-                                                    const volume::Light& light, const std::array<int, 3>& size);
+                                                    const volume::Light& light);
 
 }  // namespace understudy::spu

@@ -5,7 +5,11 @@
 // Over a field that rises evenly all samples of a ray have one normal, and so one colour: that of the whole ray
 // over its opacity. By the angle between normal and ray it is a multiple of the colour that the same value has
 // in an even field (ambient and diffuse light), and something white (specular light). Both are measured angle
-// by angle, whatever the program's formula.
+// by angle, whatever the program's formula. Where even fields are black, because the material reflects no
+// ambient light, the colour of a slope that faces the eye takes their place (facing_colours.h).
+//
+// The first and the last samples of a ray have other normals (ray_normals.h), the more of them the fewer texels
+// the volume has. What they add is taken away once it is known how far gradients look.
 #pragma once
 
 #include <variant>
@@ -18,12 +22,17 @@
 namespace understudy::spu {
 
 /// What `march`, whose steps and table are known, needs to show the light; or why it is another light. Two
-/// where no colour that is looked at is bright enough to tell whether the program clamps it.
+/// where no colour that is looked at is bright enough to tell whether the program clamps it. Where even fields
+/// are black, the table gets colours.
 std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchContext& measured,
                                                                     FieldProbe& probe, const ProxyBox& box,
-                                                                    const March& march);
+                                                                    March& march);
 
 /// Whether a ray over two slopes looks as `march`, which has light, says.
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
+
+/// Whether its gradients look as far as `march`, which has light, says.
+bool gradients_still_reach(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
+                           const March& march);
 
 }  // namespace understudy::spu

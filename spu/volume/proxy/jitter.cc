@@ -45,6 +45,7 @@ std::optional<Tile> tile_of(const DispatchTable& gl, const SampledTexture& textu
 /// The texture's own numbers, whatever is shown in its place.
 std::optional<volume::RayOffsets> numbers_of(const GlContext& context, const SampledTexture& texture) {
   const DispatchTable& gl = *context.gl;
+  if (texture.target != GL_TEXTURE_2D) return std::nullopt;
   SavedState saved(context);
   saved.borrow_texture(GL_TEXTURE_2D, texture.unit);
   gl.BindTexture(GL_TEXTURE_2D, texture.texture);

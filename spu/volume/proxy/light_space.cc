@@ -16,16 +16,29 @@ Vec3 unit(const Vec3& v) {
   return volume::scale(v, 1 / volume::length(v));
 }
 
+Vec3 row_of(const std::array<double, 9>& matrix, std::size_t row) {
+  return {matrix[3 * row], matrix[3 * row + 1], matrix[3 * row + 2]};
+}
+
 }  // namespace
 
-LightSpace::LightSpace(const std::array<double, 9>& space, const Vec3& way) : space_(space) {
-  to_eye_ = unit({-volume::dot(row_of(0), way), -volume::dot(row_of(1), way), -volume::dot(row_of(2), way)});
+LightSpace::LightSpace(const volume::Light& light, const Vec3& way) : space_(light.space) {
+  const std::array<double, 9> rays = light.ray_space.value_or(light.space);
+  to_eye_ = unit({-volume::dot(row_of(rays, 0), way), -volume::dot(row_of(rays, 1), way),
+                  -volume::dot(row_of(rays, 2), way)});
   const auto least = std::size_t(std::ranges::min_element(to_eye_, {}, [](double v) { return std::abs(v); }) -
                                  to_eye_.begin());
   Vec3 axis{};
   axis[least] = 1;
   right_ = unit(volume::cross(to_eye_, axis));
   up_ = volume::cross(to_eye_, right_);
+  // Gradients go to the space by the inverse's transpose, here but for the determinant's size.
+  const Vec3 a = row_of(space_, 0);
+  const Vec3 b = row_of(space_, 1);
+  const Vec3 c = row_of(space_, 2);
+  const double sign = volume::dot(a, volume::cross(b, c)) < 0 ? 1 : -1;
+  for (std::size_t k = 0; k < 3; ++k)
+    normals_[k] = volume::scale({volume::cross(b, c)[k], volume::cross(c, a)[k], volume::cross(a, b)[k]}, sign);
 }
 
 Vec3 LightSpace::gradient(double angle, double turn) const {
@@ -41,15 +54,11 @@ Vec3 LightSpace::gradient(double angle, double turn) const {
   return volume::scale(gradient, 1 / largest);
 }
 
-double LightSpace::cosine_across(std::size_t axis) const {
-  const Vec3 a = row_of(0);
-  const Vec3 b = row_of(1);
-  const Vec3 c = row_of(2);
-  // And they go to the space by the inverse's transpose, here but for the sign of the determinant.
-  const double sign = volume::dot(a, volume::cross(b, c)) < 0 ? -1 : 1;
-  const Vec3 gradient{sign * volume::cross(b, c)[axis], sign * volume::cross(c, a)[axis],
-                      sign * volume::cross(a, b)[axis]};
-  return -volume::dot(unit(gradient), to_eye_);
+double LightSpace::cosine(const Vec3& gradient) const {
+  Vec3 normal{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    normal = volume::add(normal, volume::scale(normals_[axis], gradient[axis]));
+  return volume::dot(unit(normal), to_eye_);
 }
 
 }  // namespace understudy::spu

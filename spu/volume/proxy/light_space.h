@@ -5,28 +5,32 @@
 #include <array>
 #include <cstddef>
 
+#include "volume/light.h"
 #include "volume/texture_space.h"
 
 namespace understudy::spu {
 
 class LightSpace {
  public:
-  /// `space` is row-major and regular, from texture space; the ray goes along `way` in texture space.
-  LightSpace(const std::array<double, 9>& space, const volume::Vec3& way);
+  /// Of a light, whose `space` and `ray_space` are looked at; the ray goes along `way` in texture space.
+  LightSpace(const volume::Light& light, const volume::Vec3& way);
 
   /// In texture space, of a field that falls fastest at `angle` to the direction to the eye, turned about the
   /// ray; its largest component is 1.
   volume::Vec3 gradient(double angle, double turn) const;
 
-  /// Between the direction to the eye and the normal of a field that rises along a texture axis.
-  double cosine_across(std::size_t axis) const;
-
- private:
-  volume::Vec3 row_of(std::size_t row) const {
-    return {space_[3 * row], space_[3 * row + 1], space_[3 * row + 2]};
+  /// Between the direction to the eye and the normal of a field with this gradient in texture space.
+  double cosine(const volume::Vec3& gradient) const;
+  /// Of one that rises along a texture axis.
+  double cosine_across(std::size_t axis) const {
+    volume::Vec3 gradient{};
+    gradient[axis] = 1;
+    return cosine(gradient);
   }
 
+ private:
   std::array<double, 9> space_;
+  std::array<volume::Vec3, 3> normals_{};  ///< in the space, of fields that rise along a texture axis
   volume::Vec3 to_eye_{}, right_{}, up_{};
 };
 

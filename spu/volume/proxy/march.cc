@@ -63,7 +63,9 @@ class MarchMeasurement {
     march_.from_inside = !box.cuts.empty();
   }
 
-  std::optional<Refusal> measure();
+  /// All but the light.
+  std::optional<Refusal> measure_samples();
+  std::optional<Refusal> measure_light();
   /// Every way to read what was measured, in the spaces whose boxes are known.
   MarchFinding marches(const std::vector<CoordinateSpace>& spaces,
                        const std::vector<std::optional<ProxyBox>>& boxes) const;
@@ -147,8 +149,8 @@ std::optional<Refusal> MarchMeasurement::find_translucent_value() {
     if (!translucent) return "no value is translucent on any ray: samples cannot be counted";
     found = *translucent;
   }
-  if (measured_.takes_gradients || depends_on_gradient(measured_, probe_, found.ray, found.value)) {
-    if (!measured_.takes_gradients || march_.shows_one_colour() || march_.sum || march_.alpha_twice ||
+  if (measured_.neighbours || depends_on_gradient(measured_, probe_, found.ray, found.value)) {
+    if (!measured_.neighbours || march_.shows_one_colour() || march_.sum || march_.alpha_twice ||
         march_.background)
       return "the colour depends on the gradient (lighting)";
     lit_ = true;
@@ -230,7 +232,7 @@ std::optional<Refusal> MarchMeasurement::take_offsets() {
   return std::nullopt;
 }
 
-std::optional<Refusal> MarchMeasurement::measure() {
+std::optional<Refusal> MarchMeasurement::measure_samples() {
   if (!probe_.complete()) return "the driver offers no float framebuffer to probe with";
   if (auto refusal = find_composition()) return refusal;
   if (auto refusal = find_translucent_value()) return refusal;
@@ -241,14 +243,17 @@ std::optional<Refusal> MarchMeasurement::measure() {
   if (auto refusal = measure_table(measured_, probe_, rays_, rules_.front(), march_)) return refusal;
   if (!fill_unseen(probe_, box_, rules_.front(), march_))
     return "a value that may hide what lies behind it has the colour of the shader's background";
-  if (lit_) {
-    march_.steps = rules_.front();
-    auto lights = measure_headlight(measured_, probe_, box_, march_);
-    if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
-    lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
-  }
   if (auto refusal = take_offsets()) return refusal;
   return find_places();
+}
+
+std::optional<Refusal> MarchMeasurement::measure_light() {
+  if (!lit_) return std::nullopt;
+  march_.steps = rules_.front();
+  auto lights = measure_headlight(measured_, probe_, box_, march_);
+  if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
+  lights_ = std::get<std::vector<volume::Light>>(std::move(lights));
+  return std::nullopt;
 }
 
 double MarchMeasurement::least_misplaced(bool from_exit) {
@@ -338,17 +343,35 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
   return marches;
 }
 
-}  // namespace
-
-MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
-                           const ProxyBox& box) {
-  if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
+/// In spaces that differ by an offset alone: steps have one length in all of them.
+MarchFinding measure_in(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces) {
   std::vector<std::optional<ProxyBox>> boxes;
   boxes.reserve(spaces.size());
   for (const CoordinateSpace& space : spaces) boxes.push_back(proxy_box(measured, space));
-  MarchMeasurement measurement(measured, box);
-  if (auto refusal = measurement.measure()) return *std::move(refusal);
+  if (!boxes.front()) return samples_lie_elsewhere;
+  MarchMeasurement measurement(measured, *boxes.front());
+  if (auto refusal = measurement.measure_samples()) return *std::move(refusal);
+  MarchFinding finding = measurement.marches(spaces, boxes);
+  if (std::holds_alternative<Refusal>(finding)) return finding;
+  if (auto refusal = measurement.measure_light()) return *std::move(refusal);
   return measurement.marches(spaces, boxes);
+}
+
+}  // namespace
+
+MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces) {
+  if (measured.texture.base == BaseFormat::rgba) return "a ray caster over a texture of colours";
+  MarchFinding finding = samples_lie_elsewhere;
+  for (auto first = spaces.begin(); first != spaces.end();) {
+    const auto last = std::find_if(first, spaces.end(), [&](const CoordinateSpace& space) {
+      return space.scale != first->scale || space.input != first->input;
+    });
+    finding = measure_in(measured, {first, last});
+    const auto* const refusal = std::get_if<Refusal>(&finding);
+    if (refusal == nullptr || refusal->reason != samples_lie_elsewhere.reason) return finding;
+    first = last;
+  }
+  return finding;
 }
 
 }  // namespace understudy::spu

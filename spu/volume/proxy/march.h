@@ -59,8 +59,10 @@ struct March {
   /// Of samples that are composed by over: the program writes colours that are multiplied by alpha, and
   /// blending multiplies them by it once more.
   bool alpha_twice = false;
-  std::optional<Jitter> jitter;    ///< where `steps.offsets` come from
-  volume::TransferFunction table;  ///< premultiplied; of one sample, in an even field where there is light
+  std::optional<Jitter> jitter;  ///< where `steps.offsets` come from
+  /// Premultiplied; of one sample. Where there is light, in an even field, or, if `light->even` is 0, on slopes
+  /// that face the eye.
+  volume::TransferFunction table;
   std::optional<volume::Light> light;
   /// Samples are rounded as some drivers do (classification/sample_rounding.h): gradients of few texel values
   /// are seen best.
@@ -74,8 +76,7 @@ struct March {
 
 /// Either marches that may be the application's, or why there are none, in words that end in the report.
 using MarchFinding = std::variant<std::vector<March>, Refusal>;
-MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces,
-                           const ProxyBox& box);
+MarchFinding measure_march(const MarchContext& measured, const std::vector<CoordinateSpace>& spaces);
 
 /// What the nodes are asked to show for a march.
 void ask_nodes(const March& march, volume::RenderRequest& request);

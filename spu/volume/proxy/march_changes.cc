@@ -9,6 +9,7 @@
 #include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/exit_steps.h"
 #include "spu/volume/proxy/extreme_steps.h"
+#include "spu/volume/proxy/facing_colours.h"
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/headlight.h"
 #include "spu/volume/proxy/march_table.h"
@@ -54,6 +55,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
       if (!changed.background) return std::nullopt;
     }
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
+    if (march.light && march.light->even[0] == 0) take_facing_colours(measured, probe, box, changed);
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
   }
   if (march.jitter) {
@@ -128,7 +130,7 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   for (int i = 0; i < looked_at.values; ++i)
     values.push_back(value_at({march.table.low, march.table.high}, (i + looked_at.offset) / looked_at.values));
   const auto expected = [&](const Rgba& fragment, float value, double n) {
-    const Rgba sample = table_at(march.table, value);
+    const Rgba sample = even_sample(march, value);
     const Rgba got = premultiplied(fragment, already);
     if (march.shows_one_colour()) return largest_difference(got, sample) <= same_colour;
     // A ray whose end falls on a sample may have one more or less.
@@ -176,6 +178,7 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
     return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return false;
+  if (march.light && !gradients_still_reach(measured, probe, box, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   if (!remove_known_background(measured, probe, rays, march)) return false;
   std::vector<float> values = values_over(measured.range, tried);

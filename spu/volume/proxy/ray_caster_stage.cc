@@ -174,6 +174,14 @@ bool covers_samples(const GlContext& context, const Pipeline& pipeline, const Ma
          blending.op != volume::Operator::min && context.gl->IsEnabled(GL_CULL_FACE);
 }
 
+bool is_whole_texture(const volume::Box& region) {
+  constexpr double same = 1e-3;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::abs(region.low[k]) > same || std::abs(region.high[k] - 1) > same) return false;
+  }
+  return true;
+}
+
 Refusal no_coordinate() {
   return "no output of the vertex shader is a texture coordinate over the whole box";
 }
@@ -191,8 +199,8 @@ struct RayCasterStage::Draw {
   std::vector<CoordinateSpace> spaces{};
   Cuts cuts{};
   bool eye_inside = false;
-  bool ends_at_geometry = false;  ///< as in MarchContext
-  bool takes_gradients = false;   ///< likewise
+  bool ends_at_geometry = false;                           ///< as in MarchContext
+  std::optional<program::NeighbourDistance> neighbours{};  ///< likewise
   std::span<const std::string> tables_of_samples{};
   std::optional<volume::Rect>
       kept{};  ///< part of the window where fragments are, where some are discarded by place
@@ -207,7 +215,7 @@ struct RayCasterStage::Draw {
             !cuts.clipping.empty(),
             ends_at_geometry,
             kept,
-            takes_gradients,
+            neighbours,
             &*seen.capture};
   }
 };
@@ -221,11 +229,29 @@ ProxyBox RayCasterStage::find_box(Draw& draw) {
     if (draw.spaces.empty()) throw no_coordinate();
   }
   ProxyBox box = box_in(draw.measured(), draw.spaces.front());
+  if (march && march->space.of_whole_box && !is_whole_texture(box.region)) {
+    march.reset();
+    throw Refusal{"the coordinates of the ray caster's box change while its volume stays",
+                  fmt::format("'{}' was measured where the box was another", draw.spaces.front().input),
+                  "nothing: which part of the volume is in the box is known of texture coordinates alone"};
+  }
   if (!box.cuts.empty() && !draw.known.verified.left_inside.empty())
     throw Refusal{draw.known.verified.left_inside};
   draw.cuts = read_cuts(context_, draw.run.pipeline().program, box.camera.texture_to_clip);
   if (march && march->clipped == draw.cuts.clipping.empty()) march.reset();
   return box;
+}
+
+volume::Box RayCasterStage::region_in_any(const Draw& draw, const ProxyBox& box) {
+  volume::Box region = box.region;
+  for (std::size_t i = 1; i < draw.spaces.size(); ++i) {
+    const auto other = proxy_box(draw.measured(), draw.spaces[i]);
+    for (std::size_t k = 0; k < 3 && other; ++k) {
+      region.low[k] = std::min(region.low[k], other->region.low[k]);
+      region.high[k] = std::max(region.high[k], other->region.high[k]);
+    }
+  }
+  return region;
 }
 
 void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs) {
@@ -280,13 +306,14 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     refuse_again(draw);
     draw.spaces = coordinate_spaces(draw.measured());
     if (draw.spaces.empty()) throw no_coordinate();
-    const ProxyBox first = box_in(draw.measured(), draw.spaces.front());
-    MarchFinding finding = measure_march(draw.measured(), draw.spaces, first);
+    MarchFinding finding = measure_march(draw.measured(), draw.spaces);
     if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
     draw.known.frames = 0;  // looked at again, as a new volume is
   }
-  return box_in(draw.measured(), march->space);
+  ProxyBox found = box_in(draw.measured(), march->space);
+  draw.cuts = read_cuts(context_, draw.run.pipeline().program, found.camera.texture_to_clip);
+  return found;
 }
 
 RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& seen, KnownRayCaster known,
@@ -303,13 +330,17 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   }
   draw.ends_at_geometry = fetches_depth(context_, pipeline, says.facts);
   draw.tables_of_samples = says.ray->tables_of_samples;
-  draw.takes_gradients = takes_gradients(says);
+  draw.neighbours = neighbours_of_gradients(says);
   ProxyBox box = find_box(draw);
   draw.eye_inside = !box.cuts.empty();
   // Says what values there are.
-  uploader_.upload(
-      {pipeline, {}, seen.texture_version, box.region, {}, draw.takes_gradients ? gradient_ghost_layer : 0},
-      known.sent, known.counters, service);
+  uploader_.upload({pipeline,
+                    {},
+                    seen.texture_version,
+                    region_in_any(draw, box),
+                    {},
+                    draw.neighbours ? gradient_ghost_layer : 0},
+                   known.sent, known.counters, service);
 
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;

@@ -67,6 +67,8 @@ class RayCasterStage {
   struct Draw;
 
   ProxyBox find_box(Draw& draw);
+  /// What of the texture a draw shows, whichever of its spaces it is in.
+  static volume::Box region_in_any(const Draw& draw, const ProxyBox& box);
   /// Throws the last refusal before what was refused several times is measured once more, but in some frames.
   void refuse_again(const Draw& draw) const;
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);

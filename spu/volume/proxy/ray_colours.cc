@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/pipeline/pipeline.h"
 #include "spu/volume/proxy/field_probe.h"
 
@@ -59,6 +60,12 @@ bool grow_with_alpha(const std::vector<Rgba>& through, const std::vector<Rgba>& 
 
 float brightest_channel(const Rgba& colour) {
   return std::max({colour[0], colour[1], colour[2]});
+}
+
+Rgba even_sample(const March& march, float value) {
+  Rgba sample = table_at(march.table, value);
+  for (std::size_t c = 0; c < 3 && march.light; ++c) sample[c] *= march.light->even[c];
+  return sample;
 }
 
 Rgba sample_of(const March& march, const Rgba& ray, double n) {

@@ -34,6 +34,9 @@ bool multiplies_by_alpha(const Pipeline& pipeline);
 bool grow_with_alpha(const std::vector<volume::Rgba>& through, const std::vector<volume::Rgba>& briefly);
 float brightest_channel(const volume::Rgba& colour);
 
+/// What the march's table gives a sample in an even field.
+volume::Rgba even_sample(const March& march, float value);
+
 /// One of `n` equal samples that make up `ray`, and the ray that `n` equal samples make up; premultiplied.
 volume::Rgba sample_of(const March& march, const volume::Rgba& ray, double n);
 volume::Rgba ray_of(const March& march, const volume::Rgba& sample, double n);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/ray_probes.h"
 #include "volume/matrix.h"
@@ -59,21 +60,27 @@ bool is_translucent(const Rgba& colour) {
   return reached(colour) && colour[3] > least_seen && colour[3] < most_seen;
 }
 
-Tint lit_tint(const volume::Light& light, double cosine, const Tint& even) {
-  // Entries are so close that the nearest one does.
-  const double place = (std::clamp(cosine, -1.0, 1.0) + 1) / 2 * double(light.response.size() - 1);
-  const volume::LightResponse& response = light.response[std::size_t(std::lround(place))];
-  Tint lit;
-  for (std::size_t c = 0; c < 3; ++c)
-    lit[c] = std::min(double(response.diffuse) * even[c] + double(response.specular), double(light.brightest));
-  return lit;
-}
-
 SlopeProbe::SlopeProbe(const MarchContext& measured, FieldProbe& probe, const March& march)
-    : probe_(probe), premultiplied_(premultiplied_already(measured, march)), range_(measured.range) {}
+    : probe_(probe),
+      march_(march),
+      premultiplied_(premultiplied_already(measured, march)),
+      range_(measured.range),
+      size_(measured.texture.size),
+      neighbours_(measured.neighbours) {}
 
 float SlopeProbe::least_rise() const {
   return least_share * (range_[1] - range_[0]);
+}
+
+/// Gradients that count texels see those of the field: as far as can be, it has the volume's proportions.
+std::array<int, 3> SlopeProbe::field_size(int texels) const {
+  constexpr double fewest = 4;
+  if (!counts_texels()) return {texels, texels, texels};
+  const int longest = *std::ranges::max_element(size_);
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = int(std::lround(std::max(fewest, double(texels) * size_[axis] / longest)));
+  return size;
 }
 
 std::vector<Rgba> SlopeProbe::premultiplied_all(std::vector<Rgba> fragments) const {
@@ -87,16 +94,56 @@ std::vector<Rgba> SlopeProbe::even(double x, double y, const std::vector<float>&
   return premultiplied_all(probe_.at(x, y, values));
 }
 
+std::vector<Rgba> SlopeProbe::base(double x, double y, const std::vector<float>& values) {
+  std::vector<Rgba> colours = even(x, y, values);
+  if (!march_.light || march_.light->even[0] > 0) return colours;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Rgba sample = table_at(march_.table, values[i]);
+    for (std::size_t c = 0; c < 3 && reached(colours[i]) && sample[3] > 0; ++c)
+      colours[i][c] = sample[c] / sample[3] * colours[i][3];
+  }
+  return colours;
+}
+
 std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& values, const Vec3& gradient,
                                    double steepness, int texels) {
   const Vec3 middle = volume::add(ray.way.entry, volume::scale(ray.way.way, 0.5));
-  return premultiplied_all(probe_.at_gradient(
-      ray.x, ray.y, values, {volume::scale(gradient, steepness * double(least_rise())), middle, texels}));
+  const std::array<int, 3> size = field_size(texels);
+  Vec3 risen = volume::scale(gradient, steepness * double(least_rise()));
+  if (counts_texels()) {
+    // From texel to texel it rises as it does in the volume.
+    const double longest = double(*std::ranges::max_element(size)) / *std::ranges::max_element(size_);
+    for (std::size_t axis = 0; axis < 3; ++axis) risen[axis] *= size[axis] / (longest * size_[axis]);
+  }
+  return premultiplied_all(probe_.at_gradient(ray.x, ray.y, values, {risen, middle, size}));
 }
 
-float SlopeProbe::rise_along(double steepness) const {
-  constexpr double part = 0.75;  // a ray is longer than an edge of the box, but seldom goes through both ends
-  return float(part * std::abs(steepness)) * least_rise();
+EvenRise SlopeProbe::rise(const Vec3& gradient, const std::array<double, 3>& reach, int texels) const {
+  EvenRise field{gradient, field_size(texels), {}};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    field.reach[axis] = reach[axis] / (counts_texels() ? field.texels[axis] : size_[axis]);
+  return field;
+}
+
+double SlopeProbe::sample_opacity(float value) const {
+  return double(table_at(march_.table, value)[3]);
+}
+
+double SlopeProbe::reach_in_stripes(std::size_t axis, double part) const {
+  return part * (counts_texels() ? FieldProbe::field_texels : size_[axis]);
+}
+
+float SlopeProbe::rise_along(const LitRay& ray, const Vec3& gradient, double steepness) const {
+  // The pixel that is drawn is another one than the ray by a part of a pixel.
+  constexpr double beside_ray = 1.0 / 512;
+  double rise = std::abs(volume::dot(gradient, ray.way.way)) / 2 + beside_ray * volume::length(gradient);
+  // Half a texel from the texture's ends a field is even.
+  const Vec3 exit = volume::add(ray.way.entry, ray.way.way);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double place : {ray.way.entry[axis], exit[axis]})
+      rise += std::abs(gradient[axis]) * std::max(0.0, 0.5 / slope_texels - std::min(place, 1 - place));
+  }
+  return float(std::abs(steepness) * rise) * least_rise();
 }
 
 Tint SlopeProbe::over_stripes(const LitRay& ray, std::size_t axis, int width) {
@@ -122,7 +169,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   const float beside = 0.5F * least_rise();
   std::vector<float> all;
   for (const float value : values) all.insert(all.end(), {value - beside, value, value + beside});
-  const std::vector<Rgba> shown = even(ray.x, ray.y, all);
+  const std::vector<Rgba> shown = base(ray.x, ray.y, all);
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::array around{shown[3 * i], shown[3 * i + 1], shown[3 * i + 2]};
@@ -132,7 +179,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
     if (difference(tint, tint_of(around[0])) > same || difference(tint, tint_of(around[2])) > same) continue;
     candidates.push_back(i);
   }
-  // Light makes colours several times as bright as they are in even fields, and programs clamp them.
+  // Light makes colours several times as bright, and programs clamp them.
   constexpr double bright = 0.25;
   constexpr double dark = 0.02;
   const auto brightness = [&](std::size_t i) { return difference(tint_of(shown[3 * i + 1]), {}); };
@@ -140,7 +187,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
   if (std::ranges::any_of(candidates, is_moderate))
     std::erase_if(candidates, [&](std::size_t i) { return !is_moderate(i); });
   while (!candidates.empty() && ray.values.size() < most) {
-    const std::vector<Tint> chosen = tints_of(ray.even);
+    const std::vector<Tint> chosen = tints_of(ray.base);
     // The first is the brightest; then the one that is farthest from all others.
     const auto distance = [&](std::size_t i) {
       const Tint tint = tint_of(shown[3 * i + 1]);
@@ -152,7 +199,7 @@ LitRay SlopeProbe::with_values(LitRay ray) {
     const std::size_t best = *std::ranges::max_element(candidates, {}, distance);
     if (!chosen.empty() && distance(best) < 1e-3) break;
     ray.values.push_back(values[best]);
-    ray.even.push_back(shown[3 * best + 1]);
+    ray.base.push_back(shown[3 * best + 1]);
   }
   return ray;
 }

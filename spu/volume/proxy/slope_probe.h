@@ -3,19 +3,18 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "spu/volume/proxy/field_probe.h"
 #include "spu/volume/proxy/march.h"
+#include "spu/volume/proxy/ray_normals.h"
 #include "volume/light.h"
 
 namespace understudy::spu {
 
 /// Texels along each axis of a field with a slope: at both ends half a texel is even.
 constexpr int slope_texels = 32;
-
-/// Colour over opacity, by channel.
-using Tint = std::array<double, 3>;
 
 Tint tint_of(const volume::Rgba& premultiplied);
 std::vector<Tint> tints_of(const std::vector<volume::Rgba>& colours);
@@ -24,28 +23,29 @@ double difference(const Tint& a, const Tint& b);
 /// The largest channel of all.
 double brightest(const std::vector<Tint>& tints);
 
-/// What `light`, which has a response, makes of the colour of an even field where its gradient is at this
-/// cosine to the eye; clamped, if it clamps.
-Tint lit_tint(const volume::Light& light, double cosine, const Tint& even);
-
 /// A ray, and values whose fields are translucent on it.
 struct LitRay {
   double x = 0;  ///< normalised device coordinates
   double y = 0;
   WayThroughBox way;
   std::vector<float> values{};
-  std::vector<volume::Rgba> even{};  ///< premultiplied: what fields of one value show
+  std::vector<volume::Rgba> base{};  ///< premultiplied: the colours of the values that light gives multiples of
 };
 
 class SlopeProbe {
  public:
+  /// `march` stays, and has steps and a table.
   SlopeProbe(const MarchContext& measured, FieldProbe& probe, const March& march);
 
   /// Premultiplied colours of the ray at (x, y) over fields of one value.
   std::vector<volume::Rgba> even(double x, double y, const std::vector<float>& values);
 
-  /// Over fields that rise, per unit of texture space, by `gradient` times `steepness` times the least rise
-  /// that tells; in the middle of the ray they have the value.
+  /// What light gives multiples of: these, or, where even fields are black under the light of `march`, the
+  /// table's colours.
+  std::vector<volume::Rgba> base(double x, double y, const std::vector<float>& values);
+
+  /// Over fields that rise, as the program's gradients see them, by `gradient` times `steepness` times the
+  /// least rise that tells, per unit of texture space; in the middle of the ray they have the value.
   std::vector<volume::Rgba> over(const LitRay& ray, const std::vector<float>& values,
                                  const volume::Vec3& gradient, double steepness = 1, int texels = slope_texels);
   /// Of the ray's own values.
@@ -53,10 +53,22 @@ class SlopeProbe {
                                  int texels = slope_texels) {
     return over(ray, ray.values, gradient, steepness, texels);
   }
+  /// Of one sample of a value, by the march's table.
+  double sample_opacity(float value) const;
+  /// The same fields as ray_normals.h has them; `reach` in texels of the volume, as volume::Light has it.
+  EvenRise rise(const volume::Vec3& gradient, const std::array<double, 3>& reach,
+                int texels = slope_texels) const;
 
-  /// By how much the values on a ray differ from that in its middle, over a slope so steep along it.
-  float rise_along(double steepness) const;
+  /// Along the axis of fields that rise along one alone: so many that the first sample on a ray, which lies on
+  /// a face, has the others' normal.
+  int fine_texels() const { return counts_texels() ? 2 * slope_texels : 2048; }
 
+  /// By how much the values on a ray differ at most from that in its middle, over the fields of over().
+  float rise_along(const LitRay& ray, const volume::Vec3& gradient, double steepness) const;
+
+  /// How many of the volume's texels along an axis a part of texture space is that gradients reach over in a
+  /// field of stripes.
+  double reach_in_stripes(std::size_t axis, double part) const;
   /// The ray's first value, on average over stripes of a width across `axis` (in FieldProbe::split_unit) that
   /// begin anywhere.
   Tint over_stripes(const LitRay& ray, std::size_t axis, int width);
@@ -69,10 +81,15 @@ class SlopeProbe {
   std::vector<volume::Rgba> premultiplied_all(std::vector<volume::Rgba> fragments) const;
   /// Of all over the range of values.
   float least_rise() const;
+  bool counts_texels() const { return neighbours_ == program::NeighbourDistance::in_texels; }
+  std::array<int, 3> field_size(int texels) const;
 
   FieldProbe& probe_;
+  const March& march_;
   bool premultiplied_;
   std::array<float, 2> range_;
+  std::array<int, 3> size_;  ///< of the volume
+  std::optional<program::NeighbourDistance> neighbours_;
 };
 
 /// Whether a ray's opacity is one whose colour tells.

@@ -81,18 +81,52 @@ TEST(RayCasters, CountTheTexelsOfASample) {
 TEST(RayCasters, TellNeighboursByWhatTheirPlacesDependOn) {
   const std::string at =
       "float at(vec3 p, vec3 by) { return texture(volume, p + by).r - texture(volume, p - by).r; }";
+  const auto distance = [](const Found& found) {
+    return neighbour_distance(found.facts, found.finding.samples);
+  };
   const Found constant = caster("v.rgb *= at(p, vec3(u.y, 0, 0));", "", at);
-  EXPECT_TRUE(are_neighbours(constant.facts, constant.finding.samples));
+  EXPECT_EQ(distance(constant), NeighbourDistance::in_texture_space);
   EXPECT_TRUE(address_tables_alone(constant.facts, constant.finding.samples));
   const Found by_place = caster("v.rgb *= at(p, vec3(a.w, 0, 0));", "", at);
-  EXPECT_FALSE(are_neighbours(by_place.facts, by_place.finding.samples));
+  EXPECT_EQ(distance(by_place), std::nullopt);
   const Found by_value = caster("v.rgb *= at(p, vec3(v.r, 0, 0));", "", at);
-  EXPECT_FALSE(are_neighbours(by_value.facts, by_value.finding.samples));
-  const Found by_size = caster("v.rgb *= at(p, 1.0 / vec3(textureSize(volume, 0)));", "", at);
-  EXPECT_FALSE(are_neighbours(by_size.facts, by_size.finding.samples));
+  EXPECT_EQ(distance(by_value), std::nullopt);
   const Found by_slope = caster("v.a *= texture(table, at(p, vec3(u.y, 0, 0))).a;", "", at);
-  EXPECT_TRUE(are_neighbours(by_slope.facts, by_slope.finding.samples));
+  EXPECT_EQ(distance(by_slope), NeighbourDistance::in_texture_space);
   EXPECT_FALSE(address_tables_alone(by_slope.facts, by_slope.finding.samples));
+}
+
+TEST(RayCasters, TellNeighboursThatAreCountedInTexels) {
+  const auto distance = [](const std::string& in_loop, const std::string& before = "") {
+    const Found found = caster(in_loop, "", before);
+    return neighbour_distance(found.facts, found.finding.samples);
+  };
+  const std::string by_size =
+      "float at(vec3 p) { vec3 d = vec3(1.0 / textureSize(volume, 0).x, 0, 0);"
+      " return texture(volume, p + d).r - texture(volume, p - d).r; }";
+  EXPECT_EQ(distance("v.rgb *= at(p);", by_size), NeighbourDistance::in_texels);
+  EXPECT_EQ(distance("v.rgb *= textureOffset(volume, p, ivec3(1, 0, 0)).r"
+                     " - textureOffset(volume, p, ivec3(-1, 0, 0)).r;"),
+            NeighbourDistance::in_texels);
+  EXPECT_EQ(distance("v.rgb *= textureLod(volume, p + vec3(u.y), 0.0).r;"),
+            NeighbourDistance::in_texture_space);
+  EXPECT_EQ(distance("v.rgb *= textureLod(volume, p + vec3(u.y), v.a).r;"), std::nullopt);
+  // The gradient of one texture would reach differently far from that of another.
+  EXPECT_EQ(distance("v.rgb *= textureOffset(volume, p, ivec3(1, 0, 0)).r - texture(volume, p + vec3(u.y)).r;"),
+            std::nullopt);
+}
+
+TEST(RayCasters, FindNeighboursInLoopsOverTheAxes) {
+  const auto distance = [](const std::string& end_of_loop, const std::string& moved) {
+    const Found found = caster("vec3 g = vec3(0); for (int axis = 0; axis < " + end_of_loop +
+                               "; ++axis) { vec3 by = vec3(0); by[axis] = " + moved +
+                               "; g[axis] = texture(volume, p + by).r - texture(volume, p - by).r; }"
+                               "v.rgb *= length(g);");
+    return neighbour_distance(found.facts, found.finding.samples);
+  };
+  EXPECT_EQ(distance("3", "u.y"), NeighbourDistance::in_texture_space);
+  EXPECT_EQ(distance("int(v.r * 3.0)", "u.y"), std::nullopt);
+  EXPECT_EQ(distance("3", "v.r"), std::nullopt);
 }
 
 TEST(RayCasters, NameTexelsThatDecide) {

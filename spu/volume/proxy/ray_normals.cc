@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/ray_normals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spu/volume/proxy/step_fit.h"
+#include "volume/matrix.h"
+
+namespace understudy::spu {
+
+using volume::Vec3;
+
+namespace {
+
+/// The central difference at `place` in parts of what it is in the middle of the texture, axis by axis.
+Vec3 seen_gradient(const EvenRise& field, const Vec3& place) {
+  Vec3 seen{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double end = 0.5 / field.texels[axis];
+    const double ahead = std::clamp(place[axis] + field.reach[axis], end, 1 - end);
+    const double behind = std::clamp(place[axis] - field.reach[axis], end, 1 - end);
+    seen[axis] = field.gradient[axis] * (ahead - behind) / (2 * field.reach[axis]);
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::RaySteps& steps, double opacity,
+                                     const LightSpace& space, const EvenRise& field) {
+  constexpr double same = 1e-6;
+  const double length = steps_of_way(steps, way.way);
+  const double samples = std::max(1.0, samples_of_length(steps, length));
+  const double between = 1 / (steps.divided ? samples : length);  // samples, in parts of the way
+  std::vector<NormalShare> normals;
+  double through = 1;
+  double sum = 0;
+  for (double i = 0; i < samples; ++i, through *= 1 - opacity) {
+    const Vec3 place = volume::add(way.entry, volume::scale(way.way, (steps.first + i) * between));
+    const Vec3 gradient = seen_gradient(field, place);
+    NormalShare one{std::nullopt, through};
+    if (volume::length(gradient) > 0) one.cosine = space.cosine(gradient);
+    const bool as_before = !normals.empty() && one.cosine.has_value() == normals.back().cosine.has_value() &&
+                           (!one.cosine || std::abs(*one.cosine - *normals.back().cosine) < same);
+    if (as_before)
+      normals.back().share += through;
+    else
+      normals.push_back(one);
+    sum += through;
+  }
+  for (NormalShare& normal : normals) normal.share /= sum;
+  return normals;
+}
+
+Tint lit_tint(const volume::Light& light, const std::optional<double>& cosine, const Tint& base) {
+  Tint lit;
+  if (!cosine) {
+    for (std::size_t c = 0; c < 3; ++c) lit[c] = double(light.even[c]) * base[c];
+    return lit;
+  }
+  // Entries are so close that the nearest one does.
+  const double place = (std::clamp(*cosine, -1.0, 1.0) + 1) / 2 * double(light.response.size() - 1);
+  const volume::LightResponse& response = light.response[std::size_t(std::lround(place))];
+  for (std::size_t c = 0; c < 3; ++c)
+    lit[c] = std::min(double(response.diffuse) * base[c] + double(response.specular), double(light.brightest));
+  return lit;
+}
+
+Tint lit_tint(const volume::Light& light, const std::vector<NormalShare>& normals, const Tint& base) {
+  Tint mean{};
+  for (const NormalShare& normal : normals) {
+    const Tint lit = lit_tint(light, normal.cosine, base);
+    for (std::size_t c = 0; c < 3; ++c) mean[c] += normal.share * lit[c];
+  }
+  return mean;
+}
+
+}  // namespace understudy::spu

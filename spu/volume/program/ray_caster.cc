@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 
 namespace understudy::spu::program {
@@ -140,14 +141,14 @@ std::vector<std::set<std::uint32_t>> varying_places(const StageFacts& facts, con
   return places;
 }
 
-/// Whether a number of texels, or the texture's size, decides where the fetch lies.
-bool counts_texels(const StageFacts& facts, const Fetch& fetch) {
-  const auto is_size = [&](const Dependence& on) {
-    return facts.sources[on.source].kind == SourceKind::texture_size;
-  };
-  return fetch.offset || std::ranges::any_of(fetch.coordinate, [&](const Dependences& component) {
-           return std::ranges::any_of(component, is_size);
-         });
+/// Whether the size of a texture decides where the fetch lies: its own, or another's.
+bool depends_on_size(const StageFacts& facts, const Fetch& fetch, bool own) {
+  return std::ranges::any_of(fetch.coordinate, [&](const Dependences& component) {
+    return std::ranges::any_of(component, [&](const Dependence& on) {
+      const Source& source = facts.sources[on.source];
+      return source.kind == SourceKind::texture_size && (source.name == fetch.sampler) == own;
+    });
+  });
 }
 
 /// Whether nothing but its coordinate tells a fetch from another one.
@@ -173,11 +174,14 @@ std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
   const auto places = varying_places(fragment, fragment.fetches[fetches.front()], *loop);
   const bool neighbours = std::ranges::all_of(fetches, [&](std::size_t index) {
     const Fetch& fetch = fragment.fetches[index];
-    return is_plain(fragment, fetch) && varying_places(fragment, fetch, *loop) == places;
+    return is_plain(fragment, fetch) && !depends_on_size(fragment, fetch, false) &&
+           varying_places(fragment, fetch, *loop) == places;
   });
   if (!neighbours) return std::nullopt;
-  const auto by_texels = std::ranges::count_if(
-      fetches, [&](std::size_t index) { return counts_texels(fragment, fragment.fetches[index]); });
+  const auto by_texels = std::ranges::count_if(fetches, [&](std::size_t index) {
+    const Fetch& fetch = fragment.fetches[index];
+    return fetch.offset || depends_on_size(fragment, fetch, true);
+  });
   if (by_texels == 0) return NeighbourDistance::in_texture_space;
   // All but the point itself: distances of both kinds would change differently from texture to texture.
   if (std::size_t(by_texels) + 1 == fetches.size()) return NeighbourDistance::in_texels;
@@ -185,17 +189,17 @@ std::optional<NeighbourDistance> neighbour_distance(const StageFacts& fragment,
 }
 
 bool address_tables_alone(const StageFacts& fragment, std::span<const std::size_t> fetches) {
-  return std::ranges::all_of(fragment.fetches, [&](const Fetch& table) {
-    std::set<std::uint32_t> places;
+  std::map<std::string, std::set<std::uint32_t>> places_by_table;
+  for (const Fetch& table : fragment.fetches) {
     for (const Dependences& component : table.coordinate) {
       for (const Dependence& on : component) {
         const Source& source = fragment.sources[on.source];
         if (source.kind == SourceKind::texel && std::ranges::find(fetches, source.number) != fetches.end())
-          places.insert(fragment.fetches[source.number].place);
+          places_by_table[table.sampler].insert(fragment.fetches[source.number].place);
       }
     }
-    return places.size() <= 1;
-  });
+  }
+  return std::ranges::all_of(places_by_table, [](const auto& table) { return table.second.size() <= 1; });
 }
 
 RayFinding ray_finding(const StageFacts& fragment, std::span<const std::string> volumes) {

@@ -30,6 +30,7 @@ bool is_cut(const CutBox& body) {
 /// What an input may be whose values fill `box`.
 std::vector<CoordinateSpace> spaces_of(const std::string& input, const volume::Box& box,
                                        const std::array<int, 3>& size) {
+  constexpr double fewest_texels = 2.02;  // a box of the world may be as small
   bool unit = true;
   bool texels = true;
   bool whole = true;
@@ -41,7 +42,7 @@ std::vector<CoordinateSpace> spaces_of(const std::string& input, const volume::B
     const double edge = box.high[k] - box.low[k];
     unit = unit && box.low[k] >= -slack && box.high[k] <= 1 + slack;
     whole = whole && edge >= 1 - 2 * slack;
-    texels = texels && box.low[k] >= -1.01 && box.high[k] <= n + 1.01;
+    texels = texels && box.low[k] >= -1.01 && box.high[k] <= n + 1.01 && edge > fewest_texels;
     in_texels.scale[k] = 1 / n;
     of_box.scale[k] = 1 / edge;
     of_box.offset[k] = -box.low[k] / edge;
@@ -81,6 +82,9 @@ std::vector<CoordinateSpace> coordinate_spaces(const MarchContext& measured) {
     const auto body = body_of(capture);
     if (!body) continue;
     std::vector<CoordinateSpace> of_input = spaces_of(input.name, body->box, measured.texture.size);
+    // What is left of a box before the near plane is no whole one.
+    if (is_cut(*body)) std::erase_if(of_input, &CoordinateSpace::of_whole_box);
+    if (of_input.empty()) continue;
     const CoordinateSpace& likeliest = of_input.front();
     if (!likeliest.of_whole_box && likeliest.scale == volume::Vec3{1, 1, 1}) return of_input;
     if (spaces.empty()) spaces = std::move(of_input);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <limits>
+#include <optional>
+#include <utility>
 
+#include "spu/volume/classification/table_lookup.h"
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/ray_colours.h"
 #include "spu/volume/proxy/slope_probe.h"
@@ -18,9 +21,10 @@ namespace {
 /// By so much of SlopeProbe's least rise: less than from entry to entry of the table.
 constexpr double flat = 0.1;
 
+/// Slopes across the face by which a ray enters, from one side.
 struct FacingColours {
-  std::vector<Rgba> colours;  ///< of the table's values
-  double cosine = 1;  ///< between the slopes' normal and the direction to the eye, from the side that is lit
+  std::vector<Rgba> colours;  ///< of values
+  double cosine = 1;          ///< between the slopes' normal and the direction to the eye
 
   double brightness() const {
     double sum = 0;
@@ -29,9 +33,34 @@ struct FacingColours {
   }
 };
 
-/// The base colour that `light` shows so, over its opacity.
-Tint unlit(const volume::Light& light, double cosine, const Tint& lit) {
+/// From the side that is brighter: some programs' normals point to where the field rises. Of the ray through
+/// the middle of the view; empty where there is none.
+FacingColours facing_colours(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
+                             const March& march, const std::vector<float>& values) {
+  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
+  const auto middle = rays.middle();
+  const auto way = rays.through(middle[0], middle[1]);
+  if (!way) return {};
+  const LitRay ray{middle[0], middle[1], *way, values};
+  const std::size_t axis = axis_of_entry(box.region, *way);
+  SlopeProbe slopes(measured, probe, march);
+  FacingColours facing;
+  for (const double side : {1.0, -1.0}) {
+    volume::Vec3 gradient{};
+    gradient[axis] = std::copysign(side, side * way->way[axis]);
+    FacingColours seen{slopes.over(ray, gradient, flat, slopes.fine_texels())};
+    if (!march.light->response.empty()) seen.cosine = LightSpace(*march.light, way->way).cosine(gradient);
+    if (facing.colours.empty() || seen.brightness() > facing.brightness()) facing = std::move(seen);
+  }
+  return facing;
+}
+
+/// The base colour that `light` shows so, over its opacity; null: brighter ones would look alike.
+std::optional<Tint> unlit(volume::Light light, double cosine, const Tint& lit) {
   constexpr double darkest = 1e-3;
+  constexpr double rounding = 0.01;
+  if (difference(lit, {}) > double(light.brightest) - rounding) return std::nullopt;
+  light.brightest = std::numeric_limits<float>::infinity();
   const Tint white = lit_tint(light, cosine, {0, 0, 0});
   const Tint one = lit_tint(light, cosine, {1, 1, 1});
   Tint base{};
@@ -56,32 +85,36 @@ std::size_t axis_of_entry(const volume::Box& region, const WayThroughBox& way) {
   return nearest;
 }
 
-void take_facing_colours(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, March& march) {
-  const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
-  const auto middle = rays.middle();
-  const auto way = rays.through(middle[0], middle[1]);
-  if (!way) return;
+bool take_facing_colours(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, March& march) {
   auto& entries = march.table.entries;
-  const LitRay ray{middle[0], middle[1], *way,
-                   values_over({march.table.low, march.table.high}, int(entries.size()))};
-  const std::size_t axis = axis_of_entry(box.region, *way);
-  SlopeProbe slopes(measured, probe, march);
-  FacingColours facing;
-  // Some programs' normals point to where the field rises, and one side may be dark.
-  for (const double side : {1.0, -1.0}) {
-    volume::Vec3 gradient{};
-    gradient[axis] = std::copysign(side, side * way->way[axis]);
-    FacingColours seen{slopes.over(ray, gradient, flat, slopes.fine_texels())};
-    if (!march.light->response.empty()) seen.cosine = LightSpace(*march.light, way->way).cosine(gradient);
-    if (facing.colours.empty() || seen.brightness() > facing.brightness()) facing = std::move(seen);
-  }
+  const FacingColours facing = facing_colours(
+      measured, probe, box, march, values_over({march.table.low, march.table.high}, int(entries.size())));
+  if (facing.colours.empty()) return false;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const Rgba& colour = facing.colours[i];
     if (!reached(colour) || !(colour[3] > 0)) continue;
-    Tint tint = tint_of(colour);
-    if (!march.light->response.empty()) tint = unlit(*march.light, facing.cosine, tint);
-    for (std::size_t c = 0; c < 3; ++c) entries[i][c] = float(tint[c] * double(entries[i][3]));
+    std::optional<Tint> tint = tint_of(colour);
+    if (!march.light->response.empty()) tint = unlit(*march.light, facing.cosine, *tint);
+    if (!tint) return false;
+    for (std::size_t c = 0; c < 3; ++c) entries[i][c] = float((*tint)[c] * double(entries[i][3]));
   }
+  return true;
+}
+
+bool shows_facing_colours(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
+                          const March& march, const std::vector<float>& values) {
+  constexpr double same = 0.03;
+  constexpr float least_opacity = 0.08F;
+  const FacingColours facing = facing_colours(measured, probe, box, march, values);
+  for (std::size_t i = 0; i < facing.colours.size(); ++i) {
+    const Rgba sample = table_at(march.table, values[i]);
+    const Rgba& colour = facing.colours[i];
+    if (!(sample[3] > 0) || !reached(colour) || !(colour[3] > least_opacity)) continue;
+    const Tint expected = lit_tint(*march.light, facing.cosine, tint_of(sample));
+    if (!(difference(tint_of(colour), expected) <= same * std::max(1.0, difference(expected, {}))))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace understudy::spu

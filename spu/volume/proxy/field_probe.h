@@ -68,6 +68,9 @@ class FieldProbe {
   };
   std::vector<volume::Rgba> at_stripes(double x, double y, std::span<const StripedField> fields);
 
+  /// Texels along the one axis of a ramp, and of other fields that are to be as fine as can be.
+  int finest_texels() const { return ramp_texels_; }
+
   bool culls_faces() const { return saved_.was_enabled(GL_CULL_FACE); }
 
   /// As at(), the sum of all fragments of a pixel instead of the nearest one; nothing where faces are culled.

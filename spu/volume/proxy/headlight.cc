@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "spu/volume/proxy/clamped_light.h"
 #include "spu/volume/proxy/facing_colours.h"
 #include "spu/volume/proxy/gradient_reach.h"
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/march_table.h"
 #include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/ray_probes.h"
 #include "spu/volume/proxy/slope_probe.h"
-#include "volume/matrix.h"
+#include "spu/volume/proxy/steepness.h"
 
 namespace understudy::spu {
 
@@ -21,11 +23,13 @@ using volume::Rgba;
 
 namespace {
 
-constexpr int coarse_texels = 16;   ///< of fields that are looked at in many frames
-constexpr int angles = 65;          ///< between normal and ray, from 0 to pi
-constexpr int responses = 1025;     ///< of volume::Light
+constexpr int coarse_texels = 16;  ///< of fields that are looked at in many frames
+constexpr int angles = 65;         ///< between normal and ray, from 0 to pi
+constexpr int responses = 1025;    ///< of volume::Light
+constexpr float another_opacity = 0.1F;
 constexpr double golden = 2.39996;  ///< radians: turns by it come close to no earlier one for long
 
+const Refusal not_from_the_eye{"the light does not shine from the eye"};
 const Refusal another_colour{"the light has a colour, or shows slopes in another one than even fields"};
 
 /// What a ray shows of a slope.
@@ -35,12 +39,15 @@ struct SeenSlope {
   std::vector<Tint> tints{};  ///< of the ray's values
 };
 
-/// Null where there is nothing to see.
+/// Null where it shows nothing, or another opacity than even fields.
 std::optional<SeenSlope> seen_slope(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
                                     double angle, double turn, int texels = slope_texels) {
   const volume::Vec3 gradient = directions.gradient(angle, turn);
   const std::vector<Rgba> shown = slopes.over(ray, gradient, 1, texels);
-  if (!std::ranges::all_of(shown, reached)) return std::nullopt;
+  for (std::size_t v = 0; v < shown.size(); ++v) {
+    if (!reached(shown[v]) || !(std::abs(shown[v][3] - ray.base[v][3]) < another_opacity) || !(shown[v][3] > 0))
+      return std::nullopt;
+  }
   return SeenSlope{gradient, std::cos(angle), tints_of(shown)};
 }
 
@@ -55,38 +62,6 @@ std::vector<Tint> expected_tints(const SlopeProbe& slopes, const LitRay& ray, co
     tints.push_back(lit_tint(light, normals, tint_of(ray.base[v])));
   }
   return tints;
-}
-
-using Matrix = std::array<double, 9>;
-
-/// Spaces in which the program may take gradients or rays: that in which its steps have one length, that in
-/// which texels are cubes, and that of the texture.
-std::vector<Matrix> light_spaces(const MarchContext& measured, const March& march) {
-  std::vector<Matrix> spaces;
-  if (!march.steps.between_planes()) spaces.push_back(march.steps.metric);
-  Matrix texels{};
-  for (std::size_t k = 0; k < 3; ++k) texels[4 * k] = measured.texture.size[k];
-  spaces.push_back(texels);
-  spaces.push_back({1, 0, 0, 0, 1, 0, 0, 0, 1});
-  return spaces;
-}
-
-/// `light` in all of them, with gradients and rays in one space first.
-std::vector<volume::Light> in_light_spaces(volume::Light light, const std::vector<Matrix>& spaces) {
-  std::vector<volume::Light> lights;
-  for (const Matrix& space : spaces) {
-    light.space = space;
-    lights.push_back(light);
-  }
-  for (const Matrix& space : spaces) {
-    for (const Matrix& rays : spaces) {
-      if (rays == space) continue;
-      light.space = space;
-      light.ray_space = rays;
-      lights.push_back(light);
-    }
-  }
-  return lights;
 }
 
 /// Slopes at a few angles to the eye, each turned about the ray; empty where there is nothing to see.
@@ -119,6 +94,80 @@ double difference_when_turned(const std::vector<std::vector<SeenSlope>>& turned)
     worst = std::max(worst, differ / most);
   }
   return worst;
+}
+
+using Matrix = std::array<double, 9>;
+
+/// Whether two spaces differ by the unit of length alone, which no angle shows.
+bool are_alike(const Matrix& a, const Matrix& b) {
+  constexpr double same = 1e-3;
+  const auto largest = [](const Matrix& m) {
+    return std::abs(*std::ranges::max_element(m, {}, [](double v) { return std::abs(v); }));
+  };
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::abs(a[i] / largest(a) - b[i] / largest(b)) > same) return false;
+  }
+  return true;
+}
+
+/// Spaces in which the program may take gradients or rays: that in which its steps have one length, that in
+/// which texels are cubes, and that of the texture.
+std::vector<Matrix> candidate_spaces(const MarchContext& measured, const March& march) {
+  std::vector<Matrix> spaces;
+  const auto add = [&](const Matrix& space) {
+    if (std::ranges::none_of(spaces, [&](const Matrix& other) { return are_alike(space, other); }))
+      spaces.push_back(space);
+  };
+  if (!march.steps.between_planes()) add(march.steps.metric);
+  Matrix texels{};
+  for (std::size_t k = 0; k < 3; ++k) texels[4 * k] = measured.texture.size[k];
+  add(texels);
+  add({1, 0, 0, 0, 1, 0, 0, 0, 1});
+  return spaces;
+}
+
+/// `light` with gradients and rays in one of these, and then with each in another.
+std::vector<volume::Light> in_all_spaces(volume::Light light, const std::vector<Matrix>& spaces) {
+  std::vector<volume::Light> lights;
+  for (const Matrix& space : spaces) {
+    light.space = space;
+    lights.push_back(light);
+  }
+  for (const Matrix& space : spaces) {
+    for (const Matrix& rays : spaces) {
+      if (rays == space) continue;
+      light.space = space;
+      light.ray_space = rays;
+      lights.push_back(light);
+    }
+  }
+  return lights;
+}
+
+struct LightInSpace {
+  volume::Light light;
+  std::vector<std::vector<SeenSlope>> turned;  ///< what is seen there of slopes, by angle
+  double differ = 0;                           ///< by so much do those of one angle
+};
+
+/// The light in the spaces in which the angle to the eye comes close to deciding alone, the closest first.
+/// (Samples at the texture's ends turn with a slope as they like.)
+std::vector<LightInSpace> in_likely_spaces(SlopeProbe& slopes, const LitRay& ray, const volume::Light& light,
+                                           const std::vector<Matrix>& spaces) {
+  constexpr double at_most = 0.3;
+  constexpr double surely = 0.05;
+  constexpr std::size_t most = 3;
+  std::vector<LightInSpace> likely;
+  for (const volume::Light& in_space : in_all_spaces(light, spaces)) {
+    auto turned = turned_slopes(slopes, ray, in_space);
+    const double differ = difference_when_turned(turned);
+    if (turned.empty() || !(differ < at_most)) continue;
+    likely.push_back({in_space, std::move(turned), differ});
+    if (differ < surely) break;
+  }
+  std::ranges::sort(likely, {}, &LightInSpace::differ);
+  likely.resize(std::min(likely.size(), most));
+  return likely;
 }
 
 /// What the light makes of the base colours: a multiple of each, and something white.
@@ -197,144 +246,7 @@ bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& 
   });
 }
 
-/// The base colours of a value and of others nearby.
-struct BaseNearby {
-  float least_opacity = 1;
-  float most_opacity = 0;
-  double spread = 0;  ///< of tints
-};
-
-std::vector<BaseNearby> base_nearby(SlopeProbe& slopes, const LitRay& ray, float away) {
-  std::vector<BaseNearby> nearby;
-  for (std::size_t v = 0; v < ray.values.size(); ++v) {
-    BaseNearby around;
-    const Tint tint = tint_of(ray.base[v]);
-    std::vector<float> values;
-    for (const float part : {-1.0F, -0.5F, 0.0F, 0.5F, 1.0F}) values.push_back(ray.values[v] + part * away);
-    for (const Rgba& colour : slopes.base(ray.x, ray.y, values)) {
-      around.least_opacity = std::min(around.least_opacity, colour[3]);
-      around.most_opacity = std::max(around.most_opacity, colour[3]);
-      if (colour[3] > 0) around.spread = std::max(around.spread, difference(tint, tint_of(colour)));
-    }
-    nearby.push_back(around);
-  }
-  return nearby;
-}
-
-/// Whether neither opacity nor colour depend on how steep a slope is, but for what values on the ray differ by.
-/// Beside it a field may rise by much, if not across the face by which the ray enters: half a texel from there
-/// it is even.
-bool is_the_same_for_any_steepness(SlopeProbe& slopes, const LitRay& ray, const LightSpace& directions,
-                                   std::size_t axis_of_entry) {
-  constexpr float same_opacity = 0.03F;
-  constexpr double same = 0.05;
-  constexpr double brighter = 4;  // than the base colours, at most, are slopes taken to be at this angle
-  struct Slope {
-    volume::Vec3 gradient;
-    std::array<double, 3> steepness;  ///< times the least rise that tells
-  };
-  constexpr double nearly_beside = 1.31;
-  volume::Vec3 entry{};
-  entry[axis_of_entry] = 1;
-  volume::Vec3 beside = volume::cross(ray.way.way, entry);
-  if (!(volume::length(beside) > 1e-3 * volume::length(ray.way.way)))
-    beside = {entry[1], entry[2], entry[0]};  // any, of a ray straight across the face
-  beside = volume::scale(beside, 1 / volume::length(beside));
-  for (const Slope& looked_at :
-       {Slope{directions.gradient(nearly_beside, 0.7), {1, 0.25, 12}}, Slope{beside, {1, 100, 400}}}) {
-    std::vector<Tint> first;
-    for (const double steepness : looked_at.steepness) {
-      const std::vector<Rgba> shown = slopes.over(ray, looked_at.gradient, steepness);
-      const std::vector<BaseNearby> base =
-          base_nearby(slopes, ray, slopes.rise_along(ray, looked_at.gradient, steepness));
-      const std::vector<Tint> tints = tints_of(shown);
-      if (first.empty()) first = tints;
-      for (std::size_t v = 0; v < shown.size(); ++v) {
-        if (!(shown[v][3] > base[v].least_opacity - same_opacity &&
-              shown[v][3] < base[v].most_opacity + same_opacity))
-          return false;
-        if (difference(tints[v], first[v]) > same * std::max(1.0, brightest(first)) + brighter * base[v].spread)
-          return false;
-      }
-    }
-  }
-  return true;
-}
-
-/// How values all over the range, opaque ones too, look in a field that rises across the face by which the ray
-/// enters, where even the first sample has the others' normal; and where slopes face the eye and are brightest.
-struct LitValue {
-  Tint seen;
-  Tint base;
-  std::vector<NormalShare> normals;
-};
-
-std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
-                                 std::size_t axis, const volume::Light& light,
-                                 const std::array<float, 2>& range) {
-  constexpr double step = 0.05;
-  constexpr int count = 64;
-  constexpr float least_opacity = 0.08F;
-  const std::vector<float> values = values_over(range, count);
-  const std::vector<Rgba> base = slopes.base(ray.x, ray.y, values);
-  const LightSpace directions(light, ray.way.way);
-  // Values of a ray whose own colours, like those of the values beside them, are seen, and hardly differ.
-  const auto is_even = [&](std::size_t i) {
-    const auto is_visible = [](const Rgba& colour) { return reached(colour) && colour[3] > least_opacity; };
-    if (!std::ranges::all_of(std::span(base).subspan(i - 1, 3), is_visible)) return false;
-    const Tint tint = tint_of(base[i]);
-    return difference(tint, tint_of(base[i - 1])) <= step && difference(tint, tint_of(base[i + 1])) <= step;
-  };
-  std::vector<LitValue> lit;
-  const auto look_at = [&](const std::vector<Rgba>& shown, const auto& normals_of) {
-    for (std::size_t i = 1; i + 1 < values.size(); ++i) {
-      if (is_even(i) && reached(shown[i]) && shown[i][3] > least_opacity)
-        lit.push_back({tint_of(shown[i]), tint_of(base[i]), normals_of(values[i])});
-    }
-  };
-  const double cosine = directions.cosine_across(axis);
-  for (const double side : {1.0, -1.0}) {
-    volume::Vec3 gradient{};
-    gradient[axis] = side;
-    look_at(slopes.over(ray, values, gradient, 1, slopes.fine_texels()), [&](float) {
-      return std::vector<NormalShare>{{side * cosine, 1}};
-    });
-  }
-  const volume::Vec3 facing = directions.gradient(0, 0);
-  const EvenRise rise = slopes.rise(facing, light.reach);
-  look_at(slopes.over(ray, values, facing), [&](float value) {
-    return ray_normals(ray.way, steps, slopes.sample_opacity(value), directions, rise);
-  });
-  return lit;
-}
-
-/// The light without and with clamped colours, as far as it explains them all and the other does so no better.
-std::vector<volume::Light> as_seen(volume::Light light, const std::vector<LitValue>& values) {
-  constexpr double same = 0.05;
-  constexpr double least_part = 0.95;
-  constexpr double clearly = 0.003;  // better, on average
-  std::vector<volume::Light> lights;
-  std::vector<double> differences;
-  for (const float brightest : {std::numeric_limits<float>::infinity(), 1.0F}) {
-    light.brightest = brightest;
-    double explained = 0;
-    double sum = 0;
-    for (const LitValue& value : values) {
-      const Tint expected = lit_tint(light, value.normals, value.base);
-      const double differ = difference(value.seen, expected);
-      explained += differ < same * std::max(1.0, difference(expected, {})) ? 1 : 0;
-      sum += differ;
-    }
-    if (explained < least_part * double(values.size())) continue;
-    lights.push_back(light);
-    differences.push_back(sum / double(values.size()));
-  }
-  if (lights.size() == 2 && std::abs(differences[0] - differences[1]) > clearly)
-    lights.erase(lights.begin() + (differences[0] > differences[1] ? 0 : 1));
-  return lights;
-}
-
-/// Of one ray, whatever the others show, going by slopes at `angles` from 0 to pi. What samples at the
+/// Of one ray, whatever the others show, going by slopes at angles from 0 to pi. What samples at the
 /// texture's ends add to it is taken away as the light so far says; without reach it stays.
 std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const LitRay& ray,
                                               const volume::RaySteps& steps, const std::vector<SeenSlope>& seen,
@@ -391,6 +303,21 @@ std::variant<volume::Light, Refusal> light_and_reach(SlopeProbe& slopes, const L
   return found;
 }
 
+/// The light that explains all that was seen in its space.
+std::variant<volume::Light, Refusal> light_that_explains(SlopeProbe& slopes, const LitRay& ray,
+                                                         const volume::RaySteps& steps,
+                                                         const LightInSpace& in_space) {
+  auto found = light_and_reach(slopes, ray, steps, in_space.light);
+  const auto* const light = std::get_if<volume::Light>(&found);
+  if (light == nullptr) return found;
+  for (const auto& at_angle : in_space.turned) {
+    for (const SeenSlope& slope : at_angle) {
+      if (!is_explained(slopes, ray, steps, *light, slope)) return not_from_the_eye;
+    }
+  }
+  return found;
+}
+
 /// A ray through the middle of the view, with a value that lets half of the light through.
 std::optional<LitRay> ray_of_half_seen_value(SlopeProbe& slopes, const RaysThroughBox& rays,
                                              const March& march) {
@@ -419,7 +346,6 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
                                                                     FieldProbe& probe, const ProxyBox& box,
                                                                     March& march) {
   constexpr double darkest = 1e-3;
-  constexpr double differ_in_another_space = 0.3;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   volume::Light light;
   light.ambient = {0, 0, 0};
@@ -427,44 +353,33 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
   SlopeProbe slopes(measured, probe, march);
   std::vector<LitRay> seen = lit_rays(slopes, rays, march.steps);
   if (seen.empty()) return Refusal{"no value is translucent on a long ray: light cannot be measured"};
-  if (!(brightest(tints_of(seen.front().base)) > darkest)) {
+  const auto is_black = [](const Rgba& colour) { return !(brightest_channel(colour) > darkest); };
+  if (std::ranges::all_of(march.table.entries, is_black)) {
     light.even = {0, 0, 0};
     march.light = light;
     take_facing_colours(measured, probe, box, march);
     seen = lit_rays(slopes, rays, march.steps);
-    if (seen.empty() || !(brightest(tints_of(seen.front().base)) > darkest))
-      return Refusal{"neither even fields nor slopes have a colour under the light"};
   }
+  if (seen.empty() || std::ranges::all_of(seen.front().base, is_black))
+    return Refusal{"neither even fields nor slopes have a colour under the light"};
   const LitRay& ray = seen.front();
-  double least = differ_in_another_space;
-  std::vector<std::vector<SeenSlope>> turned;
-  for (const volume::Light& in_space : in_light_spaces(light, light_spaces(measured, march))) {
-    auto slopes_there = turned_slopes(slopes, ray, in_space);
-    const double differ = difference_when_turned(slopes_there);
-    if (slopes_there.empty() || !(differ < least)) continue;
-    least = differ;
-    light = in_space;
-    turned = std::move(slopes_there);
-  }
-  if (turned.empty()) return Refusal{"the light does not shine from the eye"};
+  const std::vector<LightInSpace> likely =
+      in_likely_spaces(slopes, ray, light, candidate_spaces(measured, march));
+  if (likely.empty()) return not_from_the_eye;
   const std::size_t axis = axis_of_entry(box.region, ray.way);
-  if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(light, ray.way.way), axis))
+  if (!is_the_same_for_any_steepness(slopes, ray, LightSpace(likely.front().light, ray.way.way), axis))
     return Refusal{"colour or opacity depend on how steep a gradient is"};
-  auto found = light_and_reach(slopes, ray, march.steps, light);
+  std::variant<volume::Light, Refusal> found = not_from_the_eye;
+  for (std::size_t i = 0; i < likely.size() && std::holds_alternative<Refusal>(found); ++i)
+    found = light_that_explains(slopes, ray, march.steps, likely[i]);
   if (auto* const refusal = std::get_if<Refusal>(&found)) return std::move(*refusal);
   light = std::get<volume::Light>(std::move(found));
-  const auto looks_as_said = [&](const SeenSlope& slope) {
-    return is_explained(slopes, ray, march.steps, light, slope);
-  };
-  if (!std::ranges::all_of(turned,
-                           [&](const auto& at_angle) { return std::ranges::all_of(at_angle, looks_as_said); }))
-    return Refusal{"the light does not shine from the eye"};
   constexpr std::array<double, 4> looked_at{0.2, 0.9, 1.5, 2.6};
   for (const LitRay& other : std::span(seen).subspan(1)) {
     if (!shows_light(slopes, other, march.steps, light, looked_at, slope_texels))
       return Refusal{"the light does not shine along every ray"};
   }
-  auto lights = as_seen(light, lit_values(slopes, ray, march.steps, axis, light, measured.range));
+  auto lights = without_and_with_clamp(slopes, ray, march.steps, axis, light, measured.range);
   if (lights.empty()) return another_colour;
   return lights;
 }
@@ -479,9 +394,10 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
          shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
 }
 
-bool gradients_still_reach(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
-                           const March& march) {
+bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march) {
   constexpr double same = 0.1;  // of a texel
+  FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
+  if (!probe.complete() || !held_still(measured, probe, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   SlopeProbe slopes(measured, probe, march);
   const auto ray = ray_of_half_seen_value(slopes, rays, march);

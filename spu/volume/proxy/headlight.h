@@ -32,7 +32,6 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
 bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box, const March& march);
 
 /// Whether its gradients look as far as `march`, which has light, says.
-bool gradients_still_reach(const MarchContext& measured, FieldProbe& probe, const ProxyBox& box,
-                           const March& march);
+bool gradients_still_reach(const MarchContext& measured, const ProxyBox& box, const March& march);
 
 }  // namespace understudy::spu

@@ -15,7 +15,8 @@ namespace understudy::spu {
 
 struct KnownMarch {
   std::optional<March> march;
-  MarchInputs inputs;                 ///< what the march was measured under
+  int box_changes = 0;  ///< so often another box was drawn than the one that was taken for the whole texture
+  MarchInputs inputs;   ///< what the march was measured under
   std::vector<TableContents> tables;  ///< of samples, as the march was measured with
   volume::Matrix4 camera{};           ///< of its last image, from texture to clip coordinates
   /// Where its program keeps fragments, where it discards any by their place; the last one measured last.

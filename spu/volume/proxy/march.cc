@@ -249,6 +249,7 @@ std::optional<Refusal> MarchMeasurement::measure_samples() {
 
 std::optional<Refusal> MarchMeasurement::measure_light() {
   if (!lit_) return std::nullopt;
+  if (!held_still(measured_, probe_, march_)) return "the noise at the rays' beginnings cannot be taken away";
   march_.steps = rules_.front();
   auto lights = measure_headlight(measured_, probe_, box_, march_);
   if (auto* refusal = std::get_if<Refusal>(&lights)) return std::move(*refusal);
@@ -329,7 +330,8 @@ MarchFinding MarchMeasurement::marches(const std::vector<CoordinateSpace>& space
                                        const std::vector<std::optional<ProxyBox>>& boxes) const {
   std::vector<March> marches;
   for (std::size_t i = 0; i < spaces.size(); ++i) {
-    if (!boxes[i]) continue;
+    // Fields must have shown that the box is the whole texture.
+    if (!boxes[i] || (spaces[i].of_whole_box && split_.empty())) continue;
     const RaysThroughBox rays(boxes[i]->camera.texture_to_clip, boxes[i]->region, boxes[i]->cuts);
     for (std::size_t r = 0; r < rules_.size(); ++r) {
       const bool seen = !march_.extreme || (i == 0 && r < extremes_seen_);

@@ -55,7 +55,7 @@ std::optional<March> with_new_table(const MarchContext& measured, const March& m
       if (!changed.background) return std::nullopt;
     }
     if (measure_table(measured, probe, rays, march.steps, changed)) return std::nullopt;
-    if (march.light && march.light->even[0] == 0) take_facing_colours(measured, probe, box, changed);
+    if (is_black_where_even(march) && !take_facing_colours(measured, probe, box, changed)) return std::nullopt;
     if (!fill_unseen(probe, box, march.steps, changed)) return std::nullopt;
   }
   if (march.jitter) {
@@ -160,6 +160,9 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
       }))
     return false;
   if (march.light && !still_lit(measured, probe, box, march)) return false;
+  if (is_black_where_even(march) && !values.empty() &&
+      !shows_facing_colours(measured, probe, box, march, values))
+    return false;
   if (march.shows_one_colour() || !looked_at.long_ray) return true;
   // A long ray: its step may have another length in another direction.
   const auto middle = rays.middle();
@@ -173,12 +176,12 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
   constexpr int tried = 32;
+  if (march.light && !gradients_still_reach(measured, box, march)) return false;
   if (!box.cuts.empty()) return true;
   if (march.shows_one_colour())
     return !march.steps_seen || samples_lie_as_said(measured, march, box).value_or(true);
   FieldProbe probe(measured.context, measured.run, measured.texture, measured.surfaces, measured.kept);
   if (!probe.complete()) return false;
-  if (march.light && !gradients_still_reach(measured, probe, box, march)) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   if (!remove_known_background(measured, probe, rays, march)) return false;
   std::vector<float> values = values_over(measured.range, tried);

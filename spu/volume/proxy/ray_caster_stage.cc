@@ -225,12 +225,13 @@ ProxyBox RayCasterStage::find_box(Draw& draw) {
   if (march) {
     draw.spaces = {march->space};
   } else {
-    draw.spaces = coordinate_spaces(draw.measured());
+    draw.spaces = spaces_of(draw);
     if (draw.spaces.empty()) throw no_coordinate();
   }
   ProxyBox box = box_in(draw.measured(), draw.spaces.front());
   if (march && march->space.of_whole_box && !is_whole_texture(box.region)) {
     march.reset();
+    ++draw.known.march.box_changes;
     throw Refusal{"the coordinates of the ray caster's box change while its volume stays",
                   fmt::format("'{}' was measured where the box was another", draw.spaces.front().input),
                   "nothing: which part of the volume is in the box is known of texture coordinates alone"};
@@ -240,6 +241,14 @@ ProxyBox RayCasterStage::find_box(Draw& draw) {
   draw.cuts = read_cuts(context_, draw.run.pipeline().program, box.camera.texture_to_clip);
   if (march && march->clipped == draw.cuts.clipping.empty()) march.reset();
   return box;
+}
+
+std::vector<CoordinateSpace> RayCasterStage::spaces_of(const Draw& draw) {
+  constexpr int most_box_changes = 3;
+  std::vector<CoordinateSpace> spaces = coordinate_spaces(draw.measured());
+  // One that keeps changing moves with the eye, or shows one part of the volume after the other.
+  if (draw.known.march.box_changes > most_box_changes) std::erase_if(spaces, &CoordinateSpace::of_whole_box);
+  return spaces;
 }
 
 volume::Box RayCasterStage::region_in_any(const Draw& draw, const ProxyBox& box) {
@@ -304,7 +313,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   march = again;
   if (!again) {
     refuse_again(draw);
-    draw.spaces = coordinate_spaces(draw.measured());
+    draw.spaces = spaces_of(draw);
     if (draw.spaces.empty()) throw no_coordinate();
     MarchFinding finding = measure_march(draw.measured(), draw.spaces);
     if (const auto* refusal = std::get_if<Refusal>(&finding)) throw *refusal;

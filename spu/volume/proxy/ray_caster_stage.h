@@ -67,6 +67,7 @@ class RayCasterStage {
   struct Draw;
 
   ProxyBox find_box(Draw& draw);
+  static std::vector<CoordinateSpace> spaces_of(const Draw& draw);
   /// What of the texture a draw shows, whichever of its spaces it is in.
   static volume::Box region_in_any(const Draw& draw, const ProxyBox& box);
   /// Throws the last refusal before what was refused several times is measured once more, but in some frames.

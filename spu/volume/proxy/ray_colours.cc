@@ -62,6 +62,10 @@ float brightest_channel(const Rgba& colour) {
   return std::max({colour[0], colour[1], colour[2]});
 }
 
+bool is_black_where_even(const March& march) {
+  return march.light && march.light->even[0] == 0;
+}
+
 Rgba even_sample(const March& march, float value) {
   Rgba sample = table_at(march.table, value);
   for (std::size_t c = 0; c < 3 && march.light; ++c) sample[c] *= march.light->even[c];

@@ -34,6 +34,9 @@ bool multiplies_by_alpha(const Pipeline& pipeline);
 bool grow_with_alpha(const std::vector<volume::Rgba>& through, const std::vector<volume::Rgba>& briefly);
 float brightest_channel(const volume::Rgba& colour);
 
+/// Whether there is light, and its table holds colours of slopes, since even fields are black.
+bool is_black_where_even(const March& march);
+
 /// What the march's table gives a sample in an even field.
 volume::Rgba even_sample(const March& march, float value);
 

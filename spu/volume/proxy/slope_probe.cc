@@ -96,7 +96,7 @@ std::vector<Rgba> SlopeProbe::even(double x, double y, const std::vector<float>&
 
 std::vector<Rgba> SlopeProbe::base(double x, double y, const std::vector<float>& values) {
   std::vector<Rgba> colours = even(x, y, values);
-  if (!march_.light || march_.light->even[0] > 0) return colours;
+  if (!is_black_where_even(march_)) return colours;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Rgba sample = table_at(march_.table, values[i]);
     for (std::size_t c = 0; c < 3 && reached(colours[i]) && sample[3] > 0; ++c)
@@ -109,13 +109,17 @@ std::vector<Rgba> SlopeProbe::over(const LitRay& ray, const std::vector<float>& 
                                    double steepness, int texels) {
   const Vec3 middle = volume::add(ray.way.entry, volume::scale(ray.way.way, 0.5));
   const std::array<int, 3> size = field_size(texels);
+  return premultiplied_all(
+      probe_.at_gradient(ray.x, ray.y, values, {risen(gradient, steepness, size), middle, size}));
+}
+
+Vec3 SlopeProbe::risen(const Vec3& gradient, double steepness, const std::array<int, 3>& size) const {
   Vec3 risen = volume::scale(gradient, steepness * double(least_rise()));
-  if (counts_texels()) {
-    // From texel to texel it rises as it does in the volume.
-    const double longest = double(*std::ranges::max_element(size)) / *std::ranges::max_element(size_);
-    for (std::size_t axis = 0; axis < 3; ++axis) risen[axis] *= size[axis] / (longest * size_[axis]);
-  }
-  return premultiplied_all(probe_.at_gradient(ray.x, ray.y, values, {risen, middle, size}));
+  if (!counts_texels()) return risen;
+  // From texel to texel it rises as it does in the volume.
+  const double longest = double(*std::ranges::max_element(size)) / *std::ranges::max_element(size_);
+  for (std::size_t axis = 0; axis < 3; ++axis) risen[axis] *= size[axis] / (longest * size_[axis]);
+  return risen;
 }
 
 EvenRise SlopeProbe::rise(const Vec3& gradient, const std::array<double, 3>& reach, int texels) const {
@@ -136,14 +140,16 @@ double SlopeProbe::reach_in_stripes(std::size_t axis, double part) const {
 float SlopeProbe::rise_along(const LitRay& ray, const Vec3& gradient, double steepness) const {
   // The pixel that is drawn is another one than the ray by a part of a pixel.
   constexpr double beside_ray = 1.0 / 512;
-  double rise = std::abs(volume::dot(gradient, ray.way.way)) / 2 + beside_ray * volume::length(gradient);
+  const std::array<int, 3> size = field_size(slope_texels);
+  const Vec3 slope = risen(gradient, steepness, size);
+  double rise = std::abs(volume::dot(slope, ray.way.way)) / 2 + beside_ray * volume::length(slope);
   // Half a texel from the texture's ends a field is even.
   const Vec3 exit = volume::add(ray.way.entry, ray.way.way);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const double place : {ray.way.entry[axis], exit[axis]})
-      rise += std::abs(gradient[axis]) * std::max(0.0, 0.5 / slope_texels - std::min(place, 1 - place));
+      rise += std::abs(slope[axis]) * std::max(0.0, 0.5 / size[axis] - std::min(place, 1 - place));
   }
-  return float(std::abs(steepness) * rise) * least_rise();
+  return float(rise);
 }
 
 Tint SlopeProbe::over_stripes(const LitRay& ray, std::size_t axis, int width) {

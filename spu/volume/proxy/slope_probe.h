@@ -61,7 +61,7 @@ class SlopeProbe {
 
   /// Along the axis of fields that rise along one alone: so many that the first sample on a ray, which lies on
   /// a face, has the others' normal.
-  int fine_texels() const { return counts_texels() ? 2 * slope_texels : 2048; }
+  int fine_texels() const { return counts_texels() ? 2 * slope_texels : probe_.finest_texels(); }
 
   /// By how much the values on a ray differ at most from that in its middle, over the fields of over().
   float rise_along(const LitRay& ray, const volume::Vec3& gradient, double steepness) const;
@@ -83,6 +83,8 @@ class SlopeProbe {
   float least_rise() const;
   bool counts_texels() const { return neighbours_ == program::NeighbourDistance::in_texels; }
   std::array<int, 3> field_size(int texels) const;
+  /// What a field of this size rises by, so that the program's gradients see this.
+  volume::Vec3 risen(const volume::Vec3& gradient, double steepness, const std::array<int, 3>& size) const;
 
   FieldProbe& probe_;
   const March& march_;

@@ -105,6 +105,8 @@ TEST(RayCasters, TellNeighboursThatAreCountedInTexels) {
       "float at(vec3 p) { vec3 d = vec3(1.0 / textureSize(volume, 0).x, 0, 0);"
       " return texture(volume, p + d).r - texture(volume, p - d).r; }";
   EXPECT_EQ(distance("v.rgb *= at(p);", by_size), NeighbourDistance::in_texels);
+  EXPECT_EQ(distance("v.rgb *= texture(volume, p + vec3(1.0 / float(textureSize(table, 0)))).r;"),
+            std::nullopt);
   EXPECT_EQ(distance("v.rgb *= textureOffset(volume, p, ivec3(1, 0, 0)).r"
                      " - textureOffset(volume, p, ivec3(-1, 0, 0)).r;"),
             NeighbourDistance::in_texels);

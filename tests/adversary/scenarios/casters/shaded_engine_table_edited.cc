@@ -14,7 +14,7 @@ namespace adversary::casters {
 Scenario shaded_engine_table_edited() {
   return {.sentence =
               "An engine block of 64 x 48 x 56 bytes, Blinn and Phong's light in structs of uniforms with the "
-              "lamp's position set to the camera's, GLSL 3.30; the 1-D table of half floats is edited at "
+              "light's position set to the camera's, GLSL 3.30; the 1-D table of half floats is edited at "
               "frames 9 and 21.",
           .expectation = Expectation::must_be_substituted,
           .key_frames = {9, 21},

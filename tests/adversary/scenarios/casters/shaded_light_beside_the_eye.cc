@@ -14,7 +14,7 @@ namespace adversary::casters {
 Scenario shaded_light_beside_the_eye() {
   return {
       .sentence =
-          "A knot of 48 x 48 x 48 bytes, Lambert's light with ambient, GLSL 3.30, from a miner's lamp that "
+          "A torus of 48 x 48 x 48 bytes, Lambert's light with ambient, GLSL 3.30, from a miner's light that "
           "goes along with the camera, but a few degrees to its right and above.",
       .expectation = Expectation::either,
       .start = [](Canvas& canvas) -> DrawFrame {
@@ -68,7 +68,7 @@ void main()
 }
 )");
         const VertexBuffer vertices(canvas);
-        const Field knot = [](float x, float y, float z) {
+        const Field torus = [](float x, float y, float z) {
           float nearest = 9;
           for (int i = 0; i < 96; ++i) {
             const float turn = 6.2832F * static_cast<float>(i) / 96;
@@ -89,7 +89,7 @@ void main()
                            static_cast<std::uint8_t>(120 + 60 * solid),
                            static_cast<std::uint8_t>(std::lround(14 * haze + 90 * solid))});
         }
-        upload_volume(canvas, 0, sampled(48, knot));
+        upload_volume(canvas, 0, sampled(48, torus));
         upload_table_1d(canvas, 1, table);
         return [&canvas, program, vertices](int frame) {
           const Orbit orbit{.azimuth = 15, .elevation = 22, .distance = 2.2F, .degrees_each_frame = 1.5F};

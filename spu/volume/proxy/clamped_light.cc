@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/clamped_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "spu/volume/proxy/light_space.h"
+#include "spu/volume/proxy/ray_colours.h"
+#include "spu/volume/proxy/ray_normals.h"
+
+namespace understudy::spu {
+
+using volume::Rgba;
+
+namespace {
+
+/// How values all over the range, opaque ones too, look in a field that rises across the face by which the ray
+/// enters, where even the first sample has the others' normal; and where slopes face the eye and are brightest.
+struct LitValue {
+  Tint seen;
+  Tint base;
+  std::vector<NormalShare> normals;
+};
+
+std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
+                                 std::size_t axis, const volume::Light& light,
+                                 const std::array<float, 2>& range) {
+  constexpr double step = 0.05;
+  constexpr int count = 64;
+  constexpr float least_opacity = 0.08F;
+  const std::vector<float> values = values_over(range, count);
+  const std::vector<Rgba> base = slopes.base(ray.x, ray.y, values);
+  const LightSpace directions(light, ray.way.way);
+  // Values of a ray whose own colours, like those of the values beside them, are seen, and hardly differ.
+  const auto is_even = [&](std::size_t i) {
+    const auto is_visible = [](const Rgba& colour) { return reached(colour) && colour[3] > least_opacity; };
+    if (!std::ranges::all_of(std::span(base).subspan(i - 1, 3), is_visible)) return false;
+    const Tint tint = tint_of(base[i]);
+    return difference(tint, tint_of(base[i - 1])) <= step && difference(tint, tint_of(base[i + 1])) <= step;
+  };
+  std::vector<LitValue> lit;
+  const auto look_at = [&](const std::vector<Rgba>& shown, const auto& normals_of) {
+    for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+      if (is_even(i) && reached(shown[i]) && shown[i][3] > least_opacity)
+        lit.push_back({tint_of(shown[i]), tint_of(base[i]), normals_of(values[i])});
+    }
+  };
+  const double cosine = directions.cosine_across(axis);
+  for (const double side : {1.0, -1.0}) {
+    volume::Vec3 gradient{};
+    gradient[axis] = side;
+    look_at(slopes.over(ray, values, gradient, 1, slopes.fine_texels()), [&](float) {
+      return std::vector<NormalShare>{{side * cosine, 1}};
+    });
+  }
+  const volume::Vec3 facing = directions.gradient(0, 0);
+  const EvenRise rise = slopes.rise(facing, light.reach);
+  look_at(slopes.over(ray, values, facing), [&](float value) {
+    return ray_normals(ray.way, steps, slopes.sample_opacity(value), directions, rise);
+  });
+  return lit;
+}
+
+}  // namespace
+
+std::vector<volume::Light> without_and_with_clamp(SlopeProbe& slopes, const LitRay& ray,
+                                                  const volume::RaySteps& steps, std::size_t axis_of_entry,
+                                                  const volume::Light& light,
+                                                  const std::array<float, 2>& range) {
+  const std::vector<LitValue> values = lit_values(slopes, ray, steps, axis_of_entry, light, range);
+  constexpr double same = 0.05;
+  constexpr double least_part = 0.95;
+  constexpr double clearly = 0.003;  // better, on average
+  std::vector<volume::Light> lights;
+  std::vector<double> differences;
+  for (const float brightest : {std::numeric_limits<float>::infinity(), 1.0F}) {
+    volume::Light candidate = light;
+    candidate.brightest = brightest;
+    double explained = 0;
+    double sum = 0;
+    for (const LitValue& value : values) {
+      const Tint expected = lit_tint(candidate, value.normals, value.base);
+      const double differ = difference(value.seen, expected);
+      explained += differ < same * std::max(1.0, difference(expected, {})) ? 1 : 0;
+      sum += differ;
+    }
+    if (explained < least_part * double(values.size())) continue;
+    lights.push_back(std::move(candidate));
+    differences.push_back(sum / double(values.size()));
+  }
+  if (lights.size() == 2 && std::abs(differences[0] - differences[1]) > clearly)
+    lights.erase(lights.begin() + (differences[0] > differences[1] ? 0 : 1));
+  return lights;
+}
+
+}  // namespace understudy::spu

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
-#include <utility>
 
 #include "spu/volume/proxy/light_space.h"
 #include "spu/volume/proxy/ray_colours.h"
@@ -64,6 +62,29 @@ std::vector<LitValue> lit_values(SlopeProbe& slopes, const LitRay& ray, const vo
   return lit;
 }
 
+/// How well a light explains values.
+struct Explanation {
+  bool is_one = false;  ///< of nearly all
+  double differ = 0;    ///< by so much, in all, do those that another light shows otherwise
+};
+
+Explanation explanation(const volume::Light& light, const volume::Light& other,
+                        const std::vector<LitValue>& values) {
+  constexpr double same = 0.05;
+  constexpr double least_part = 0.95;
+  constexpr double otherwise = 0.01;
+  Explanation found;
+  double explained = 0;
+  for (const LitValue& value : values) {
+    const Tint expected = lit_tint(light, value.normals, value.base);
+    const double differ = difference(value.seen, expected);
+    explained += differ < same * std::max(1.0, difference(expected, {})) ? 1 : 0;
+    if (difference(expected, lit_tint(other, value.normals, value.base)) > otherwise) found.differ += differ;
+  }
+  found.is_one = explained >= least_part * double(values.size());
+  return found;
+}
+
 }  // namespace
 
 std::vector<volume::Light> without_and_with_clamp(SlopeProbe& slopes, const LitRay& ray,
@@ -71,28 +92,14 @@ std::vector<volume::Light> without_and_with_clamp(SlopeProbe& slopes, const LitR
                                                   const volume::Light& light,
                                                   const std::array<float, 2>& range) {
   const std::vector<LitValue> values = lit_values(slopes, ray, steps, axis_of_entry, light, range);
-  constexpr double same = 0.05;
-  constexpr double least_part = 0.95;
-  constexpr double clearly = 0.003;  // better, on average
+  volume::Light clamped = light;
+  clamped.brightest = 1;
+  const Explanation without = explanation(light, clamped, values);
+  const Explanation with = explanation(clamped, light, values);
+  constexpr double clearly = 0.7;
   std::vector<volume::Light> lights;
-  std::vector<double> differences;
-  for (const float brightest : {std::numeric_limits<float>::infinity(), 1.0F}) {
-    volume::Light candidate = light;
-    candidate.brightest = brightest;
-    double explained = 0;
-    double sum = 0;
-    for (const LitValue& value : values) {
-      const Tint expected = lit_tint(candidate, value.normals, value.base);
-      const double differ = difference(value.seen, expected);
-      explained += differ < same * std::max(1.0, difference(expected, {})) ? 1 : 0;
-      sum += differ;
-    }
-    if (explained < least_part * double(values.size())) continue;
-    lights.push_back(std::move(candidate));
-    differences.push_back(sum / double(values.size()));
-  }
-  if (lights.size() == 2 && std::abs(differences[0] - differences[1]) > clearly)
-    lights.erase(lights.begin() + (differences[0] > differences[1] ? 0 : 1));
+  if (without.is_one && !(with.is_one && with.differ < clearly * without.differ)) lights.push_back(light);
+  if (with.is_one && !(without.is_one && without.differ < clearly * with.differ)) lights.push_back(clamped);
   return lights;
 }
 

@@ -396,6 +396,7 @@ TEST(Exchange, PartsAreGatheredDirectlyFromRanksThatReachTheImage) {
           Schedule plan = schedule_of(scene, Algorithm(a));
           const Result usual = exchanged(scene, plan);
           std::vector<bool> reached_by;
+          reached_by.reserve(std::size_t(ranks));
           for (int rank = 0; rank < ranks; ++rank)
             reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
           write_gathered(plan, reached_by);
@@ -568,6 +569,7 @@ TEST(CountedExchange, EqualsEveryMessageOfEveryAlgorithmLayoutOperatorAndRankCou
             plan.clear_pixels_travel = trial == 2 && seed % 2 == 0;
             expect_counted(scene, plan, layout);
             std::vector<bool> reached_by;
+            reached_by.reserve(std::size_t(ranks));
             for (int rank = 0; rank < ranks; ++rank)
               reached_by.push_back(trial < 2 || (seed + unsigned(rank)) % 3 > 0);
             write_gathered(plan, reached_by);

@@ -36,7 +36,7 @@ std::vector<NormalShare> ray_normals(const WayThroughBox& way, const volume::Ray
   std::vector<NormalShare> normals;
   double through = 1;
   double sum = 0;
-  for (double i = 0; i < samples; ++i, through *= 1 - opacity) {
+  for (int i = 0; i < int(samples); ++i, through *= 1 - opacity) {
     const Vec3 place = volume::add(way.entry, volume::scale(way.way, (steps.first + i) * between));
     const Vec3 gradient = seen_gradient(field, place);
     NormalShare one{std::nullopt, through};

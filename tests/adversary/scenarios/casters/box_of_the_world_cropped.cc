@@ -54,6 +54,7 @@ void main() {
                                 0.0F, 1.0F);
             };
             std::vector<Colour> lut;
+            lut.reserve(256);
             for (int i = 0; i < 256; ++i)
               lut.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(255 - i), 120,
                              static_cast<std::uint8_t>(i / 16)});

@@ -91,6 +91,7 @@ void main()
                  0.1F * std::sin(11 * x - 5 * y) * std::cos(8 * z + 3 * x) + 0.1F * std::sin(9 * y + 6 * z + 1);
         };
         std::vector<Colour> colormap;
+        colormap.reserve(64);
         for (int i = 0; i < 64; ++i)
           colormap.push_back({static_cast<std::uint8_t>(255 - 2 * i),
                               static_cast<std::uint8_t>(90 + i * i / 28),

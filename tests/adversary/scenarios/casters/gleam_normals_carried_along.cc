@@ -80,6 +80,7 @@ void main()
               return 0.5F + 0.3F * std::cos(13 * r) * std::sin(7 * turn + 1) + 0.15F * std::sin(8 * y + 5 * x);
             };
             std::vector<Colour> colours;
+            colours.reserve(256);
             for (int i = 0; i < 256; ++i)
               colours.push_back({static_cast<std::uint8_t>(240 - i / 3), static_cast<std::uint8_t>(100 + i / 2),
                                  static_cast<std::uint8_t>(60 + i * i / 500),

@@ -87,6 +87,21 @@ bool lies_as_said(double front, double samples, double to_plane) {
   return false;
 }
 
+/// How many of `samples` samples have the first of two values, going by what a ray adds up whose samples all
+/// have the first, the second, or some of each.
+double samples_of_first(double samples, double all_first, double all_second, double some_of_each) {
+  constexpr double nothing = 0.5;  // of a sample of the second value
+  constexpr double rounding = 0.1;
+  const double one = all_second / samples;
+  if (!(all_first > 0 && all_first < nothing * one))
+    return samples * (some_of_each - all_second) / (all_first - all_second);
+  // So little may be what a ray shows at least, however many samples it has (vispy: 0.001), or none of it where
+  // the second value comes first.
+  const double second = some_of_each / one;
+  const double whole = std::floor(second + rounding);
+  return samples - (second - whole <= all_first / one + rounding ? whole : second);
+}
+
 /// Counts samples before the planes of fields; needs one at least.
 class SplitCounting {
  public:
@@ -154,7 +169,7 @@ std::vector<SplitRays> SplitCounting::counted() {
       const Amounts& amounts = amounts_[i];
       SplitRay& ray = all_[f].rays[i];
       ray.samples = counts[i];
-      ray.before = counts[i] * (amounts.split[f] - amounts.behind) / (amounts.before - amounts.behind);
+      ray.before = samples_of_first(counts[i], amounts.before, amounts.behind, amounts.split[f]);
     }
   }
   return std::move(all_);

@@ -33,12 +33,22 @@ void install(const DispatchTable* table) {
   installed = table;
 }
 
+std::uint64_t draws_made = 0;
+decltype(DispatchTable::DrawArrays) driver_draw_arrays = nullptr;
+
+void APIENTRY counted_draw_arrays(GLenum mode, GLint first, GLsizei count) {
+  ++draws_made;
+  driver_draw_arrays(mode, first, count);
+}
+
 const DispatchTable& real_driver() {
   static const DispatchTable table = [] {
     DispatchTable filled{};
     for (std::size_t i = 0; i < call_count; ++i) {
       set_slot(filled, CallId(i), AnyFunction(eglGetProcAddress(call_name(CallId(i)))));
     }
+    driver_draw_arrays = filled.DrawArrays;
+    filled.DrawArrays = counted_draw_arrays;
     return filled;
   }();
   return table;
@@ -173,6 +183,10 @@ GlApplication::GlApplication(std::unique_ptr<Parts> parts) : parts_(std::move(pa
 GlApplication::~GlApplication() {
   parts_->chain->settle();
   Chain::release_current();
+}
+
+std::uint64_t GlApplication::draws_of_arrays() {
+  return draws_made;
 }
 
 RenderSession& GlApplication::session() const {

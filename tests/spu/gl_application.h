@@ -58,6 +58,9 @@ class GlApplication {
   /// Bytes of texels since this application started, and what was left out of them.
   std::uint64_t texel_bytes_sent() const;
   std::uint64_t texel_bytes_left_out() const;
+  /// How often the driver was asked for glDrawArrays, by the chain or the application, since this process
+  /// started.
+  static std::uint64_t draws_of_arrays();
   /// The figures of the last volume that this process has seen.
   static const VolumeCounters& last_volume();
 

@@ -298,6 +298,20 @@ TEST(Proxies, RaysEndAtOpaqueGeometryWhoseDepthTheyRead) {
   EXPECT_EQ(scene.app->substituted(), 2U) << scene.app->last_reason();
 }
 
+TEST(Proxies, AreNotMeasuredAgainWhenOpaqueGeometryMoves) {
+  // Its depth is copied into a texture in every frame.
+  RayCasterScene scene(MarchStyle{.reads_depth = true});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  constexpr std::uint64_t draws_to_check = 100;  // a table takes a thousand
+  scene.frame(true, 25, 0.9F);
+  for (const float wall : {0.88F, 0.87F, 0.86F, 0.85F}) {
+    const std::uint64_t before = GlApplication::draws_of_arrays();
+    scene.frame(true, 25, wall);
+    EXPECT_LT(GlApplication::draws_of_arrays() - before, draws_to_check) << "a wall at a depth of " << wall;
+  }
+  EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
+}
+
 TEST(Proxies, RaysThatDoNotEndAtGeometryInTheBoxAreLeft) {
   for (const bool replaces : {false, true}) {
     RayCasterScene scene({.replaces = replaces, .discards = !replaces});

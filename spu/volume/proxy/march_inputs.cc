@@ -7,6 +7,7 @@
 #include "spu/track/share_group.h"
 #include "spu/volume/context/context.h"
 #include "spu/volume/proxy/cuts.h"
+#include "spu/volume/proxy/field_probe.h"
 
 namespace understudy::spu {
 namespace {
@@ -69,6 +70,18 @@ bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
   return moves;
 }
 
+/// Whether the sampler may have a texture that the application draws into. Volumes and depth textures, instead
+/// of which probes show fields and the far plane, do not count.
+bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const std::string& sampler) {
+  const DispatchTable& gl = *measured.context.gl;
+  const Pipeline& pipeline = measured.run.pipeline();
+  const bool known = !sampler.empty() && sampler.find('*') == std::string::npos;
+  return std::ranges::any_of(pipeline.others, [&](const SampledTexture& other) {
+    return group.is_rendered_to(other.texture) && !is_depth_texture(gl, other) &&
+           (!known || gl.GetUniformLocation(pipeline.program, sampler.c_str()) == other.sampler_location);
+  });
+}
+
 }  // namespace
 
 MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, const ProgramFindings& says) {
@@ -100,7 +113,9 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
       inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
-    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
+    // Probes show the far plane instead of opaque geometry, which is drawn or copied into it in every frame.
+    if (is_depth_texture(gl, other)) continue;
+    if (group.is_rendered_to(other.texture)) {  // a table that is drawn
       inputs.varying.push_back(never_equal);
       continue;
     }
@@ -114,14 +129,16 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   return inputs;
 }
 
-std::vector<float> discard_inputs(const MarchContext& measured, const MarchInputs& inputs,
-                                  const ProgramFindings& says) {
+std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup& group,
+                                  const MarchInputs& inputs, const ProgramFindings& says) {
   const auto source = [&](const auto& use) -> const program::Source& { return says.facts.sources[use.source]; };
   std::vector<float> depends = inputs.fixed;
-  const bool on_texels = std::ranges::any_of(says.ray->discards, [&](const program::Influence& influence) {
-    return source(influence).kind == program::SourceKind::texel;
-  });
-  if (measured.stages.uniform_blocks || on_texels) depends.push_back(never_equal);
+  const bool on_drawn_texels =
+      std::ranges::any_of(says.ray->discards, [&](const program::Influence& influence) {
+        const program::Source& texel = source(influence);
+        return texel.kind == program::SourceKind::texel && may_be_drawn(measured, group, texel.name);
+      });
+  if (measured.stages.uniform_blocks || on_drawn_texels) depends.push_back(never_equal);
   for (const StageUniform& uniform : measured.stages.uniforms) {
     const bool decides = std::ranges::any_of(says.ray->uniforms, [&](const program::UniformUse& use) {
       return use.discard && source(use).name == uniform.name;

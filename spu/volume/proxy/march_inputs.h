@@ -29,8 +29,8 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
 
 /// What decides, with the place in the window, which fragments the program discards. Never equal to another
 /// where that cannot be told.
-std::vector<float> discard_inputs(const MarchContext& measured, const MarchInputs& inputs,
-                                  const ProgramFindings& says);
+std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup& group,
+                                  const MarchInputs& inputs, const ProgramFindings& says);
 
 /// Whether nothing of `fixed` differs but the tables.
 bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);

@@ -84,7 +84,7 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
   for (const std::size_t step : inputs.steps)
     all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
   for (const float value : inputs.varying) {
-    // Not a number: the depth of opaque geometry, which is drawn in every frame.
+    // Not a number: a texture that may be drawn in every frame.
     all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
   }
   return all;
@@ -383,8 +383,9 @@ volume::Rect RayCasterStage::kept_window(const Draw& draw, const ProxyBox& box, 
   constexpr std::size_t most_kept = 4;  // a window, an image that is saved of it, …
   std::array<GLint, 4> viewport{};
   context_.gl->GetIntegerv(GL_VIEWPORT, viewport.data());
-  KeptWindow asked{
-      {viewport[0], viewport[1], viewport[2], viewport[3]}, discard_inputs(draw.measured(), inputs, says), {}};
+  KeptWindow asked{{viewport[0], viewport[1], viewport[2], viewport[3]},
+                   discard_inputs(draw.measured(), group_, inputs, says),
+                   {}};
   std::vector<KeptWindow>& known = draw.known.march.kept;
   for (const KeptWindow& window : known) {
     if (window.viewport == asked.viewport && window.depends == asked.depends) return window.kept;

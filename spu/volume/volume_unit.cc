@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/volume_unit.h"
 
+#include <cmath>
+
 #include "compositor/service.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/depth/deferred_depth_write.h"
@@ -18,6 +20,14 @@ using Clock = std::chrono::steady_clock;
 
 /// Fewer textures in a row are no stack worth looking at.
 constexpr std::size_t fewest_stack_slices = 8;
+
+/// Of the samples on rays of all directions, in texture space; 1 where slices say how many there are.
+double sample_density(const volume::RenderRequest& request) {
+  if (!request.steps) return 1;
+  double square = 0;
+  for (const double number : request.steps->metric) square += number * number;
+  return square > 0 ? std::sqrt(square) : 1;
+}
 
 }  // namespace
 
@@ -164,7 +174,8 @@ void VolumeUnit::show(Run& run, const Recognised& recognised, KnownVolume& volum
   // Whatever was right before was right of something else, where a ray caster has been measured anew.
   if (volume.frames == 0) volume.verified.schedule.ask_for_whole();
   if (image.unproven) volume.verified.schedule.ask_for_several();
-  volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels());
+  volume.verified.schedule.begin(image.inputs, volume::footprint(request, request.region).pixels(),
+                                 sample_density(request));
   const bool compared_whole = stages.verifier.whole_due(volume.verified, image.eye_inside, volume.frames);
   const auto check = [&](const volume::ImageView& shown) {
     auto comparison = stages.verifier.verify(

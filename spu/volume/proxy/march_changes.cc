@@ -98,9 +98,9 @@ std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const 
 }
 
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
-                                       double factor) {
-  // The table is not measured otherwise.
-  constexpr RaysLookedAt looked_at{.values = 64};
+                                       double factor, double offset) {
+  // Other values in every frame: the table is not measured otherwise.
+  const RaysLookedAt looked_at{.values = 16, .offset = offset};
   if (march.sum || march.steps.divided) return std::nullopt;
   March longer = march;
   for (double& number : longer.steps.metric) number /= factor;

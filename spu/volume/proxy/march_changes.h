@@ -14,9 +14,10 @@ namespace understudy::spu {
 std::optional<March> with_new_table(const MarchContext& measured, const March& march, const ProxyBox& box);
 
 /// The march with steps that are `factor` times as long, whose samples are corrected for their length, as is
-/// usual, or are what they were; null when neither is what the program shows, as far as fields tell.
+/// usual, or are what they were; null when neither is what the program shows, as far as fields tell. `offset`:
+/// of the values that are looked at, as RaysLookedAt has it.
 std::optional<March> with_longer_steps(const MarchContext& measured, const March& march, const ProxyBox& box,
-                                       double factor);
+                                       double factor, double offset);
 
 /// The march with its steps measured once more, where the eye is inside and no ray is short; or why not.
 std::variant<March, Refusal> with_new_steps(const MarchContext& measured, const March& march,

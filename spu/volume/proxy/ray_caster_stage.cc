@@ -90,14 +90,19 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
   return all;
 }
 
+/// As RaysLookedAt has it: no two of many frames come close to each other.
+double offset_of_values(std::uint64_t frame) {
+  constexpr double golden_section = 0.618033988749895;
+  const double turns = double(frame) * golden_section;
+  return turns - std::floor(turns);
+}
+
 /// Where the camera moved, as it does in every frame while somebody turns a volume, half of it in each of two
 /// frames, and other values each time.
 RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame) {
   if (!turned) return {};
-  constexpr double golden_section = 0.618033988749895;  // no two of many frames come close to each other
-  const double turns = double(frame) * golden_section;
   const bool values = march.shows_one_colour() || frame % 2 == 0;
-  return {.values = values ? 3 : 0, .offset = turns - std::floor(turns), .long_ray = !values};
+  return {.values = values ? 3 : 0, .offset = offset_of_values(frame), .long_ray = !values};
 }
 
 /// How little a march explains an image, smaller being better: by its worst tile, as verification judges it;
@@ -301,7 +306,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
   for (const double factor : march ? step_factors(known.inputs, inputs) : std::vector<double>{}) {
     // A table that was edited in the same frame is measured, value by value.
     if (!again && only_corrected(known.tables, tables, factor))
-      again = with_longer_steps(draw.measured(), *march, box, factor);
+      again = with_longer_steps(draw.measured(), *march, box, factor, offset_of_values(account_.frames()));
   }
   known.tables = std::move(tables);
   // Fields of one value, by which a table is measured, do not see the step of an extreme or a mean.

@@ -93,6 +93,13 @@ void NativeDrawing::add(const Run& run) {
   if (complete()) draw(run);
 }
 
+void NativeDrawing::compile(const Run& run, const volume::Rect& window,
+                            const std::optional<volume::DepthImage>& depth) {
+  const volume::Rect pixel{window.x + window.width / 2, window.y + window.height / 2, 1, 1};
+  redraw(run, pixel, depth);
+  if (complete()) framebuffer_->clear(pixel, depth, background_);
+}
+
 double NativeDrawing::add_timed(const Run& run) {
   const DispatchTable& gl = *context_.gl;
   gl.Finish();

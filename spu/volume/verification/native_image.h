@@ -36,9 +36,12 @@ class NativeDrawing {
   bool complete() const { return framebuffer_ && framebuffer_->complete(); }
   /// Draws the run's calls in the state that they were made for.
   void add(const Run& run);
-  /// The same, to its end on the device. Returns the milliseconds that it took.
+  /// Leaves nothing: drivers compile a program when it first draws into a framebuffer of a kind, which is not
+  /// what its drawing takes. `depth` as for redraw().
+  void compile(const Run& run, const volume::Rect& window, const std::optional<volume::DepthImage>& depth);
+  /// As add(), to its end on the device. Returns the milliseconds that it took.
   double add_timed(const Run& run);
-  /// The same within `rect` alone, which is cleared before; `depth` is what opaque geometry left there.
+  /// As add(), within `rect` alone, which is cleared before; `depth` is what opaque geometry left there.
   void redraw(const Run& run, const volume::Rect& rect, const std::optional<volume::DepthImage>& depth);
   NativeImage image(const volume::Rect& rect) const;
 

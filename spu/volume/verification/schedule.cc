@@ -33,7 +33,7 @@ bool VerificationSchedule::is_trusted(std::size_t index) const {
          });
 }
 
-void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
+void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, double density) {
   if (inputs_.size() != inputs.size()) {
     right_ = false;
     inputs_.clear();
@@ -52,6 +52,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
       std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
   dense_ = !changed.empty();
   footprint_ = footprint;
+  density_ = density;
   grown_ = double(footprint) > grown_footprint * double(right_footprint_);
   if (const auto native = native_ms()) {
     const double share = dense_ ? dense_sentinel_share : sentinel_share;
@@ -61,7 +62,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint) {
 
 std::optional<double> VerificationSchedule::native_ms() const {
   if (!measured_ms_ || measured_footprint_ == 0) return measured_ms_;
-  return *measured_ms_ * double(footprint_) / double(measured_footprint_);
+  return *measured_ms_ * (double(footprint_) * density_) / (double(measured_footprint_) * measured_density_);
 }
 
 int VerificationSchedule::sentinels() const {
@@ -72,6 +73,7 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
   const auto expected = this->native_ms();
   measured_ms_ = expected ? 0.5 * (*expected + native_ms) : native_ms;
   measured_footprint_ = footprint_;
+  measured_density_ = density_;
   // An image of nothing proves nothing.
   if (!anything_visible) return;
   if (--to_prove_ <= 0) {

@@ -51,8 +51,9 @@ class VerificationSchedule {
   };
   using Inputs = std::vector<Input>;
 
-  /// The next image is about to be shown. `footprint`: pixels that it covers.
-  void begin(const Inputs& inputs, std::size_t footprint);
+  /// The next image is about to be shown. `footprint`: pixels that it covers; `density`: of the samples on
+  /// their rays, in a unit that stays.
+  void begin(const Inputs& inputs, std::size_t footprint, double density = 1);
 
   /// Whether it is compared whole; else sentinels() many tiles are.
   bool whole_due() const { return !right_ || changed_ || grown_; }
@@ -77,7 +78,7 @@ class VerificationSchedule {
   }
   int lost_in_a_row() const { return lost_in_a_row_; }
   /// What the application's own drawing of the image that is begun would take, as far as time goes by the
-  /// pixels that a volume covers; empty: not known yet.
+  /// samples of a volume; empty: not known yet.
   std::optional<double> native_ms() const;
 
  private:
@@ -92,6 +93,7 @@ class VerificationSchedule {
   std::vector<std::size_t> now_changed_;
   std::vector<ChangingInput> changing_;
   std::size_t footprint_ = 0;        ///< of the image that is begun
+  double density_ = 1;               ///< likewise
   std::size_t right_footprint_ = 0;  ///< the largest that was right
   bool right_ = false;               ///< an image that shows something was right, and none was wrong since
   bool changed_ = false;
@@ -102,6 +104,7 @@ class VerificationSchedule {
   int lost_ever_ = 0;
   std::optional<double> measured_ms_;  ///< of the application's own drawing
   std::size_t measured_footprint_ = 0;
+  double measured_density_ = 1;
   double credit_ms_ = 0;  ///< that sentinels may take
   double ms_a_sentinel_ = 1;
 };

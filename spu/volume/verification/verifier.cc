@@ -57,6 +57,7 @@ std::optional<Comparison> Verifier::compare_whole(const ImageToVerify& what, con
   if (window.empty()) return std::nullopt;
   NativeDrawing drawing(context_, pipeline, what.request);
   if (!drawing.complete()) return std::nullopt;
+  if (!volume.schedule.native_ms()) drawing.compile(what.run, window, what.request.depth);
   const double native_ms = drawing.add_timed(what.run);
   const NativeImage native = drawing.image(window);
   const ImageDifference difference = difference_between(pipeline, native, image);

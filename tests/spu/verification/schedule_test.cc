@@ -151,6 +151,16 @@ TEST(VerificationSchedule, SentinelsTakeOnePercentOfTheApplicationsTime) {
   EXPECT_GE(spent, 0.9 * 1000 * native_ms * sentinel_share);
 }
 
+TEST(VerificationSchedule, TheApplicationsTimeGoesByItsSamples) {
+  VerificationSchedule schedule;
+  schedule.begin({{0}}, 1000, 2);
+  schedule.whole_was_right(true, native_ms);
+  schedule.begin({{0}}, 500, 2);
+  EXPECT_DOUBLE_EQ(schedule.native_ms().value_or(0), native_ms / 2);
+  schedule.begin({{0}}, 500, 0.5);
+  EXPECT_DOUBLE_EQ(schedule.native_ms().value_or(0), native_ms / 8);
+}
+
 TEST(VerificationSchedule, ComparesSeveralImagesWhereTheyAreAskedFor) {
   VerificationSchedule schedule;
   schedule.ask_for_several();

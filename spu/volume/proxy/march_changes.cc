@@ -174,8 +174,8 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
                   samples_of_length(march.steps, steps_of_way(march.steps, *way)));
 }
 
-bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box) {
-  constexpr int tried = 32;
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
+                  const PlacesLookedAt& looked_at) {
   if (march.light && !gradients_still_reach(measured, box, march)) return false;
   if (!box.cuts.empty()) return true;
   if (march.shows_one_colour())
@@ -184,11 +184,11 @@ bool still_placed(const MarchContext& measured, const March& march, const ProxyB
   if (!probe.complete()) return false;
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region);
   if (!remove_known_background(measured, probe, rays, march)) return false;
-  std::vector<float> values = values_over(measured.range, tried);
+  std::vector<float> values = values_over(measured.range, looked_at.values);
   values.push_back(march.translucent);
   const auto middle = rays.middle();
-  const auto split =
-      split_rays(measured, probe, march, box, seen_values(values, probe.at(middle[0], middle[1], values)));
+  const auto seen = seen_values(values, probe.at(middle[0], middle[1], values));
+  const auto split = split_rays(measured, probe, march, box, seen, looked_at.bands);
   const volume::RaySteps placed = march.from_exit ? counted_from_exit(march.steps, rays, probe) : march.steps;
   return misplaced_part(split, rays, placed) <= most_misplaced;
 }

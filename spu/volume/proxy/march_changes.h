@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "spu/volume/proxy/march.h"
+#include "spu/volume/proxy/sample_places.h"
 
 namespace understudy::spu {
 
@@ -35,7 +36,16 @@ struct RaysLookedAt {
 bool still_marches(const MarchContext& measured, const March& march, const ProxyBox& box,
                    const RaysLookedAt& looked_at);
 
+/// How closely the places of samples are looked at.
+struct PlacesLookedAt {
+  int values = 32;          ///< of which two that tell are chosen
+  int bands = split_bands;  ///< of rows
+};
+/// Where steps have another length, and nothing else is known to be new.
+constexpr PlacesLookedAt few_places{.values = 8, .bands = 2};
+
 /// Whether samples still lie on rays where `march` says, as far as fields tell.
-bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box);
+bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,
+                  const PlacesLookedAt& looked_at);
 
 }  // namespace understudy::spu

@@ -173,6 +173,7 @@ std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& n
     if (!(factor > 1 / largest && factor < largest)) return {};
     factors.push_back(factor);
   }
+  if (factors.empty()) factors.push_back(1);
   return factors;
 }
 

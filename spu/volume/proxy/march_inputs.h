@@ -39,7 +39,7 @@ bool only_tables_differ(const MarchInputs& before, const MarchInputs& now);
 bool steps_differ(const MarchInputs& before, const MarchInputs& now);
 
 /// Where nothing of `fixed` differs but what the step of rays and the tables depend on: the factors by which
-/// the step may have grown. Empty: something else differs, or nothing does.
+/// the step may have grown, 1 where it has not. Empty: something else differs.
 std::vector<double> step_factors(const MarchInputs& before, const MarchInputs& now);
 
 }  // namespace understudy::spu

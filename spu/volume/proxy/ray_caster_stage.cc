@@ -275,6 +275,8 @@ void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchI
   auto again = with_new_steps(draw.measured(), *march, box);
   if (const auto* refusal = std::get_if<Refusal>(&again)) throw *refusal;
   march = std::get<March>(std::move(again));
+  std::optional<MeasuredMarch>& base = draw.known.march.measured;
+  if (base && base->inputs.fixed == inputs.fixed) base->march = *march;
 }
 
 void RayCasterStage::refuse_again(const Draw& draw) const {
@@ -295,25 +297,38 @@ std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& 
   return session_.disabled_optimizations(Optimization::known_colours) ? "asked to" : "";
 }
 
+std::optional<March> RayCasterStage::with_other_steps(const Draw& draw, const ProxyBox& box,
+                                                      const MarchInputs& inputs,
+                                                      std::span<const TableContents> tables) const {
+  const KnownMarch& known = draw.known.march;
+  if (!known.march || !known.measured) return std::nullopt;
+  const MeasuredMarch& base = *known.measured;
+  if (base.march.from_inside != known.march->from_inside || base.march.clipped != known.march->clipped)
+    return std::nullopt;
+  for (const double factor : step_factors(base.inputs, inputs)) {
+    // A table that was edited is measured, value by value.
+    if (!only_corrected(base.tables, tables, factor)) continue;
+    auto derived =
+        with_longer_steps(draw.measured(), base.march, box, factor, offset_of_values(account_.frames()));
+    if (derived) return derived;
+  }
+  return std::nullopt;
+}
+
 ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                  compositor::RenderService& service) {
   // Another table is usual while somebody edits one; where samples lie is not tried again for that.
-  std::optional<March>& march = draw.known.march.march;
-  std::optional<March> again;
-  // VTK takes longer steps while somebody turns its volume.
   KnownMarch& known = draw.known.march;
+  std::optional<March>& march = known.march;
   std::vector<TableContents> tables = table_contents(context_, draw.run, draw.tables_of_samples);
-  for (const double factor : march ? step_factors(known.inputs, inputs) : std::vector<double>{}) {
-    // A table that was edited in the same frame is measured, value by value.
-    if (!again && only_corrected(known.tables, tables, factor))
-      again = with_longer_steps(draw.measured(), *march, box, factor, offset_of_values(account_.frames()));
-  }
-  known.tables = std::move(tables);
+  std::optional<March> again = with_other_steps(draw, box, inputs, tables);
+  const bool derived = again.has_value();
   // Fields of one value, by which a table is measured, do not see the step of an extreme or a mean.
   const bool step_unknown = march && march->shows_one_colour() && steps_differ(known.inputs, inputs);
   if (march && !again && !step_unknown) again = with_new_table(draw.measured(), *march, box);
   // What counts samples does not see noise that was turned on.
-  if (again && !only_tables_differ(known.inputs, inputs) && !still_placed(draw.measured(), *again, box))
+  if (again && !only_tables_differ(known.inputs, inputs) &&
+      !still_placed(draw.measured(), *again, box, derived ? few_places : PlacesLookedAt{}))
     again.reset();
   march = again;
   if (!again) {
@@ -325,6 +340,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
     draw.known.frames = 0;  // looked at again, as a new volume is
   }
+  if (!again || !derived) known.measured = MeasuredMarch{*march, inputs, std::move(tables)};
   ProxyBox found = box_in(draw.measured(), march->space);
   draw.cuts = read_cuts(context_, draw.run.pipeline().program, found.camera.texture_to_clip);
   return found;

@@ -75,6 +75,9 @@ class RayCasterStage {
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                 bool turned) const;
+  /// The march whose table was measured, with the steps that the program has now; null where more is new.
+  std::optional<March> with_other_steps(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
+                                        std::span<const TableContents> tables) const;
   ProxyBox measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                    compositor::RenderService& service);
   volume::RenderRequest compose(const Draw& draw, const March& march, const ProxyBox& box);

@@ -16,8 +16,6 @@ using volume::Rgba;
 
 namespace {
 
-constexpr int split_bands = 12;  ///< of two rows each
-
 /// What adds up sample by sample: optical depth, or one channel of a sum.
 struct Additive {
   bool sum = false;
@@ -202,7 +200,7 @@ std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const v
 }
 
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                  const ProxyBox& box, const std::vector<SeenValue>& values) {
+                                  const ProxyBox& box, const std::vector<SeenValue>& values, int bands) {
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
@@ -213,9 +211,9 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   const auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
   if (fields.empty()) return {};
   SplitCounting counting(probe, contrast->amount, premultiplied_already(measured, march), fields);
-  for (int band = 0; band < split_bands; ++band)
+  for (int band = 0; band < bands; ++band)
     counting.add_rows(
-        std::clamp((2 * band + 1) * probe.height() / (2 * split_bands), 0, std::max(0, probe.height() - 2)));
+        std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2)));
   return counting.counted();
 }
 

@@ -34,6 +34,8 @@ struct SeenValue {
   volume::Rgba ray{};
 };
 
+constexpr int split_bands = 12;
+
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<volume::Rgba>& rays);
 
 /// Fields whose planes most rays cross, in the box's inside and the texture's; none where these do not meet.
@@ -42,8 +44,10 @@ std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const v
                                                  float behind);
 
 /// Under fields of march.translucent and another of `values`. None where no other value tells, or too few rays.
+/// On so many bands of two rows each.
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                  const ProxyBox& box, const std::vector<SeenValue>& values);
+                                  const ProxyBox& box, const std::vector<SeenValue>& values,
+                                  int bands = split_bands);
 
 /// The part of the rays whose samples lie elsewhere than `steps` says; rays that tell nothing do not count.
 double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,

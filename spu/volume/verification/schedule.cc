@@ -66,7 +66,8 @@ std::optional<double> VerificationSchedule::native_ms() const {
 }
 
 int VerificationSchedule::sentinels() const {
-  return std::clamp(int(credit_ms_ / ms_a_sentinel_), 0, most_sentinels_at_once);
+  if (!ms_a_sentinel_) return credit_ms_ > 0 ? 1 : 0;
+  return std::clamp(int(credit_ms_ / *ms_a_sentinel_), 0, most_sentinels_at_once);
 }
 
 void VerificationSchedule::whole_was_right(bool anything_visible, double native_ms) {
@@ -95,9 +96,13 @@ void VerificationSchedule::whole_was_right(bool anything_visible, double native_
 }
 
 void VerificationSchedule::sentinels_took(int count, double ms) {
-  credit_ms_ = std::max(0.0, credit_ms_ - ms);
+  if (count == 0) return;
+  const double one = ms / count;
+  if (!ms_a_sentinel_) ms_a_sentinel_ = one;
+  // A stall of the machine is not charged.
+  credit_ms_ -= count * std::min(one, 2 * *ms_a_sentinel_);
   // Smoothed: one tile is no measurement.
-  if (count > 0) ms_a_sentinel_ += 0.2 * (ms / count - ms_a_sentinel_);
+  *ms_a_sentinel_ += 0.2 * (one - *ms_a_sentinel_);
 }
 
 void VerificationSchedule::lost() {

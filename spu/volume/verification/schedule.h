@@ -28,10 +28,10 @@ constexpr int max_lost_comparisons_ever = 12;
 constexpr int right_after_loss = 8;
 /// The same input has changed this often and the image was right each time: sentinels suffice for it.
 constexpr int trusted_changes = 4;
-/// Of what the application's own drawing takes by itself in its first frame. Into the window, and later, it
-/// takes up to half of that: together at most 1 and 10 % of a frame.
-constexpr double sentinel_share = 0.005;
-constexpr double dense_sentinel_share = 0.05;
+/// Of what the application's own drawing takes by itself, into floats, in its first frame. Into the window, and
+/// later, it takes down to a third of that: together at most 1 and 10 % of a frame.
+constexpr double sentinel_share = 0.003;
+constexpr double dense_sentinel_share = 0.03;
 
 class VerificationSchedule {
  public:
@@ -105,8 +105,8 @@ class VerificationSchedule {
   std::optional<double> measured_ms_;  ///< of the application's own drawing
   std::size_t measured_footprint_ = 0;
   double measured_density_ = 1;
-  double credit_ms_ = 0;  ///< that sentinels may take
-  double ms_a_sentinel_ = 1;
+  double credit_ms_ = 0;                 ///< that sentinels may take
+  std::optional<double> ms_a_sentinel_;  ///< not known before the first
 };
 
 }  // namespace understudy::spu

@@ -113,10 +113,13 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
       inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
-    // Probes show the far plane instead of opaque geometry, which is drawn or copied into it in every frame.
-    if (is_depth_texture(gl, other)) continue;
-    if (group.is_rendered_to(other.texture)) {  // a table that is drawn
+    if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
       inputs.varying.push_back(never_equal);
+      continue;
+    }
+    if (is_depth_texture(gl, other)) {
+      inputs.depths.insert(inputs.depths.end(),
+                           {float(other.texture), float(group.texture_version(other.texture))});
       continue;
     }
     const bool of_samples = std::ranges::any_of(says.ray->tables_of_samples, [&](const std::string& name) {

@@ -84,9 +84,10 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
   for (const std::size_t step : inputs.steps)
     all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
   for (const float value : inputs.varying) {
-    // Not a number: a texture that may be drawn in every frame.
+    // Not a number: the depth of opaque geometry, which is drawn in every frame.
     all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
   }
+  for (const float value : inputs.depths) all.push_back({value});
   return all;
 }
 

@@ -33,6 +33,12 @@ bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture) {
   return bits > 0;
 }
 
+bool may_be_sampled_by(const DispatchTable& gl, GLuint program, const std::string& sampler,
+                       const SampledTexture& texture) {
+  const bool known = !sampler.empty() && sampler.find('*') == std::string::npos;
+  return !known || gl.GetUniformLocation(program, sampler.c_str()) == texture.sampler_location;
+}
+
 FieldProbe::FieldProbe(const GlContext& context, const Run& run, const TextureDescription& texture,
                        ProbeSurfaces& surfaces, const std::optional<volume::Rect>& kept)
     : gl_(*context.gl),

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "spu/volume/context/saved_state.h"
@@ -176,5 +177,9 @@ class FieldProbe {
 
 /// Whether `texture` is a 2-D texture of depths.
 bool is_depth_texture(const DispatchTable& gl, const SampledTexture& texture);
+
+/// Whether `texture` may be what the program samples by `sampler`, whose name is as program::Fetch has it.
+bool may_be_sampled_by(const DispatchTable& gl, GLuint program, const std::string& sampler,
+                       const SampledTexture& texture);
 
 }  // namespace understudy::spu

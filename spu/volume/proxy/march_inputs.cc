@@ -75,10 +75,9 @@ bool moves_samples_only(const ProgramFindings& says, const std::string& name) {
 bool may_be_drawn(const MarchContext& measured, const ShareGroup& group, const std::string& sampler) {
   const DispatchTable& gl = *measured.context.gl;
   const Pipeline& pipeline = measured.run.pipeline();
-  const bool known = !sampler.empty() && sampler.find('*') == std::string::npos;
   return std::ranges::any_of(pipeline.others, [&](const SampledTexture& other) {
     return group.is_rendered_to(other.texture) && !is_depth_texture(gl, other) &&
-           (!known || gl.GetUniformLocation(pipeline.program, sampler.c_str()) == other.sampler_location);
+           may_be_sampled_by(gl, pipeline.program, sampler, other);
   });
 }
 

@@ -130,9 +130,7 @@ bool fetches_depth(const GlContext& context, const Pipeline& pipeline, const pro
   return std::ranges::any_of(pipeline.others, [&](const SampledTexture& texture) {
     if (!is_depth_texture(gl, texture)) return false;
     return std::ranges::any_of(facts.fetches, [&](const program::Fetch& fetch) {
-      const bool known = !fetch.sampler.empty() && fetch.sampler.find('*') == std::string::npos;
-      return !known ||
-             gl.GetUniformLocation(pipeline.program, fetch.sampler.c_str()) == texture.sampler_location;
+      return may_be_sampled_by(gl, pipeline.program, fetch.sampler, texture);
     });
   });
 }
@@ -302,7 +300,8 @@ std::optional<March> RayCasterStage::with_other_steps(const Draw& draw, const Pr
                                                       const MarchInputs& inputs,
                                                       std::span<const TableContents> tables) const {
   const KnownMarch& known = draw.known.march;
-  if (!known.march || !known.measured) return std::nullopt;
+  // Where neither steps nor tables are other ones, something else is new.
+  if (!known.march || !known.measured || inputs.fixed == known.inputs.fixed) return std::nullopt;
   const MeasuredMarch& base = *known.measured;
   if (base.march.from_inside != known.march->from_inside || base.march.clipped != known.march->clipped)
     return std::nullopt;

@@ -52,7 +52,7 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
       std::any_of(now_changed_.begin(), now_changed_.end(), [&](std::size_t i) { return !is_trusted(i); });
   dense_ = !changed.empty();
   footprint_ = footprint;
-  density_ = density;
+  samples_ = density * double(footprint);
   grown_ = double(footprint) > grown_footprint * double(right_footprint_);
   if (const auto native = native_ms()) {
     const double share = dense_ ? dense_sentinel_share : sentinel_share;
@@ -61,8 +61,8 @@ void VerificationSchedule::begin(const Inputs& inputs, std::size_t footprint, do
 }
 
 std::optional<double> VerificationSchedule::native_ms() const {
-  if (!measured_ms_ || measured_footprint_ == 0) return measured_ms_;
-  return *measured_ms_ * (double(footprint_) * density_) / (double(measured_footprint_) * measured_density_);
+  if (!measured_ms_ || measured_samples_ == 0) return measured_ms_;
+  return *measured_ms_ * samples_ / measured_samples_;
 }
 
 int VerificationSchedule::sentinels() const {
@@ -73,8 +73,7 @@ int VerificationSchedule::sentinels() const {
 void VerificationSchedule::whole_was_right(bool anything_visible, double native_ms) {
   const auto expected = this->native_ms();
   measured_ms_ = expected ? 0.5 * (*expected + native_ms) : native_ms;
-  measured_footprint_ = footprint_;
-  measured_density_ = density_;
+  measured_samples_ = samples_;
   // An image of nothing proves nothing.
   if (!anything_visible) return;
   if (--to_prove_ <= 0) {

@@ -93,7 +93,7 @@ class VerificationSchedule {
   std::vector<std::size_t> now_changed_;
   std::vector<ChangingInput> changing_;
   std::size_t footprint_ = 0;        ///< of the image that is begun
-  double density_ = 1;               ///< likewise
+  double samples_ = 0;               ///< likewise, in a unit that stays
   std::size_t right_footprint_ = 0;  ///< the largest that was right
   bool right_ = false;               ///< an image that shows something was right, and none was wrong since
   bool changed_ = false;
@@ -103,8 +103,7 @@ class VerificationSchedule {
   int lost_in_a_row_ = 0;
   int lost_ever_ = 0;
   std::optional<double> measured_ms_;  ///< of the application's own drawing
-  std::size_t measured_footprint_ = 0;
-  double measured_density_ = 1;
+  double measured_samples_ = 0;
   double credit_ms_ = 0;                 ///< that sentinels may take
   std::optional<double> ms_a_sentinel_;  ///< not known before the first
 };

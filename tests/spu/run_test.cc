@@ -49,6 +49,27 @@ TEST(Run, ReplaysInOrderWithElementDrawsBetween) {
   EXPECT_EQ(heard, (std::vector<std::string>{"CallList 4", "DrawElements 6", "CallList 5"}));
 }
 
+TEST(Run, CountsTheTrianglesOfElementDraws) {
+  Records calls;
+  spu::Run run(Pipeline{}, calls);
+  run.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 37}}, GL_UNSIGNED_INT);
+  run.draw_elements(GL_TRIANGLE_STRIP, std::array{spu::ElementPart{.count = 14}, spu::ElementPart{.count = 2}},
+                    GL_UNSIGNED_INT);
+  run.draw_elements_instanced(GL_TRIANGLE_FAN, {.count = 4}, GL_UNSIGNED_INT, 3);
+  EXPECT_EQ(run.triangles(), std::size_t(12 + 12 + 6));
+}
+
+TEST(Run, LeavesOtherTrianglesToTheDriver) {
+  Records calls;
+  spu::Run quads(Pipeline{}, calls);
+  quads.draw_elements(GL_QUADS, std::array{spu::ElementPart{.count = 8}}, GL_UNSIGNED_INT);
+  EXPECT_EQ(quads.triangles(), std::nullopt);
+  spu::Run with_list(Pipeline{}, calls);
+  with_list.draw_elements(GL_TRIANGLES, std::array{spu::ElementPart{.count = 6}}, GL_UNSIGNED_INT);
+  with_list.call_list(4);
+  EXPECT_EQ(with_list.triangles(), std::nullopt);
+}
+
 TEST(ClientArrays, AreCapturedAtTheTimeOfTheCall) {
   std::vector<float> positions = {0, 0, 0, 1, 0, 0, 1, 1, 0};
   std::vector<double> coordinates = {0, 0, 0.5, 1, 0, 0.5, 1, 1, 0.5};

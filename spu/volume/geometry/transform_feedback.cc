@@ -1,28 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spu/volume/geometry/transform_feedback.h"
 
+#include "spu/volume/observation/client_arrays.h"
+
 namespace understudy::spu {
 namespace {
 
 constexpr GLsizeiptr usual_capture = GLsizeiptr(1) << 20;  // bytes
 constexpr GLsizeiptr largest_capture = GLsizeiptr(1) << 26;
 
-/// In scope, what is drawn is captured and counted by `queries`; afterwards, however the scope is left, it is
-/// not.
+/// In scope, what is drawn is captured; afterwards, however the scope is left, it is not.
 class Capturing {
  public:
-  Capturing(const DispatchTable& gl, const std::array<GLuint, 2>& queries) : gl_(gl) {
+  explicit Capturing(const DispatchTable& gl) : gl_(gl) { gl_.BeginTransformFeedback(GL_TRIANGLES); }
+  ~Capturing() { gl_.EndTransformFeedback(); }
+  Capturing(const Capturing&) = delete;
+  Capturing& operator=(const Capturing&) = delete;
+
+ private:
+  const DispatchTable& gl_;
+};
+
+/// In scope, triangles are counted by `queries`, those that are generated and those that are captured.
+class Counting {
+ public:
+  Counting(const DispatchTable& gl, const std::array<GLuint, 2>& queries) : gl_(gl) {
     gl_.BeginQuery(GL_PRIMITIVES_GENERATED, queries[0]);
     gl_.BeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, queries[1]);
-    gl_.BeginTransformFeedback(GL_TRIANGLES);
   }
-  ~Capturing() {
-    gl_.EndTransformFeedback();
+  ~Counting() {
     gl_.EndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
     gl_.EndQuery(GL_PRIMITIVES_GENERATED);
   }
-  Capturing(const Capturing&) = delete;
-  Capturing& operator=(const Capturing&) = delete;
+  Counting(const Counting&) = delete;
+  Counting& operator=(const Counting&) = delete;
 
  private:
   const DispatchTable& gl_;
@@ -31,7 +42,7 @@ class Capturing {
 }  // namespace
 
 TransformFeedback::TransformFeedback(const GlContext& context, GLuint program)
-    : gl_(*context.gl), has_objects_(context.version >= 400) {
+    : context_(context), gl_(*context.gl), has_objects_(context.version >= 400) {
   gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
   gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic_);
   replace_binding();
@@ -79,7 +90,8 @@ std::array<GLuint, 2> TransformFeedback::draw(const Run& run, GLsizeiptr bytes) 
   gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
   gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ);
   {
-    const Capturing capturing(gl_, queries_);
+    const Counting counting(gl_, queries_);
+    const Capturing capturing(gl_);
     run.replay(gl_);
   }
   std::array<GLuint, 2> counts{};
@@ -88,17 +100,40 @@ std::array<GLuint, 2> TransformFeedback::draw(const Run& run, GLsizeiptr bytes) 
   return counts;
 }
 
-std::vector<float> TransformFeedback::triangles(const Run& run, std::size_t stride) {
-  std::array<GLuint, 2> triangles = draw(run, usual_capture);
-  if (triangles[1] < triangles[0]) {
-    const GLsizeiptr bytes = GLsizeiptr(triangles[0]) * 3 * GLsizeiptr(stride * sizeof(float));
-    if (bytes > largest_capture) return {};
-    triangles = draw(run, bytes);
-  }
-  if (triangles[1] == 0 || triangles[1] < triangles[0]) return {};
-  std::vector<float> data(std::size_t(triangles[1]) * 3 * stride);
+std::vector<float> TransformFeedback::read_back(std::size_t triangles, std::size_t stride) const {
+  std::vector<float> data(triangles * 3 * stride);
   gl_.GetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(data.size() * sizeof(float)), data.data());
   return data;
+}
+
+std::vector<float> TransformFeedback::counted_triangles(const Run& run, std::size_t triangles,
+                                                        std::size_t stride) {
+  // Where the driver refuses a draw, zeros stay: triangles without an area.
+  const std::vector<float> zeros(triangles * 3 * stride);
+  gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer_);
+  gl_.BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, GLsizeiptr(zeros.size() * sizeof(float)), zeros.data(),
+                 GL_STREAM_READ);
+  {
+    const Capturing capturing(gl_);
+    run.replay(gl_);
+  }
+  return read_back(triangles, stride);
+}
+
+std::vector<float> TransformFeedback::triangles(const Run& run, std::size_t stride) {
+  const auto bytes_of = [stride](std::size_t triangles) {
+    return GLsizeiptr(triangles * 3 * stride * sizeof(float));
+  };
+  const auto known = run.triangles();
+  if (known && *known > 0 && bytes_of(*known) <= usual_capture && !restarts_primitives(context_))
+    return counted_triangles(run, *known, stride);
+  std::array<GLuint, 2> triangles = draw(run, usual_capture);
+  if (triangles[1] < triangles[0]) {
+    if (bytes_of(triangles[0]) > largest_capture) return {};
+    triangles = draw(run, bytes_of(triangles[0]));
+  }
+  if (triangles[1] == 0 || triangles[1] < triangles[0]) return {};
+  return read_back(triangles[1], stride);
 }
 
 }  // namespace understudy::spu

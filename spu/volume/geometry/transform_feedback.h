@@ -28,7 +28,12 @@ class TransformFeedback {
   void restore_binding();
   /// Triangles that the run generates, and those that fitted into a buffer of `bytes`.
   std::array<GLuint, 2> draw(const Run& run, GLsizeiptr bytes);
+  /// `triangles`, which the run draws, into a buffer of their size. No query is asked: its answer would wait
+  /// for all that the driver has not yet drawn.
+  std::vector<float> counted_triangles(const Run& run, std::size_t triangles, std::size_t stride);
+  std::vector<float> read_back(std::size_t triangles, std::size_t stride) const;
 
+  const GlContext& context_;
   const DispatchTable& gl_;
   const bool has_objects_;  ///< transform feedback objects, of OpenGL 4.0
   GLint program_ = 0;

@@ -77,6 +77,31 @@ void Run::draw_kept(const DispatchTable& gl, const BufferDraw& draw) const {
   }
 }
 
+std::optional<std::size_t> Run::triangles_of(const BufferDraw& draw) const {
+  std::size_t triangles = 0;
+  for (std::size_t part = draw.part; part < draw.part + draw.parts; ++part) {
+    const std::size_t vertices = std::size_t(std::max(counts_[part], 0));
+    if (draw.mode == GL_TRIANGLES)
+      triangles += vertices / 3;
+    else if (draw.mode == GL_TRIANGLE_STRIP || draw.mode == GL_TRIANGLE_FAN)
+      triangles += vertices < 3 ? 0 : vertices - 2;
+    else
+      return std::nullopt;
+  }
+  return triangles * std::size_t(std::max(draw.instances, 0));
+}
+
+std::optional<std::size_t> Run::triangles() const {
+  if (!calls_.words().empty()) return std::nullopt;
+  std::size_t all = 0;
+  for (const BufferDraw& draw : buffer_draws_) {
+    const auto triangles = triangles_of(draw);
+    if (!triangles) return std::nullopt;
+    all += *triangles;
+  }
+  return all;
+}
+
 std::vector<GLuint> Run::slices() const {
   std::vector<GLuint> textures;
   for (const StackSlice& slice : slices_) {

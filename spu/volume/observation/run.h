@@ -59,6 +59,9 @@ class Run {
   void draw_elements_instanced(GLenum mode, const ElementPart& range, GLenum type, GLsizei instances);
   /// Array draws were kept as they are, from buffers: the arrays must stay as they were.
   bool reads_arrays = false;
+  /// How many triangles it draws, where it is nothing but draws of elements and none of these restarts
+  /// primitives; empty: only the driver can count them.
+  std::optional<std::size_t> triangles() const;
   /// No draw is of points or lines, or of what nobody knows.
   bool only_polygons = true;
   bool inside_begin = false;
@@ -92,6 +95,7 @@ class Run {
     GLsizei instances = 1;  ///< if not 1, the draw has one part
   };
   void draw_kept(const DispatchTable& gl, const BufferDraw& draw) const;
+  std::optional<std::size_t> triangles_of(const BufferDraw& draw) const;
   struct Place {
     std::size_t word = 0;         ///< of the deferred calls
     std::size_t buffer_draw = 0;  ///< the next one

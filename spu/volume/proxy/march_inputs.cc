@@ -134,7 +134,11 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
 std::vector<float> discard_inputs(const MarchContext& measured, const ShareGroup& group,
                                   const MarchInputs& inputs, const ProgramFindings& says) {
   const auto source = [&](const auto& use) -> const program::Source& { return says.facts.sources[use.source]; };
-  std::vector<float> depends = inputs.fixed;
+  std::vector<float> depends;
+  for (std::size_t i = 0; i < inputs.fixed.size(); ++i) {
+    // No discard depends on these.
+    if (std::ranges::find(inputs.steps, i) == inputs.steps.end()) depends.push_back(inputs.fixed[i]);
+  }
   const bool on_drawn_texels =
       std::ranges::any_of(says.ray->discards, [&](const program::Influence& influence) {
         const program::Source& texel = source(influence);

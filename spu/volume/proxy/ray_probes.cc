@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 #include "spu/volume/proxy/ray_colours.h"
@@ -66,10 +68,20 @@ bool depends_on_gradient(const MarchContext& measured, FieldProbe& probe, const 
 
 bool only_nearest_shows(const MarchContext& measured, FieldProbe& probe, const Ray& ray,
                         const std::vector<float>& values, const std::vector<Rgba>& nearest) {
-  if (measured.run.pipeline().blending.replaces) return true;
-  const auto sums = probe.sums_at(ray.x, ray.y, values);
+  // A fragment that is added shows where fragments show most, and what adds one does not go by values.
+  constexpr std::size_t looked_at = 3;
+  if (measured.run.pipeline().blending.replaces || probe.culls_faces()) return true;
+  std::vector<std::size_t> most_visible(values.size());
+  std::iota(most_visible.begin(), most_visible.end(), std::size_t{0});
+  const auto seen = [&](std::size_t i) { return reached(nearest[i]) ? nearest[i] : Rgba{}; };
+  std::ranges::sort(most_visible, std::greater{}, [&](std::size_t i) { return std::ranges::max(seen(i)); });
+  most_visible.resize(std::min(most_visible.size(), looked_at));
+  std::vector<float> shown;
+  shown.reserve(most_visible.size());
+  for (const std::size_t i : most_visible) shown.push_back(values[i]);
+  const auto sums = probe.sums_at(ray.x, ray.y, shown);
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (!(largest_difference(sums[i], reached(nearest[i]) ? nearest[i] : Rgba{}) <= 1e-6F)) return false;
+    if (!(largest_difference(sums[i], seen(most_visible[i])) <= 1e-6F)) return false;
   }
   return true;
 }

@@ -23,7 +23,9 @@ struct FrameCounts {
   std::uint64_t bytes_of_whole_windows = 0;
   std::uint64_t messages = 0;
   std::uint64_t messages_of_whole_windows = 0;
-  double render_ms = 0;  ///< slowest node
+  double division_ms = 0;   ///< slowest node: which part of the image is whose (sort-first)
+  double render_ms = 0;     ///< likewise
+  double processor_ms = 0;  ///< of all threads that estimated costs and cast rays
   double composite_ms = 0;
 
   /// Adds another volume of the same frame: they are rendered one after the other, so times add up too.
@@ -41,7 +43,9 @@ struct FrameCounts {
     bytes_of_whole_windows += other.bytes_of_whole_windows;
     messages += other.messages;
     messages_of_whole_windows += other.messages_of_whole_windows;
+    division_ms += other.division_ms;
     render_ms += other.render_ms;
+    processor_ms += other.processor_ms;
     composite_ms += other.composite_ms;
     return *this;
   }

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -34,11 +35,24 @@ std::size_t available_memory() {
   return 0;
 }
 
+/// For copies of one volume's texels on a rank: half of what is there, as bricks take half as much again, and
+/// other volumes come.
+std::uint64_t room_for_copies(int neighbours) {
+  return available_memory() / (2 * std::uint64_t(neighbours));
+}
+
+std::uint64_t least_over_ranks(compositor::Communicator& communicator, std::uint64_t mine) {
+  std::vector<std::uint64_t> all(std::size_t(communicator.size()));
+  communicator.gather_to_all(compositor::bytes_of(mine), std::as_writable_bytes(std::span(all)));
+  return std::ranges::min(all);
+}
+
 struct NodeOptions {
   std::string control;
   compositor::ExchangeSettings exchange;
   std::string backend = "cpu";
   std::string gpu_memory = "auto";
+  compositor::SortSettings sort;
   compositor::BalanceSettings balance;
   bool any_file = false;
   std::vector<std::string> data;
@@ -77,6 +91,13 @@ void add_options(CLI::App& app, NodeOptions& options) {
       });
   app.add_option("--gpu-memory", options.gpu_memory, "Bytes of texels in textures")
       ->check(CLI::IsMember({"auto"}) | CLI::Range(volume::glsl::least_texture_memory, ~std::uint64_t(0)));
+  app.add_option_function<std::string>(
+      "--sort",
+      [&sort = options.sort](const std::string& name) {
+        if (!compositor::set_sort(sort, name))
+          throw CLI::ValidationError("--sort", "there is no '" + name + "'");
+      },
+      "Whether ranks divide volumes or images: last, first, hybrid or auto");
   app.add_option_function<std::string>(
       "--balance",
       [&balance = options.balance.balance](const std::string& name) {
@@ -125,9 +146,14 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
     if (communicator.rank() == 0) print_move(move);
   };
   try {
-    return run_node(communicator, options.control, limits::stall_patience, options.exchange, chooser.factory(),
-                    options.balance, options.files(),
-                    client_limits(neighbours, std::chrono::milliseconds(options.image_ms)))
+    options.sort.bytes_of_copy = least_over_ranks(communicator, room_for_copies(neighbours));
+    return run_node(communicator, options.control,
+                    {.exchange = options.exchange,
+                     .make_renderer = chooser.factory(),
+                     .sort = options.sort,
+                     .balance = options.balance,
+                     .files = options.files(),
+                     .limits = client_limits(neighbours, std::chrono::milliseconds(options.image_ms))})
                ? 0
                : 1;
   } catch (const std::exception& error) {

@@ -5,12 +5,9 @@
 
 namespace understudy::compositor {
 
-bool run_node(Communicator& communicator, const std::string& control_path,
-              std::chrono::milliseconds stall_patience, const ExchangeSettings& exchange,
-              const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
-              const volume::ReadableFiles& files, const ClientLimits& limits) {
-  RankLoop node(communicator, exchange, make_renderer, balance, files, limits);
-  if (communicator.rank() == 0) return node.lead(control_path, stall_patience);
+bool run_node(Communicator& communicator, const std::string& control_path, const NodeSettings& settings) {
+  RankLoop node(communicator, settings);
+  if (communicator.rank() == 0) return node.lead(control_path, settings.stall_patience);
   node.follow();
   return true;
 }

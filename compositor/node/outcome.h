@@ -75,6 +75,8 @@ inline volume::FrameCounts sum(const std::vector<Outcome>& outcomes) {
     total.blocks_empty += counts.blocks_empty;
     total.nodes_idle += outcome.footprint.empty();
     total.render_ms = std::max(total.render_ms, counts.render_ms);
+    total.division_ms = std::max(total.division_ms, counts.division_ms);
+    total.processor_ms += counts.processor_ms;
   }
   return total;
 }

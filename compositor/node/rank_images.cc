@@ -5,18 +5,56 @@
 #include <utility>
 
 #include "compositor/crop.h"
+#include "compositor/node/image_division.h"
+#include "compositor/node/processor_clock.h"
 #include "compositor/node/rank_loop.h"
 #include "compositor/service/request_message.h"
 #include "volume/occlusion.h"
 
 namespace understudy::compositor {
 
-void RankLoop::begin_request(const Order& order, Bytes payload) {
+void RankLoop::begin_request(const Order& order, Bytes payload, OwnOutcome& mine) {
   ++images_;
   opaque_tiles_.reset();
+  leaf_.reset();
   const auto decode = [&] { return decode_request(payload, pre_integration_tables_[order.client]); };
+  if (may_divide_images_) return begin_divided_image(order.client, decode, mine);
   request_ = rebalancer_ ? rebalancer_->before_image(order.client, decode) : decode();
   begin_image(order.client);
+}
+
+// Nothing that may fail on one rank alone stands between two calls in which all take part.
+void RankLoop::begin_divided_image(std::uint64_t client, const std::function<volume::RenderRequest()>& decode,
+                                   OwnOutcome& mine) {
+  std::exception_ptr trouble;
+  try {
+    request_ = decode();
+    begin_image(client);
+  } catch (...) {
+    trouble = std::current_exception();
+  }
+  const bool agreed = all_agree(communicator_, trouble == nullptr);
+  if (trouble) std::rethrow_exception(trouble);
+  if (!agreed) {
+    leaf_ = volume::Rect{};  // another rank refuses the image
+    return;
+  }
+  const ProcessorClock processors;
+  const auto start = std::chrono::steady_clock::now();
+  divide_image(client);
+  mine.counts.division_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  mine.counts.processor_ms += processors.ms();
+}
+
+void RankLoop::divide_image(std::uint64_t client) {
+  const int members = renderer_.members({client, request_.volume});
+  if (members == communicator_.size()) return;
+  const std::vector<volume::Rect> leaves =
+      compositor::divide_image(communicator_, renderer_, client, request_, whole_);
+  leaf_ = leaves[std::size_t(communicator_.rank() / members)];
+  for (std::size_t rank = 0; rank < footprints_.size(); ++rank)
+    footprints_[rank] = intersection(footprints_[rank], leaves[rank / std::size_t(members)]);
 }
 
 // What all ranks know of the image before they draw it.
@@ -37,9 +75,12 @@ void RankLoop::begin_image(std::uint64_t client) {
 }
 
 void RankLoop::draw(OwnOutcome& mine) {
-  if (communicator_.size() > 1 && task_.only_footprints && volume::can_occlude(request_))
+  const ProcessorClock processors;
+  if (renderer_.members(rendered_) > 1 && task_.only_footprints && volume::can_occlude(request_))
     opaque_tiles_.emplace(communicator_, images_, request_, task_.order, footprints_);
-  image_ = renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr);
+  image_ =
+      renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr, leaf_);
+  mine.counts.processor_ms += processors.ms();
   mine.footprint = image_.rect;
   if (!opaque_tiles_) return;
   mine.control_messages = opaque_tiles_->tell_rest();
@@ -58,7 +99,10 @@ void RankLoop::draw_in_bands(OwnOutcome& mine) {
     if (mine.refused) return std::nullopt;
     try {
       volume::FrameCounts counts;
-      volume::Image image = renderer_.render(task_.client, request_, counts, nullptr, band);
+      const ProcessorClock processors;
+      volume::Image image =
+          renderer_.render(task_.client, request_, counts, nullptr, leaf_ ? intersection(band, *leaf_) : band);
+      counts.processor_ms = processors.ms();
       mine.footprint = bounding(mine.footprint, image.rect);
       // The blocks are those of the whole image each time.
       counts.blocks -= mine.counts.blocks;

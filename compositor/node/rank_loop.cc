@@ -186,7 +186,7 @@ void RankLoop::perform_own_part(const Order& order, Bytes payload, OwnOutcome& m
       break;
     }
     case NodeMessage::render:
-      begin_request(order, payload);
+      begin_request(order, payload, mine);
       if (!order.overlapped) draw(mine);
       break;
     case NodeMessage::integrals:

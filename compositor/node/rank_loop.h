@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@
 #include "compositor/node/clients.h"
 #include "compositor/node/compositing.h"
 #include "compositor/node/image_buffer.h"
+#include "compositor/node/node.h"
 #include "compositor/node/opaque_tiles.h"
 #include "compositor/node/outcome.h"
 #include "compositor/node/overlap.h"
@@ -32,17 +34,17 @@ namespace understudy::compositor {
 
 class RankLoop {
  public:
-  RankLoop(Communicator& communicator, const ExchangeSettings& exchange,
-           const volume::BrickRendererFactory& make_renderer, const BalanceSettings& balance,
-           const volume::ReadableFiles& files, const ClientLimits& limits)
+  RankLoop(Communicator& communicator, const NodeSettings& settings)
       : communicator_(communicator),
-        renderer_(communicator.rank(), communicator.size(), make_renderer, limits),
-        loads_(renderer_, communicator.rank(), files),
-        memories_(communicator, exchange.gather),
-        compositing_(communicator, exchange),
-        overlap_(exchange.overlap) {
-    if (balance.balance != Balance::off && communicator.size() > 1)
-      rebalancer_.emplace(communicator, renderer_, balance);
+        may_divide_images_(settings.sort.sort != Sort::last && communicator.size() > 1),
+        renderer_(communicator.rank(), communicator.size(), settings.make_renderer, settings.limits,
+                  settings.sort),
+        loads_(renderer_, communicator.rank(), settings.files),
+        memories_(communicator, settings.exchange.gather),
+        compositing_(communicator, settings.exchange),
+        overlap_(settings.exchange.overlap) {
+    if (settings.balance.balance != Balance::off && !may_divide_images_ && communicator.size() > 1)
+      rebalancer_.emplace(communicator, renderer_, settings.balance);
   }
 
   bool lead(const std::string& control_path, std::chrono::milliseconds stall_patience);
@@ -61,12 +63,15 @@ class RankLoop {
   void take_volume(NodeMessage message, const Order& order, Bytes payload, OwnOutcome& mine);
   void load(LoadMessage message, const Order& order, Bytes payload, OwnOutcome& mine);
   void integrate(const Order& order, Bytes payload);
-  void begin_request(const Order& order, Bytes payload);
+  void begin_request(const Order& order, Bytes payload, OwnOutcome& mine);
   void reply_to_load(Clients& clients, const Clients::Request& request, const std::vector<Outcome>& outcomes);
   void reply_with_image(Clients& clients, const Clients::Request& request, const Order& order,
                         const std::vector<Outcome>& outcomes, std::chrono::steady_clock::time_point start);
   void after_image(const OwnOutcome& mine, std::vector<Outcome>& outcomes);
   void begin_image(std::uint64_t client);
+  void begin_divided_image(std::uint64_t client, const std::function<volume::RenderRequest()>& decode,
+                           OwnOutcome& mine);
+  void divide_image(std::uint64_t client);
   void draw(OwnOutcome& mine);
   void draw_in_bands(OwnOutcome& mine);
   void clear_hidden(std::vector<Outcome>& outcomes);
@@ -76,6 +81,7 @@ class RankLoop {
   std::vector<std::uint64_t> sum_histograms();
 
   Communicator& communicator_;
+  bool may_divide_images_;  ///< sort-first or hybrid, of some volumes
   RankRenderer renderer_;
   Loads loads_;
   std::optional<Rebalancer> rebalancer_;  // where there is something to balance
@@ -95,6 +101,7 @@ class RankLoop {
   ImageTask task_;
   std::vector<volume::Rect> footprints_;  // by rank: what it could show at most
   volume::Rect whole_;                    // what all of them could
+  std::optional<volume::Rect> leaf_;      // of the image, where groups of ranks divide it: this group's
   volume::FrameCounts travelled_;         // while the image was drawn
   volume::Image image_;
   std::uint32_t images_ = 0;  // that were asked for, this one too

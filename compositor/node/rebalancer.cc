@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compositor/balance/moves.h"
+#include "compositor/node/image_division.h"
 #include "volume/cell_lattice.h"
 #include "volume/raycast/expected_samples.h"
 #include "volume/request.h"
@@ -74,13 +75,6 @@ double deviation(std::span<const RankWork> work) {
 
 Rebalancer::Rebalancer(Communicator& communicator, RankRenderer& renderer, BalanceSettings settings)
     : communicator_(communicator), renderer_(renderer), settings_(std::move(settings)) {}
-
-bool Rebalancer::all_agree(bool mine) {
-  const auto vote = std::uint8_t(mine);
-  std::vector<std::uint8_t> votes(std::size_t(communicator_.size()));
-  communicator_.gather_to_all(std::as_bytes(std::span(&vote, 1)), std::as_writable_bytes(std::span(votes)));
-  return std::ranges::count(votes, 0) == 0;
-}
 
 /// What of an image can be known, and fail, on one rank alone: its request, and what this rank expects it to
 /// cost.
@@ -156,7 +150,7 @@ volume::RenderRequest Rebalancer::before_image(std::uint64_t client,
   } catch (...) {
     trouble = std::current_exception();
   }
-  const bool agreed = all_agree(trouble == nullptr);
+  const bool agreed = all_agree(communicator_, trouble == nullptr);
   if (trouble) std::rethrow_exception(trouble);
   if (!agreed) return std::move(*expected.request);  // another rank refuses it
 

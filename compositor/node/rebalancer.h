@@ -80,7 +80,6 @@ class Rebalancer {
                       MoveFigures& figures);
   void announce_blocks(Traffic& traffic, const volume::BrickStore& bricks);
   void exchange_blocks(Traffic& traffic);
-  bool all_agree(bool mine);
   std::size_t most_blocks_here(const volume::BrickStore& bricks) const;
 
   Communicator& communicator_;

@@ -70,6 +70,7 @@ std::vector<std::byte> encode(std::span<const RankLoad> ranks) {
     for (const std::array<int, 3>& corner : {rank.cells.low, rank.cells.high})
       for (const int cell : corner) out.integer(cell);
     out.real(rank.image_ms);
+    out.real(rank.image_processor_ms);
     out.integer(std::int64_t(rank.image_samples));
   }
   return out.bytes();
@@ -88,6 +89,7 @@ std::vector<RankLoad> decode_loads(std::span<const std::byte> payload) {
     for (std::array<int, 3>* corner : {&rank.cells.low, &rank.cells.high})
       for (int& cell : *corner) cell = in.small("cells of a rank", -1, volume::max_axis_texels + 1);
     rank.image_ms = in.real("image_ms of a rank");
+    rank.image_processor_ms = in.real("image_processor_ms of a rank");
     rank.image_samples = in.word("image_samples of a rank");
   }
   in.end();

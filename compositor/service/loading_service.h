@@ -42,6 +42,7 @@ struct RankLoad {
   volume::TexelBox cells;  ///< its own, as the volume is divided now
   // Of the last image, where there was one.
   double image_ms = 0;
+  double image_processor_ms = 0;    ///< of all its threads
   std::uint64_t image_samples = 0;  ///< taken
 
   bool done() const { return texels_done == texels_in_all; }

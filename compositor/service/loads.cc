@@ -71,6 +71,7 @@ void Loads::drew(VolumeKey key, const volume::FrameCounts& counts) {
   const auto found = loads_.find(key);
   if (found == loads_.end()) return;
   found->second.figures.image_ms = counts.render_ms;
+  found->second.figures.image_processor_ms = counts.processor_ms;
   found->second.figures.image_samples = counts.samples_taken;
 }
 

@@ -105,7 +105,9 @@ std::vector<std::byte> encode(const RenderedReply& reply) {
         counts.dominated_samples, counts.blocks, counts.blocks_empty, counts.nodes_idle, counts.bytes_exchanged,
         counts.bytes_of_whole_windows, counts.messages, counts.messages_of_whole_windows})
     out.integer(std::int64_t(value));
+  out.real(counts.division_ms);
   out.real(counts.render_ms);
+  out.real(counts.processor_ms);
   out.real(counts.composite_ms);
   return out.bytes();
 }
@@ -121,7 +123,9 @@ RenderedReply decode_rendered(std::span<const std::byte> payload) {
         &counts.bytes_exchanged, &counts.bytes_of_whole_windows, &counts.messages,
         &counts.messages_of_whole_windows})
     *value = in.word("counts");
+  counts.division_ms = in.real("counts.division_ms");
   counts.render_ms = in.real("counts.render_ms");
+  counts.processor_ms = in.real("counts.processor_ms");
   counts.composite_ms = in.real("counts.composite_ms");
   in.end();
   return reply;

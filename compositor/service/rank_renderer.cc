@@ -37,18 +37,24 @@ struct RankRenderer::Volume {
   KdTree tree;
   BrickStore bricks;
   std::unique_ptr<BrickRenderer> renderer;
-  std::vector<TexelBox> shown;  ///< by each rank
+  std::vector<TexelBox> shown;  ///< by each member of a group
   enum class State { filling, complete, changing } state = State::filling;
   std::uint64_t version;
   std::vector<std::size_t> changed_blocks;
 
-  Volume(const VolumeDescription& description, int rank, int ranks, const BrickRendererFactory& make_renderer)
-      : tree(description, ranks),
-        bricks(description, tree.box(rank)),
+  /// Of member `member` of so many.
+  Volume(const VolumeDescription& description, int member, int members,
+         const BrickRendererFactory& make_renderer)
+      : tree(description, members),
+        bricks(description, tree.box(member)),
         renderer(make_renderer(bricks)),
         version(description.version) {
     find_shown();
   }
+
+  int members() const { return tree.ranks(); }
+  int member(int rank) const { return rank % members(); }
+  int group(int rank) const { return rank / members(); }
 
   void find_shown() {
     shown.clear();
@@ -75,9 +81,13 @@ auto refusing(Call call) {
   }
 }
 
-/// What one of `ranks` ranks has of the stored texels.
-std::uint64_t share_of(const VolumeDescription& description, int ranks) {
-  return texels_in(description.stored) * bytes_per_texel(description.type) / std::uint64_t(ranks);
+std::uint64_t stored_bytes(const VolumeDescription& description) {
+  return texels_in(description.stored) * bytes_per_texel(description.type);
+}
+
+/// What one of the ranks that hold a copy together has of the stored texels.
+std::uint64_t share_of(const VolumeDescription& description, int members) {
+  return stored_bytes(description) / std::uint64_t(members);
 }
 
 void keep_limits_of_one(const VolumeDescription& description) {
@@ -119,8 +129,9 @@ void refuse_excess(const RenderRequest& request) {
 
 }  // namespace
 
-RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits)
-    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)), limits_(limits) {}
+RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits,
+                           const SortSettings& sort)
+    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)), limits_(limits), sort_(sort) {}
 RankRenderer::~RankRenderer() = default;
 
 RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
@@ -145,11 +156,11 @@ void RankRenderer::keep_limits(VolumeKey key, const VolumeDescription& descripti
   std::uint64_t of_client = 0;
   for (const auto& [held, volume] : volumes_) {
     if (held == key) continue;  // makes room for this one
-    const std::uint64_t share = share_of(volume->bricks.description(), ranks_);
+    const std::uint64_t share = share_of(volume->bricks.description(), volume->members());
     in_all += share;
     if (held.client == key.client) of_client += share;
   }
-  const std::uint64_t share = share_of(description, ranks_);
+  const std::uint64_t share = share_of(description, members_of_group(sort_, ranks_, stored_bytes(description)));
   if (of_client + share > limits_.bytes_of_client)
     throw RequestRefused(
         fmt::format("a node's share of volume {} is {} MiB, and of this client it holds {} MiB and may hold {} "
@@ -173,8 +184,10 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
     throw RequestRefused(fmt::format("{} volumes are held already: forget one first", held));
   // The old one goes first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
-  refusing(
-      [&] { volumes_.emplace(key, std::make_unique<Volume>(description, rank_, ranks_, make_renderer_)); });
+  const int members = members_of_group(sort_, ranks_, stored_bytes(description));
+  refusing([&] {
+    volumes_.emplace(key, std::make_unique<Volume>(description, rank_ % members, members, make_renderer_));
+  });
 }
 
 void RankRenderer::begin_change(VolumeKey key, std::uint64_t version) {
@@ -210,7 +223,8 @@ std::vector<TexelBox> RankRenderer::shares(VolumeKey key, std::span<const TexelB
   const Volume& volume = find(key);
   std::vector<TexelBox> shares;
   for (const TexelBox& box : boxes)
-    if (const TexelBox share = intersection(box, volume.shown[std::size_t(rank)]); !is_empty(share))
+    if (const TexelBox share = intersection(box, volume.shown[std::size_t(volume.member(rank))]);
+        !is_empty(share))
       shares.push_back(share);
   return shares;
 }
@@ -243,14 +257,23 @@ std::size_t RankRenderer::bytes(VolumeKey key) const {
 }
 
 const TexelBox& RankRenderer::cells(VolumeKey key) const {
-  return find(key).tree.box(rank_);
+  const Volume& volume = find(key);
+  return volume.tree.box(volume.member(rank_));
+}
+
+int RankRenderer::members(VolumeKey key) const {
+  return find(key).members();
 }
 
 std::vector<std::uint64_t> RankRenderer::histogram(VolumeKey key, const HistogramBins& bins) const {
   const Volume& volume = find(key);
   if (volume.state != Volume::State::complete)
     throw RequestRefused(fmt::format("volume {} is not complete yet", key.volume));
-  return refusing([&] { return volume::histogram(volume.bricks, bins); });
+  return refusing([&] {
+    std::vector<std::uint64_t> counts = volume::histogram(volume.bricks, bins);
+    if (volume.group(rank_) > 0) std::ranges::fill(counts, 0);
+    return counts;
+  });
 }
 
 void RankRenderer::end(VolumeKey key) {
@@ -299,7 +322,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     // Before memory is asked for.
     if (image_until_) refuse_excess(request);
     const Rect everything = request.optimizations.footprints
-                                ? footprint(request, description, volume.tree.box(rank_))
+                                ? footprint(request, description, volume.tree.box(volume.member(rank_)))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
     draw(volume, request, result, counts, occlusion);
@@ -309,6 +332,16 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
   counts.render_ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return image;
+}
+
+std::vector<float> RankRenderer::estimated_costs(std::uint64_t client, const RenderRequest& request,
+                                                 std::span<const Rect> tiles) {
+  Volume& volume = find_complete(client, request);
+  return refusing([&] {
+    std::vector<float> costs(tiles.size());
+    volume.renderer->estimate_costs(request, tiles, costs);
+    return costs;
+  });
 }
 
 std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const RenderRequest& request,
@@ -326,10 +359,12 @@ std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const Re
     const Medium medium = Medium::of_samples(*function, 1);
     std::vector<IntegralPart> parts(pixels.size());
     std::size_t done = 0;
-    const std::size_t at_once = std::size_t(std::max(1, tbb::this_task_arena::max_concurrency()));
+    const std::size_t groups = std::size_t(ranks_ / volume.members());
+    const std::size_t at_once = groups * std::size_t(std::max(1, tbb::this_task_arena::max_concurrency()));
     while (done < pixels.size()) {
       const std::size_t end = std::min(done + at_once, pixels.size());
       tbb::parallel_for(done, end, [&](std::size_t i) {
+        if (i % groups != std::size_t(volume.group(rank_))) return;
         const RayIntegral seen =
             stored_pixel_integral(volume.bricks, request, medium, pixels[i].x, pixels[i].y, integral_tolerance);
         parts[i] = {seen.colour, seen.optical_depth};
@@ -349,8 +384,10 @@ std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderReq
     validate(volume.bricks.description(), request);
     std::vector<Rect> result;
     result.reserve(std::size_t(ranks_));
-    for (int rank = 0; rank < ranks_; ++rank)
-      result.push_back(footprint(request, volume.bricks.description(), volume.tree.box(rank)));
+    for (int member = 0; member < volume.members(); ++member)
+      result.push_back(footprint(request, volume.bricks.description(), volume.tree.box(member)));
+    for (int rank = volume.members(); rank < ranks_; ++rank)
+      result.push_back(result[std::size_t(volume.member(rank))]);
     return result;
   });
 }
@@ -385,7 +422,13 @@ void RankRenderer::divide(
 
 std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const RenderRequest& request) const {
   const Volume& volume = find_complete(client, request);
-  return refusing([&] { return volume.tree.visibility_order(request); });
+  return refusing([&] {
+    std::vector<int> order = volume.tree.visibility_order(request);
+    // Groups show other pixels: in any order.
+    for (int rank = volume.members(); rank < ranks_; ++rank)
+      order.push_back(order[std::size_t(volume.member(rank))] + volume.members() * volume.group(rank));
+    return order;
+  });
 }
 
 }  // namespace understudy::compositor

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one rank keeps of its clients' volumes, and what it draws of them: the bricks of its own box of each
-// volume's kd-tree. The embedded service is the only rank of one.
+// volume's kd-tree. Groups of ranks hold a copy of a volume each (sort/sort.h); of sort-last there is one
+// group. The embedded service is the only rank of one.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "compositor/service/client_limits.h"
+#include "compositor/sort/sort.h"
 #include "compositor/transport/socket.h"
 #include "volume/raycast/brick_renderer.h"
 #include "volume/rect.h"
@@ -47,7 +49,7 @@ class RankRenderer {
  public:
   /// Rank `rank` of `ranks`, whose bricks are drawn by what `make_renderer` makes, within `limits`.
   RankRenderer(int rank, int ranks, volume::BrickRendererFactory make_renderer = volume::cpu_renderer,
-               const ClientLimits& limits = client_limits(1, {}));
+               const ClientLimits& limits = client_limits(1, {}), const SortSettings& sort = {});
   ~RankRenderer();
 
   void begin(std::uint64_t client, const volume::VolumeDescription& description);
@@ -64,7 +66,10 @@ class RankRenderer {
   std::size_t bytes(VolumeKey key) const;
   /// This rank's own cells.
   const volume::TexelBox& cells(VolumeKey key) const;
-  /// How many texels of a complete volume, those of this rank's own cells, each bin has.
+  /// How many ranks hold a copy of the volume together.
+  int members(VolumeKey key) const;
+  /// How many texels of a complete volume, those of this rank's own cells, each bin has; none in all groups but
+  /// the first.
   std::vector<std::uint64_t> histogram(VolumeKey key, const volume::HistogramBins& bins) const;
   void end(VolumeKey key);
   void forget(VolumeKey key);
@@ -79,16 +84,21 @@ class RankRenderer {
   volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts,
                        volume::Occlusion* occlusion = nullptr,
                        const std::optional<volume::Rect>& part = std::nullopt);
+  /// What each of `tiles` is expected to cost this rank, in a unit that all ranks with the same renderer share.
+  std::vector<float> estimated_costs(std::uint64_t client, const volume::RenderRequest& request,
+                                     std::span<const volume::Rect> tiles);
   /// By rank: outside it a rank's image is clear whatever its texels.
   std::vector<volume::Rect> footprints(std::uint64_t client, const volume::RenderRequest& request) const;
-  /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals()).
+  /// This rank's parts of pixels' integrals, of as many pixels as time allows (see RenderService::integrals());
+  /// of a pixel, one group tells something.
   std::vector<IntegralPart> integrals(std::uint64_t client, const volume::RenderRequest& request,
                                       std::span<const volume::Pixel> pixels, double most_ms) const;
-  /// How a complete volume is divided, and what this rank holds of it. Both refuse what render() would.
+  /// How the members of a group divide a complete volume, and what this rank holds of it. Both refuse what
+  /// render() would.
   const volume::Partition& partition(std::uint64_t client, const volume::RenderRequest& request) const;
   const volume::BrickStore& bricks(std::uint64_t client, const volume::RenderRequest& request) const;
-  /// Divides a complete volume otherwise. Blocks that this rank comes to hold are asked of `packed_block`, as
-  /// BrickStore::reshape() does.
+  /// Divides a complete volume, of which there is one copy, otherwise. Blocks that this rank comes to hold are
+  /// asked of `packed_block`, as BrickStore::reshape() does.
   void divide(VolumeKey key, const volume::Partition& partition,
               const std::function<std::vector<std::byte>(const std::array<int, 3>& place)>& packed_block);
   /// All ranks, front first.
@@ -107,6 +117,7 @@ class RankRenderer {
   int ranks_;
   volume::BrickRendererFactory make_renderer_;
   ClientLimits limits_;
+  SortSettings sort_;
   std::optional<Deadline> image_until_;
   std::map<VolumeKey, std::unique_ptr<Volume>> volumes_;
 };

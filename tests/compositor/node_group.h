@@ -37,11 +37,13 @@ class Group {
   using Wrap = std::function<void(Communicator&, const std::function<void(Communicator&)>&)>;
 
   Group(int ranks, const std::string& path, milliseconds stall_patience = limits::stall_patience,
-        Wrap wrap = {}, ExchangeSettings exchange = drawn_first)
+        Wrap wrap = {}, ExchangeSettings exchange = drawn_first, SortSettings sort = {})
       : thread_([=, this] {
           try {
             run_ranks(ranks, [&](Communicator& communicator) {
-              const auto run = [&](Communicator& l) { run_node(l, path, stall_patience, exchange); };
+              const auto run = [&](Communicator& l) {
+                run_node(l, path, {.stall_patience = stall_patience, .exchange = exchange, .sort = sort});
+              };
               wrap ? wrap(communicator, run) : run(communicator);
             });
           } catch (const std::exception& error) {
@@ -65,8 +67,9 @@ class NodeGroupTest : public ::testing::Test {
   }
 
   Group& start(int ranks, milliseconds stall_patience = limits::stall_patience, const Group::Wrap& wrap = {},
-               const ExchangeSettings& exchange = drawn_first) {
-    groups_.push_back(std::make_unique<Group>(ranks, socket_of_nodes(path_), stall_patience, wrap, exchange));
+               const ExchangeSettings& exchange = drawn_first, const SortSettings& sort = {}) {
+    groups_.push_back(
+        std::make_unique<Group>(ranks, socket_of_nodes(path_), stall_patience, wrap, exchange, sort));
     EXPECT_TRUE(launcher_->wait_for_group());
     return *groups_.back();
   }

@@ -296,10 +296,12 @@ TEST(Rebalancer, WholeNodesWithARankSlowedToASixteenthShowTheSameImages) {
     group = std::jthread([&] {
       run_ranks(4, [&](Communicator& communicator) {
         const int times = communicator.rank() == 1 ? 16 : 1;
-        run_node(
-            communicator, socket_of_nodes(path), limits::stall_patience, {},
-            [times](const volume::BrickStore& store) { return std::make_unique<Laborious>(store, times); },
-            figures.settings(balance));
+        NodeSettings settings;
+        settings.make_renderer = [times](const volume::BrickStore& store) {
+          return std::make_unique<Laborious>(store, times);
+        };
+        settings.balance = figures.settings(balance);
+        run_node(communicator, socket_of_nodes(path), settings);
       });
     });
     ASSERT_TRUE(launcher.wait_for_group());

@@ -110,6 +110,11 @@ class BackendChooser::Renderer final : public BrickRenderer {
     cpu_->blocks_changed(blocks);
     if (gl_) gl_->blocks_changed(blocks);
   }
+  // OpenGL takes longer for the same samples, but much the same part of it for the same part of them.
+  void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
+                      std::span<float> costs) override {
+    cpu_->estimate_costs(request, tiles, costs);
+  }
 
  private:
   void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) override {

@@ -14,6 +14,7 @@ class BrickStore;
 class Occlusion;
 struct FrameCounts;
 struct Image;
+struct Rect;
 struct RenderRequest;
 
 class BrickRenderer {
@@ -28,6 +29,11 @@ class BrickRenderer {
   void render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion = nullptr) {
     draw(request, out, counts, occlusion);
   }
+
+  /// What render() may be expected to cost in each of `tiles`, in a unit of its own; `costs` has a number for
+  /// each tile. Where a renderer cannot tell, their pixels.
+  virtual void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
+                              std::span<float> costs);
 
  protected:
   virtual void draw(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) = 0;

@@ -164,6 +164,35 @@ FrameCounts render_tiles(const Scene& scene, const RenderRequest& request, const
   return sum;
 }
 
+/// Between the pixels of rays that are cast for an estimate.
+constexpr int estimate_spacing = 8;
+/// What setting up a ray takes, in samples (docs/scaling.md: 42 and 3 ns).
+constexpr float samples_per_ray = 14;
+
+/// Of one tile, by some of the rays through it.
+float estimated_cost(const Scene& scene, Kernel kernel, const RenderRequest& request, const RaySetup& spread,
+                     const Rect& tile) {
+  RayPacket packet;
+  alignas(64) std::array<float, 4 * packet_rays> rgba;
+  KernelCounts done;
+  int rays = 0;
+  // Rays whose pixels lie in the tile.
+  const auto first = [](int low) { return (low + estimate_spacing / 2 - 1) / estimate_spacing; };
+  const int left = first(tile.x), right = first(tile.x + tile.width);
+  const int bottom = first(tile.y), top = first(tile.y + tile.height);
+  for (int y = bottom; y < top; y += packet_height)
+    for (int x = left; x < right; x += tile_width) {
+      if (!set_up_packet(spread, request, x, y, std::min(tile_width, right - x),
+                         std::min(packet_height, top - y), packet))
+        continue;
+      for (std::size_t r = 0; r < packet_rays; ++r) rays += packet.first[r] <= packet.last[r] ? 1 : 0;
+      kernel(scene, packet, rgba.data(), done);
+    }
+  const int cast = (right - left) * (top - bottom);
+  if (cast <= 0) return 0;
+  return (float(done.samples_taken) + samples_per_ray * float(rays)) * float(tile.pixels()) / float(cast);
+}
+
 }  // namespace
 
 RayCaster::RayCaster(const BrickStore& store) : store_(&store) {}
@@ -176,6 +205,18 @@ void RayCaster::blocks_changed(std::span<const std::size_t> blocks) {
     if (prepared) prepared->blocks_changed(*store_, blocks);
 }
 
+RayCaster::Prepared& RayCaster::prepare(const RenderRequest& request) {
+  const PreparedKey prepared_key = prepared_key_of(store_->description(), request);
+  const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
+    return prepared && prepared->prepared_key == prepared_key &&
+           prepared->classification == request.classification;
+  };
+  if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
+  if (!fits(prepared_[0]))
+    prepared_[0] = std::make_unique<Prepared>(*store_, request.classification, prepared_key);
+  return *prepared_[0];
+}
+
 void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion) {
   const BrickStore& store = *store_;
   if (!store.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
@@ -186,15 +227,7 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   std::fill(out.rgba.begin(), out.rgba.end(), neutral_value(request.op));
   if (store.empty()) return;
 
-  const PreparedKey prepared_key = prepared_key_of(store.description(), request);
-  const auto fits = [&](const std::unique_ptr<Prepared>& prepared) {
-    return prepared && prepared->prepared_key == prepared_key &&
-           prepared->classification == request.classification;
-  };
-  if (!fits(prepared_[0])) prepared_[0].swap(prepared_[1]);
-  if (!fits(prepared_[0]))
-    prepared_[0] = std::make_unique<Prepared>(store, request.classification, prepared_key);
-  Prepared& prepared = *prepared_[0];
+  Prepared& prepared = prepare(request);
   counts.blocks += store.blocks();
   counts.blocks_empty += prepared.skip.empty_bricks();
 
@@ -216,6 +249,28 @@ void RayCaster::render(const RenderRequest& request, Image& out, FrameCounts& co
   counts.samples_taken += drawn.samples_taken;
   counts.samples_hidden += drawn.samples_hidden;
   if (scene.bounds != nullptr) counts.dominated_samples += drawn.samples - drawn.samples_taken;
+}
+
+void RayCaster::estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
+                               std::span<float> costs) {
+  const BrickStore& store = *store_;
+  if (!store.finished()) throw std::logic_error("rendering a volume whose slices have not all arrived");
+  validate(store.description(), request);
+  std::ranges::fill(costs, 0.0F);
+  if (store.empty() || (!request.steps && request.planes.count == 0)) return;
+  Prepared& prepared = prepare(request);
+  RaySetup spread(request, store);
+  Scene scene = scene_of(request, store, spread);
+  spread.spread(estimate_spacing);
+  prepared.complete(scene, request, store);
+  std::optional<FogTable> fog;
+  if (request.fog) scene.fog = &fog.emplace(*request.fog, store);
+  const SegmentScene segments(store.description(), request);
+  if (walks_segments(request)) scene.segments = &segments;
+  const Kernel kernel = kernel_of(scene);
+  tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
+    costs[i] = estimated_cost(scene, kernel, request, spread, tiles[i]);
+  });
 }
 
 void raycast(const BrickStore& store, const RenderRequest& request, Image& out, FrameCounts& counts) {

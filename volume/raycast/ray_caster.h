@@ -22,6 +22,7 @@ class BrickStore;
 class Occlusion;
 struct FrameCounts;
 struct Image;
+struct Rect;
 struct RenderRequest;
 struct VolumeDescription;
 
@@ -64,8 +65,15 @@ class RayCaster {
   /// tiles count as hidden.
   void render(const RenderRequest& request, Image& out, FrameCounts& counts, Occlusion* occlusion = nullptr);
 
+  /// What render() would cost in each of `tiles`, in samples: some of their rays are cast, a 64th of all. Sums
+  /// over ranks are those of the image, but for what ranks in front hide. `costs` has a number for each tile.
+  /// Throws as render() does.
+  void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles, std::span<float> costs);
+
  private:
   struct Prepared;
+
+  Prepared& prepare(const RenderRequest& request);
 
   const BrickStore* store_;
   /// The latest first: a viewer whose framebuffer keeps alpha asks for two images of every frame.

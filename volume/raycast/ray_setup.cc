@@ -365,6 +365,14 @@ void RaySetup::set_viewport(const Rect& viewport) {
   first_y = (0.5 - viewport.y) * pixel_to_y - 1;
 }
 
+void RaySetup::spread(int pixels) {
+  pixels_apart = pixels;
+  first_x += pixel_of(0) * pixel_to_x;
+  pixel_to_x *= pixels;
+  first_y += pixel_of(0) * pixel_to_y;
+  pixel_to_y *= pixels;
+}
+
 void RaySetup::set_cells(const RenderRequest& request, const BrickStore& store, const TexelBox& owned) {
   const CellLattice& lattice = store.lattice();
   for (int axis = 0; axis < 3; ++axis) {
@@ -391,16 +399,17 @@ bool set_up_packet(const RaySetup& setup, const RenderRequest& request, int x, i
     const bool inside = row < height;
     if (inside && request.depth) {
       const DepthImage& image = *request.depth;
-      const int v = y + row - image.rect.y;
+      const int v = setup.pixel_of(y + row) - image.rect.y;
       for (int column = 0; column < tile_width; ++column) {
-        const int u = x + column - image.rect.x;
+        const int u = setup.pixel_of(x + column) - image.rect.x;
         const bool known = u >= 0 && v >= 0 && u < image.rect.width && v < image.rect.height;
         depth[column] = known ? double(image.depth[std::size_t(v) * image.rect.width + u]) : beyond_every_depth;
       }
     }
     if (setup.steps && setup.steps->offsets)
       for (int column = 0; column < tile_width; ++column)
-        begins[column] = setup.steps->first + setup.steps->offsets->at(x + column, y + row);
+        begins[column] =
+            setup.steps->first + setup.steps->offsets->at(setup.pixel_of(x + column), setup.pixel_of(y + row));
     HWY_DYNAMIC_DISPATCH(set_up_row)
     (setup, request.depth ? depth.data() : nullptr, begins.data(), request.depth && request.depth->or_equal,
      request.depth_range, x, y + row, inside ? width : 0, std::size_t(row) * tile_width, packet);

@@ -45,6 +45,12 @@ struct RaySetup {
   /// As if `owned`, a part of them, were all that the store owns.
   RaySetup(const RenderRequest& request, const BrickStore& store, const TexelBox& owned);
 
+  /// From now on ray (x, y) is that of a pixel in the middle of the square of `pixels` x `pixels` whose lowest
+  /// one is pixels * (x, y): few rays stand for all. Once.
+  void spread(int pixels);
+  /// The pixel of ray `at` along an axis.
+  int pixel_of(int at) const { return at * pixels_apart + pixels_apart / 2; }
+
   LinearInPixel det;
   double smallest_det = 0;             ///< rays with |det| under this run parallel to the planes
   std::array<IndexBound, 3> position;  ///< sample position in lattice coordinates, times det
@@ -55,6 +61,7 @@ struct RaySetup {
   IndexBound clip_z, clip_w;  ///< clip coordinates of sample i, times det
   double pixel_to_x = 0, first_x = 0;  ///< X of the centre of pixel x: first_x + x pixel_to_x
   double pixel_to_y = 0, first_y = 0;
+  int pixels_apart = 1;  ///< neighbouring rays, along both axes
   int last_plane = 0;
   bool segments = false;  ///< what lies between samples counts
   bool ends = false;      ///< the packet's begin and end are made
@@ -95,9 +102,9 @@ struct RayPacket {
   alignas(64) std::array<float, packet_rays> end;
 };
 
-/// Sets up the rays of the pixels (x .. x + width, y .. y + height); the rest of the packet gets rays without
-/// samples. Rays without samples stand still at the lowest owned cell, where it is safe to sample. Returns
-/// whether any ray has a sample.
+/// Sets up the rays (x .. x + width, y .. y + height), one a pixel unless they are spread; the rest of the
+/// packet gets rays without samples. Rays without samples stand still at the lowest owned cell, where it is
+/// safe to sample. Returns whether any ray has a sample.
 bool set_up_packet(const RaySetup& setup, const RenderRequest& request, int x, int y, int width, int height,
                    RayPacket& packet);
 

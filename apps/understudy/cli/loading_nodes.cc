@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "apps/understudy/cli/node_options.h"
+#include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/hosts/placement.h"
 #include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/launch/own_node_group.h"
@@ -44,6 +45,7 @@ void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
   add_connection_options(subcommand, arguments.connection);
   add_backend_option(subcommand, arguments.choices.backend);
   add_gpu_memory_option(subcommand, arguments.choices.gpu_memory);
+  add_sort_option(subcommand, arguments.choices.sort);
   add_exchange_options(subcommand, arguments.choices);
 }
 

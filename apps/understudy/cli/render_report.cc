@@ -105,7 +105,9 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
   report["time_ms"] = {{"open", figures.open_ms},
                        {"load", figures.load_ms},
                        {"frame_median", median(figures.frame_ms)},
+                       {"division", counts.division_ms},
                        {"render", counts.render_ms},
+                       {"processors", counts.processor_ms},
                        {"composite", counts.composite_ms}};
   report["frames_ms"] = figures.frame_ms;
   report["samples"] = counts.samples;
@@ -122,7 +124,10 @@ void write_render_report(const std::string& path, const RenderFigures& figures) 
     report["ranks"].push_back({{"texels", rank.texels_in_all},
                                {"bytes_read", rank.bytes_read},
                                {"brick_bytes", rank.brick_bytes},
-                               {"peak_bytes", rank.peak_bytes}});
+                               {"peak_bytes", rank.peak_bytes},
+                               {"image_ms", rank.image_ms},
+                               {"image_processor_ms", rank.image_processor_ms},
+                               {"samples_taken", rank.image_samples}});
   std::ofstream file(path);
   file << report.dump(2) << '\n';
   file.close();

@@ -12,6 +12,7 @@
 #include "apps/understudy/cli/node_options.h"
 #include "apps/understudy/cli/play.h"
 #include "apps/understudy/cli/run.h"
+#include "apps/understudy/cli/sort_option.h"
 #include "apps/understudy/launch/backend_option.h"
 #include "apps/understudy/processes/installation.h"
 #include "spu/registry/assemble.h"
@@ -65,6 +66,7 @@ void add_replay(CLI::App& app, std::function<int()>& chosen) {
   add_options_of_the_table(*subcommand, arguments, without);
   add_backend_option(*subcommand, arguments->backend);
   add_gpu_memory_option(*subcommand, arguments->gpu_memory);
+  add_sort_option(*subcommand, arguments->sort);
   add_balance_option(*subcommand, arguments->balance);
   add_hostfile_option(*subcommand, arguments->hostfile);
   add_connection_options(*subcommand, arguments->connection);

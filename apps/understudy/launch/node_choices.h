@@ -15,6 +15,7 @@ struct NodeChoices {
   std::string packed = "auto";    ///< whether pixels are packed for their way
   std::string backend = "cpu";    ///< who casts rays
   std::string gpu_memory = "auto";
+  std::string sort = "last";      ///< whether ranks divide volumes or images
   std::string balance = "off";    ///< who gets how much of a volume
   std::vector<std::string> data;  ///< folders that clients may load volumes from
   bool any_file = false;          ///< clients are this user's own commands
@@ -23,7 +24,7 @@ struct NodeChoices {
   std::vector<std::string> words() const {
     std::vector<std::string> all{"--exchange",   exchange,   "--pixels",  pixels,  "--gather",  gather,
                                  "--packed",     packed,     "--overlap", overlap, "--backend", backend,
-                                 "--gpu-memory", gpu_memory, "--balance", balance};
+                                 "--gpu-memory", gpu_memory, "--sort",    sort,    "--balance", balance};
     for (const std::string& folder : data) all.insert(all.end(), {"--data", folder});
     if (any_file) all.emplace_back("--any-file");
     all.insert(all.end(), {"--image-time", std::to_string(image_ms)});

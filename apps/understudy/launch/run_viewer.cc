@@ -308,6 +308,7 @@ std::optional<NodeGroupPlan> nodes_of(const RunArguments& arguments, const RunPl
                         .overlap = options.overlap,
                         .backend = arguments.backend,
                         .gpu_memory = arguments.gpu_memory,
+                        .sort = arguments.sort,
                         .balance = arguments.balance}};
 }
 
@@ -318,6 +319,9 @@ void tell_options_without_effect(const RunArguments& arguments, const RunPlan& p
         "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
         "the CPU, as the viewer's own process has OpenGL to itself",
         arguments.backend));
+  if (!has_nodes && arguments.sort != "last")
+    say(fmt::format("--sort {} is for nodes of this run (-n N), or give it to understudy serve",
+                    arguments.sort));
   if (!has_nodes && arguments.balance != "off")
     say(fmt::format("--balance {} is for nodes of this run (-n N), or give it to understudy serve",
                     arguments.balance));

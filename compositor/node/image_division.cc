@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/node/image_division.h"
+
+#include <algorithm>
+#include <exception>
+#include <span>
+
+#include "compositor/service/rank_renderer.h"
+#include "compositor/sort/cost_image.h"
+#include "compositor/sort/image_leaves.h"
+#include "volume/request.h"
+
+namespace understudy::compositor {
+
+using volume::Rect;
+
+bool all_agree(Communicator& communicator, bool mine) {
+  const auto vote = std::uint8_t(mine);
+  std::vector<std::uint8_t> votes(std::size_t(communicator.size()));
+  communicator.gather_to_all(std::as_bytes(std::span(&vote, 1)), std::as_writable_bytes(std::span(votes)));
+  return std::ranges::count(votes, 0) == 0;
+}
+
+std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& renderer, std::uint64_t client,
+                               const volume::RenderRequest& request, const Rect& pixels) {
+  const auto members = std::size_t(renderer.members({client, request.volume}));
+  const auto ranks = std::size_t(communicator.size());
+  const std::size_t groups = ranks / members;
+  const std::size_t mine = std::size_t(communicator.rank()) / members;
+  const std::vector<Rect> tiles = tiles_of(pixels);
+  // Of neighbouring tiles each is another group's, so that none estimates all that is dear.
+  std::vector<Rect> own;
+  for (std::size_t tile = mine; tile < tiles.size(); tile += groups) own.push_back(tiles[tile]);
+  const std::size_t most = (tiles.size() + groups - 1) / groups;
+  std::vector<float> told(most), heard(most * ranks);
+  try {
+    std::ranges::copy(renderer.estimated_costs(client, request, own), told.begin());
+  } catch (const std::exception&) {
+    std::ranges::fill(told, 0.0F);  // what it cannot estimate it cannot draw, and will say so
+  }
+  communicator.gather_to_all(std::as_bytes(std::span(told)), std::as_writable_bytes(std::span(heard)));
+  std::vector<float> costs(tiles.size());
+  for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+    const std::size_t group = tile % groups;
+    for (std::size_t member = 0; member < members; ++member)
+      costs[tile] += heard[(group * members + member) * most + tile / groups];
+  }
+  return leaves_of_equal_cost(CostImage(pixels, costs), int(groups));
+}
+
+}  // namespace understudy::compositor

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sort-first: an image cut by a kd-tree into leaves that cost the same. The cuts are found by binary search in
+// the summed-area table of the costs. (Moloney, Weiskopf, Moeller, Strengert 2007, section 4.)
+#pragma once
+
+#include <vector>
+
+#include "compositor/sort/cost_image.h"
+#include "volume/rect.h"
+
+namespace understudy::compositor {
+
+/// Cuts lie at multiples of so many pixels: a packet of rays is as wide.
+constexpr int leaf_alignment = 4;
+
+/// `count` >= 1 rectangles that tile `costs.pixels()`; some are empty where there are more leaves than pixels.
+/// The longer side is cut, such that both sides cost as their numbers of leaves are.
+std::vector<volume::Rect> leaves_of_equal_cost(const CostImage& costs, int count);
+
+}  // namespace understudy::compositor

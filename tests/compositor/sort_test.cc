@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compositor/sort/sort.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "compositor/sort/cost_image.h"
+#include "compositor/sort/image_leaves.h"
+
+namespace understudy::compositor {
+namespace {
+
+using volume::Rect;
+
+TEST(Sort, GroupsHaveAsManyMembersAsTheSortSays) {
+  for (int ranks = 1; ranks <= 64; ++ranks) {
+    EXPECT_EQ(members_of_group({Sort::first}, ranks, 1000), 1);
+    EXPECT_EQ(members_of_group({Sort::last}, ranks, 1000), ranks);
+    const int members = members_of_group({Sort::hybrid}, ranks, 1000);
+    EXPECT_EQ(ranks % members, 0);
+    EXPECT_GE(members * members, ranks);
+  }
+  EXPECT_EQ(members_of_group({Sort::hybrid}, 16, 1000), 4);
+  EXPECT_EQ(members_of_group({Sort::hybrid}, 8, 1000), 4);
+}
+
+TEST(Sort, AutomaticallyAsFewRanksHoldACopyAsHaveRoomForIt) {
+  const SortSettings settings{Sort::automatic, 300};
+  EXPECT_EQ(members_of_group(settings, 8, 300), 1);
+  EXPECT_EQ(members_of_group(settings, 8, 600), 2);
+  EXPECT_EQ(members_of_group(settings, 8, 1000), 4);
+  EXPECT_EQ(members_of_group(settings, 6, 1000), 6);  // no four of six
+  EXPECT_EQ(members_of_group(settings, 8, 100'000), 8);
+  EXPECT_EQ(members_of_group({Sort::automatic, 0}, 8, 1), 8);
+}
+
+TEST(Sort, HasNames) {
+  SortSettings settings;
+  EXPECT_EQ(settings.sort, Sort::last);
+  EXPECT_TRUE(set_sort(settings, "hybrid"));
+  EXPECT_EQ(settings.sort, Sort::hybrid);
+  EXPECT_FALSE(set_sort(settings, "middle"));
+  EXPECT_EQ(settings.sort, Sort::hybrid);
+}
+
+/// Costs of the tiles of `pixels`, one in three of nothing.
+std::vector<float> some_costs(const Rect& pixels, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<float> costs;
+  for (const Rect& tile : tiles_of(pixels)) {
+    const bool nothing = random() % 3 == 0;
+    costs.push_back(nothing ? 0.0F : float(random() % 1000) * float(tile.pixels()));
+  }
+  return costs;
+}
+
+/// Pixel by pixel.
+double sum_within(const Rect& pixels, const std::vector<float>& costs, const Rect& rect) {
+  const std::vector<Rect> tiles = tiles_of(pixels);
+  double sum = 0;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    sum += double(costs[i]) * double(intersection(tiles[i], rect).pixels()) / double(tiles[i].pixels());
+  return sum;
+}
+
+TEST(CostImage, TilesCoverItsPixelsOnce) {
+  const Rect pixels{-37, 61, 150, 99};
+  std::size_t covered = 0;
+  for (const Rect& tile : tiles_of(pixels)) {
+    EXPECT_EQ(intersection(tile, pixels), tile);
+    EXPECT_LE(tile.width, 32);
+    EXPECT_LE(tile.height, 32);
+    covered += tile.pixels();
+  }
+  EXPECT_EQ(covered, pixels.pixels());
+  EXPECT_TRUE(tiles_of({}).empty());
+}
+
+TEST(CostImage, SumsAreThoseOfPixelsOfAnyRectangle) {
+  std::mt19937 random(5);
+  for (const Rect& pixels : {Rect{0, 0, 256, 128}, Rect{-37, 61, 150, 99}, Rect{3, 5, 1, 70}}) {
+    const std::vector<float> costs = some_costs(pixels, 3);
+    const CostImage image(pixels, costs);
+    for (int i = 0; i < 200; ++i) {
+      const Rect rect{pixels.x - 20 + int(random() % 150), pixels.y - 20 + int(random() % 150),
+                      int(random() % 120), int(random() % 120)};
+      const double expected = sum_within(pixels, costs, rect);
+      EXPECT_NEAR(image.within(rect), expected, 1e-9 * (1 + sum_within(pixels, costs, pixels)));
+    }
+  }
+}
+
+TEST(CostImage, CountsWhatIsNoNumberAsNothing) {
+  const float costs[] = {std::nanf(""), -5, std::numeric_limits<float>::infinity(), 7};
+  EXPECT_EQ(CostImage({0, 0, 64, 64}, costs).within({0, 0, 64, 64}), 7);
+}
+
+TEST(ImageLeaves, TileTheImageAndCostTheSame) {
+  for (const Rect& pixels : {Rect{0, 0, 1024, 1024}, Rect{-30, 11, 700, 1300}}) {
+    const std::vector<float> costs = some_costs(pixels, 11);
+    const CostImage image(pixels, costs);
+    for (int count = 1; count <= 16; ++count) {
+      const std::vector<Rect> leaves = leaves_of_equal_cost(image, count);
+      ASSERT_EQ(leaves.size(), std::size_t(count));
+      std::size_t covered = 0;
+      double least = std::numeric_limits<double>::infinity(), most = 0;
+      for (const Rect& leaf : leaves) {
+        covered += leaf.pixels();
+        for (const Rect& other : leaves) EXPECT_TRUE(&other == &leaf || intersection(leaf, other).empty());
+        least = std::min(least, image.within(leaf));
+        most = std::max(most, image.within(leaf));
+      }
+      EXPECT_EQ(covered, pixels.pixels());
+      // Cuts lie at multiples of four pixels.
+      EXPECT_LE(most - least, 0.12 * image.within(pixels) / count) << count;
+    }
+  }
+}
+
+TEST(ImageLeaves, OfAnImageThatCostsNothingAreAlikeInPixels) {
+  const Rect pixels{0, 0, 512, 256};
+  const std::vector<float> costs(tiles_of(pixels).size());
+  for (const Rect& leaf : leaves_of_equal_cost(CostImage(pixels, costs), 8))
+    EXPECT_EQ(leaf.pixels(), pixels.pixels() / 8);
+}
+
+TEST(ImageLeaves, MoreThanThereArePixelsAreEmpty) {
+  const Rect pixels{0, 0, 3, 2};
+  const std::vector<float> costs(1, 1.0F);
+  std::size_t covered = 0;
+  for (const Rect& leaf : leaves_of_equal_cost(CostImage(pixels, costs), 16)) covered += leaf.pixels();
+  EXPECT_EQ(covered, pixels.pixels());
+  for (const Rect& leaf : leaves_of_equal_cost(CostImage({}, {}), 4)) EXPECT_TRUE(leaf.empty());
+}
+
+}  // namespace
+}  // namespace understudy::compositor

@@ -119,6 +119,16 @@ TEST_P(Programs, AreRightWhereTheyAreSubstituted) {
 
 INSTANTIATE_TEST_SUITE_P(FirstHundred, Programs, testing::Range(0U, 5U), testing::PrintToStringParamName());
 
+class ProgramThatWasShownWrong : public Programs {};
+
+// 295 shows a neighbour's value a little, times a uniform that changes in every frame: it was taken for light.
+TEST_P(ProgramThatWasShownWrong, IsRight) {
+  outcome_of(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Once, ProgramThatWasShownWrong, testing::Values(295U),
+                         testing::PrintToStringParamName());
+
 class TwoThousandPrograms : public Programs {};
 
 TEST_P(TwoThousandPrograms, AreRightAndNineteenOfTwentySubstituted) {

@@ -251,7 +251,7 @@ bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& 
 std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const LitRay& ray,
                                               const volume::RaySteps& steps, const std::vector<SeenSlope>& seen,
                                               volume::Light light) {
-  constexpr double same = 0.03;
+  constexpr float same = 0.03F;
   const std::vector<Tint> base = tints_of(ray.base);
   std::vector<volume::LightResponse> by_angle;
   for (const SeenSlope& slope : seen) {
@@ -267,8 +267,9 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
     if (!(fit.worst <= same * std::max(1.0, brightest(inside)))) return another_colour;
     by_angle.push_back(fit.response);
   }
-  // Light that is not seen may be one that wakes on steeper slopes.
-  constexpr float visible = 0.02F;
+  // Light that is hardly seen may be one that wakes on steeper slopes, and a neighbour's value that colours show
+  // a little is none: what a fit may be off by tells them from each other only beyond twice of it.
+  constexpr float visible = 2 * same;
   if (light.even[0] > 0 && std::ranges::all_of(by_angle, [&](const volume::LightResponse& at) {
         return std::abs(at.diffuse - 1) < visible && std::abs(at.specular) < visible;
       }))

@@ -28,11 +28,12 @@ import raycast  # noqa: E402
 import remote  # noqa: E402
 import scaling  # noqa: E402
 import shares  # noqa: E402
+import sort  # noqa: E402
 import view  # noqa: E402
 
 BENCHMARKS = {"frame": frame.rows, "raycast": raycast.rows, "calls": calls.rows, "scaling": scaling.rows,
               "ranks": ranks.rows, "balance": balance.rows, "blend": blend.rows, "exchange": exchange.rows,
-              "paraview": paraview_frames.rows, "shares": shares.rows, "remote": remote.rows, "view": view.rows}
+              "paraview": paraview_frames.rows, "shares": shares.rows, "sort": sort.rows, "remote": remote.rows, "view": view.rows}
 
 INSTRUCTION_SETS = [("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse4_1", "SSE4"), ("asimd", "NEON")]  # best first
 

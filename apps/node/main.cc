@@ -35,12 +35,6 @@ std::size_t available_memory() {
   return 0;
 }
 
-/// For copies of one volume's texels on a rank: half of what is there, as bricks take half as much again, and
-/// other volumes come.
-std::uint64_t room_for_copies(int neighbours) {
-  return available_memory() / (2 * std::uint64_t(neighbours));
-}
-
 std::uint64_t least_over_ranks(compositor::Communicator& communicator, std::uint64_t mine) {
   std::vector<std::uint64_t> all(std::size_t(communicator.size()));
   communicator.gather_to_all(compositor::bytes_of(mine), std::as_writable_bytes(std::span(all)));
@@ -127,7 +121,8 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
   MpiCommunicator communicator(argc, argv);
   const int neighbours = communicator.ranks_on_this_machine();
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned share = std::max(1U, cores / unsigned(neighbours));
+  // Rounded up: cores that no rank uses are worse than two threads on some of them.
+  const unsigned share = (cores + unsigned(neighbours) - 1) / unsigned(neighbours);
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, share);
   // Mesa's software renderer would take all cores for each rank.
   setenv("LP_NUM_THREADS", fmt::format("{}", share).c_str(), 0);
@@ -145,8 +140,10 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
   options.balance.moved = [&](const MoveFigures& move) {
     if (communicator.rank() == 0) print_move(move);
   };
+  // Blocks move between ranks that divide one copy of a volume.
+  if (options.balance.balance != Balance::off) options.sort.sort = Sort::last;
   try {
-    options.sort.bytes_of_copy = least_over_ranks(communicator, room_for_copies(neighbours));
+    options.sort.bytes_of_machine = least_over_ranks(communicator, available_memory() / 2);
     return run_node(communicator, options.control,
                     {.exchange = options.exchange,
                      .make_renderer = chooser.factory(),

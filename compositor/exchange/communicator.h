@@ -46,14 +46,22 @@ struct ControlMessage {
 /// So few that MPI sends them without asking the receiver first.
 constexpr std::size_t most_control_bytes = 4000;
 
-/// All functions but rank(), size(), post() and take_control_message() may block until the other ranks take
-/// part, and throw RankLost.
+/// All functions but rank(), size(), machines(), send_control() and take_control_message() may block until the
+/// other ranks take part, and throw RankLost.
 class Communicator {
  public:
   virtual ~Communicator() = default;
 
   virtual Rank rank() const = 0;
   virtual int size() const = 0;
+
+  /// By rank, the machine that it is on, as any number: ranks with the same one may open each other's
+  /// /proc/PID/fd. Where they could not, each has a number of its own.
+  virtual std::vector<int> machines() const {
+    std::vector<int> apart(static_cast<std::size_t>(size()));
+    for (std::size_t rank = 0; rank < apart.size(); ++rank) apart[rank] = int(rank);
+    return apart;
+  }
 
   /// Sends and receives all of these at once, in any order; returns when all have arrived. At most one message
   /// from one rank to another per transfer. Ranks that neither send nor receive need not call it.

@@ -166,6 +166,14 @@ void MpiCommunicator::meet_machine() {
       segments_ = if_all_have(
           machine, made_or_nothing([&] { return std::make_unique<SharedSegments>(segments, rank_); }));
   }
+  // Whether descriptors can be opened is tried, wherever ranks share a machine.
+  int local_rank = 0;
+  MPI_Comm_rank(machine, &local_rank);
+  const bool open = !shared_by_all(machine, local_rank, made_or_nothing(SharedSegments::make_memory)).empty();
+  int mine = rank_;
+  if (open) MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_INT, MPI_MIN, machine);
+  machines_.resize(std::size_t(size_));
+  MPI_Allgather(&mine, 1, MPI_INT, machines_.data(), 1, MPI_INT, MPI_COMM_WORLD);
   MPI_Comm_free(&machine);
 }
 

@@ -25,6 +25,7 @@ class MpiCommunicator : public Communicator {
   /// Ranks of this job that share this machine's processors.
   int ranks_on_this_machine() const { return local_size_; }
 
+  std::vector<int> machines() const override { return machines_; }
   std::span<std::byte> shared_segment(std::size_t bytes) override;
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override;
   void broadcast(Rank root, std::span<std::byte> bytes) override;
@@ -49,6 +50,7 @@ class MpiCommunicator : public Communicator {
   Rank rank_ = 0;
   int size_ = 1;
   int local_size_ = 1;
+  std::vector<int> machines_;  ///< by rank, its machine's lowest one
 };
 
 }  // namespace understudy::compositor

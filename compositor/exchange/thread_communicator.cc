@@ -134,6 +134,9 @@ class ThreadCommunicator : public Communicator {
 
   Rank rank() const override { return rank_; }
   int size() const override { return group_.ranks(); }
+  std::vector<int> machines() const override {
+    return share_memory_ ? std::vector<int>(std::size_t(size())) : Communicator::machines();
+  }
 
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     for (const Outgoing& message : outgoing) {

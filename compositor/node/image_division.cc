@@ -23,16 +23,15 @@ bool all_agree(Communicator& communicator, bool mine) {
 
 std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& renderer, std::uint64_t client,
                                const volume::RenderRequest& request, const Rect& pixels) {
-  const auto members = std::size_t(renderer.members({client, request.volume}));
-  const auto ranks = std::size_t(communicator.size());
-  const std::size_t groups = ranks / members;
-  const std::size_t mine = std::size_t(communicator.rank()) / members;
+  const Arrangement& arrangement = renderer.arrangement({client, request.volume});
+  const auto groups = std::size_t(arrangement.groups());
+  const auto mine = std::size_t(arrangement.seat(communicator.rank()).group);
   const std::vector<Rect> tiles = tiles_of(pixels);
   // Of neighbouring tiles each is another group's, so that none estimates all that is dear.
   std::vector<Rect> own;
   for (std::size_t tile = mine; tile < tiles.size(); tile += groups) own.push_back(tiles[tile]);
   const std::size_t most = (tiles.size() + groups - 1) / groups;
-  std::vector<float> told(most), heard(most * ranks);
+  std::vector<float> told(most), heard(most * std::size_t(communicator.size()));
   try {
     std::ranges::copy(renderer.estimated_costs(client, request, own), told.begin());
   } catch (const std::exception&) {
@@ -41,9 +40,10 @@ std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& rendere
   communicator.gather_to_all(std::as_bytes(std::span(told)), std::as_writable_bytes(std::span(heard)));
   std::vector<float> costs(tiles.size());
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
-    const std::size_t group = tile % groups;
-    for (std::size_t member = 0; member < members; ++member)
-      costs[tile] += heard[(group * members + member) * most + tile / groups];
+    for (int member = 0; member < arrangement.members(); ++member) {
+      const auto rank = std::size_t(arrangement.rank_at(int(tile % groups), member));
+      costs[tile] += heard[rank * most + tile / groups];
+    }
   }
   return leaves_of_equal_cost(CostImage(pixels, costs), int(groups));
 }

@@ -48,13 +48,14 @@ void RankLoop::begin_divided_image(std::uint64_t client, const std::function<vol
 }
 
 void RankLoop::divide_image(std::uint64_t client) {
-  const int members = renderer_.members({client, request_.volume});
-  if (members == communicator_.size()) return;
+  const Arrangement& arrangement = renderer_.arrangement(rendered_);
+  if (arrangement.groups() == 1) return;
   const std::vector<volume::Rect> leaves =
       compositor::divide_image(communicator_, renderer_, client, request_, whole_);
-  leaf_ = leaves[std::size_t(communicator_.rank() / members)];
+  const auto leaf_of = [&](Rank rank) { return leaves[std::size_t(arrangement.seat(rank).group)]; };
+  leaf_ = leaf_of(communicator_.rank());
   for (std::size_t rank = 0; rank < footprints_.size(); ++rank)
-    footprints_[rank] = intersection(footprints_[rank], leaves[rank / std::size_t(members)]);
+    footprints_[rank] = intersection(footprints_[rank], leaf_of(Rank(rank)));
 }
 
 // What all ranks know of the image before they draw it.
@@ -76,7 +77,7 @@ void RankLoop::begin_image(std::uint64_t client) {
 
 void RankLoop::draw(OwnOutcome& mine) {
   const ProcessorClock processors;
-  if (renderer_.members(rendered_) > 1 && task_.only_footprints && volume::can_occlude(request_))
+  if (renderer_.arrangement(rendered_).members() > 1 && task_.only_footprints && volume::can_occlude(request_))
     opaque_tiles_.emplace(communicator_, images_, request_, task_.order, footprints_);
   image_ =
       renderer_.render(task_.client, request_, mine.counts, opaque_tiles_ ? &*opaque_tiles_ : nullptr, leaf_);

@@ -170,6 +170,8 @@ std::vector<Outcome> RankLoop::perform(const Order& order, Bytes payload) {
   if (order.overlapped) draw_in_bands(mine);
   std::vector<Outcome> outcomes = agree(mine);
   if (renders && !first_refusal(outcomes)) after_image(mine, outcomes);
+  const bool begins = order.type == NodeMessage::begin_volume || order.type == LoadMessage::load_volume;
+  if (begins && !first_refusal(outcomes)) find_bricks(*mine.filling, outcomes);
   const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
   if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*mine.filling);
   return outcomes;

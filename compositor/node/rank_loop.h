@@ -37,7 +37,7 @@ class RankLoop {
   RankLoop(Communicator& communicator, const NodeSettings& settings)
       : communicator_(communicator),
         may_divide_images_(settings.sort.sort != Sort::last && communicator.size() > 1),
-        renderer_(communicator.rank(), communicator.size(), settings.make_renderer, settings.limits,
+        renderer_(communicator.rank(), communicator.machines(), settings.make_renderer, settings.limits,
                   settings.sort),
         loads_(renderer_, communicator.rank(), settings.files),
         memories_(communicator, settings.exchange.gather),
@@ -76,6 +76,8 @@ class RankLoop {
   void draw_in_bands(OwnOutcome& mine);
   void clear_hidden(std::vector<Outcome>& outcomes);
   std::vector<Outcome> agree(const OwnOutcome& mine);
+  void tell_where_bricks_are(VolumeKey key, OwnOutcome& mine) const;
+  void find_bricks(VolumeKey key, const std::vector<Outcome>& outcomes);
   std::optional<volume::Rect> composite(const std::vector<Outcome>& outcomes, volume::FrameCounts& counts);
   std::vector<volume::PixelIntegral> compose_integrals();
   std::vector<std::uint64_t> sum_histograms();

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a rank takes in the texels of volumes.
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <exception>
 #include <new>
 #include <utility>
@@ -27,6 +30,7 @@ void RankLoop::take_volume(NodeMessage message, const Order& order, Bytes payloa
       loads_.forget(*mine.filling);
       if (rebalancer_) rebalancer_->forget(*mine.filling);
       renderer_.begin(order.client, description);
+      tell_where_bricks_are(*mine.filling, mine);
       break;
     }
     case NodeMessage::begin_change: {
@@ -61,6 +65,7 @@ void RankLoop::load(LoadMessage message, const Order& order, Bytes payload, OwnO
       mine.filling = VolumeKey{order.client, wanted.volume.id};
       if (rebalancer_) rebalancer_->forget(*mine.filling);
       loads_.begin(*mine.filling, wanted);
+      tell_where_bricks_are(*mine.filling, mine);
       mine.load = loads_.figures(*mine.filling);
       break;
     }
@@ -79,6 +84,19 @@ void RankLoop::load(LoadMessage message, const Order& order, Bytes payload, OwnO
     default:
       throw MalformedMessage("an application does not send this type of message");
   }
+}
+
+// Of ranks on one machine that show the same bricks, one keeps them for all.
+void RankLoop::tell_where_bricks_are(VolumeKey key, OwnOutcome& mine) const {
+  mine.process = ::getpid();
+  mine.descriptor = renderer_.shared_descriptor(key);
+}
+
+void RankLoop::find_bricks(VolumeKey key, const std::vector<Outcome>& outcomes) {
+  const Arrangement::Seat& seat = renderer_.arrangement(key).seat(communicator_.rank());
+  const Outcome& keeper = outcomes[std::size_t(seat.keeper)];
+  if (keeper.descriptor < 0) return;
+  renderer_.find_bricks_at(key, fmt::format("/proc/{}/fd/{}", keeper.process, keeper.descriptor));
 }
 
 // Memory for that much of a payload. False, on all ranks, when one of them has none.
@@ -130,6 +148,7 @@ std::vector<Outcome> RankLoop::texels(const Order& order, std::span<volume::Texe
       receive_shares(key, boxes);
     }
     if (rebalancer_) rebalancer_->texels_changed(key, renderer_.description(key), boxes);
+    renderer_.texels_change(key, boxes);
     renderer_.add_texels(key, shares_, payload_space_);
   } catch (const RequestRefused& error) {
     mine.refuse(error.what());

@@ -34,32 +34,58 @@ namespace understudy::compositor {
 using namespace volume;
 
 struct RankRenderer::Volume {
-  KdTree tree;
+  Arrangement arrangement;
+  Arrangement::Seat seat;
+  KdTree tree;  ///< of the members of a group
   BrickStore bricks;
   std::unique_ptr<BrickRenderer> renderer;
-  std::vector<TexelBox> shown;  ///< by each member of a group
+  std::vector<TexelBox> shown;  ///< by each member
   enum class State { filling, complete, changing } state = State::filling;
   std::uint64_t version;
   std::vector<std::size_t> changed_blocks;
+  bool keeps_bricks;         ///< instead of reading another rank's
+  std::string bricks_path;   ///< of that rank's
+  bool bricks_read = false;  ///< as they are now
 
-  /// Of member `member` of so many.
-  Volume(const VolumeDescription& description, int member, int members,
+  Volume(const VolumeDescription& description, int rank, const Arrangement& arranged,
          const BrickRendererFactory& make_renderer)
-      : tree(description, members),
-        bricks(description, tree.box(member)),
+      : arrangement(arranged),
+        seat(arrangement.seat(rank)),
+        tree(description, arrangement.members()),
+        bricks(description, tree.box(seat.member)),
         renderer(make_renderer(bricks)),
-        version(description.version) {
+        version(description.version),
+        keeps_bricks(seat.keeper == rank) {
+    if (keeps_bricks && arrangement.readers(rank) > 1) bricks.share();
     find_shown();
   }
 
-  int members() const { return tree.ranks(); }
-  int member(int rank) const { return rank % members(); }
-  int group(int rank) const { return rank / members(); }
-
   void find_shown() {
     shown.clear();
-    for (int other = 0; other < tree.ranks(); ++other)
-      shown.push_back(BrickStore::texels_shown(bricks.description(), tree.box(other)));
+    for (int member = 0; member < tree.ranks(); ++member)
+      shown.push_back(BrickStore::texels_shown(bricks.description(), tree.box(member)));
+  }
+
+  /// All texels have come to the rank that keeps them.
+  void complete() {
+    if (keeps_bricks) {
+      if (!bricks.finished()) bricks.finish();
+      bricks.publish();
+      take_changes();
+    }
+    bricks_read = keeps_bricks;
+    state = State::complete;
+  }
+
+  void take_changes() {
+    renderer->blocks_changed(changed_blocks);
+    changed_blocks.clear();
+  }
+
+  void read_bricks() {
+    bricks.read_blocks_of(bricks_path);
+    take_changes();
+    bricks_read = true;
   }
 };
 
@@ -85,9 +111,10 @@ std::uint64_t stored_bytes(const VolumeDescription& description) {
   return texels_in(description.stored) * bytes_per_texel(description.type);
 }
 
-/// What one of the ranks that hold a copy together has of the stored texels.
-std::uint64_t share_of(const VolumeDescription& description, int members) {
-  return stored_bytes(description) / std::uint64_t(members);
+/// What a rank has of the stored texels; of what ranks of one machine share, its part.
+std::uint64_t share_of(const VolumeDescription& description, const Arrangement& arrangement, int rank) {
+  const int readers = arrangement.readers(arrangement.seat(rank).keeper);
+  return stored_bytes(description) / std::uint64_t(arrangement.members()) / std::uint64_t(readers);
 }
 
 void keep_limits_of_one(const VolumeDescription& description) {
@@ -129,9 +156,15 @@ void refuse_excess(const RenderRequest& request) {
 
 }  // namespace
 
-RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits,
-                           const SortSettings& sort)
-    : rank_(rank), ranks_(ranks), make_renderer_(std::move(make_renderer)), limits_(limits), sort_(sort) {}
+RankRenderer::RankRenderer(int rank, int ranks, BrickRendererFactory make_renderer, const ClientLimits& limits)
+    : RankRenderer(rank, std::vector<int>(std::size_t(ranks)), std::move(make_renderer), limits, {}) {}
+RankRenderer::RankRenderer(int rank, std::vector<int> machines, BrickRendererFactory make_renderer,
+                           const ClientLimits& limits, const SortSettings& sort)
+    : rank_(rank),
+      machines_(std::move(machines)),
+      make_renderer_(std::move(make_renderer)),
+      limits_(limits),
+      sort_(sort) {}
 RankRenderer::~RankRenderer() = default;
 
 RankRenderer::Volume& RankRenderer::find(VolumeKey key) const {
@@ -147,7 +180,19 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
   if (volume.version != request.version)
     throw RequestRefused(fmt::format("volume {} is here in version {}, not {}", request.volume, volume.version,
                                      request.version));
+  if (!volume.bricks_read) {
+    try {
+      volume.read_bricks();
+    } catch (const std::exception& error) {
+      throw RequestRefused(fmt::format("rank {} cannot read the bricks of rank {}: {}; use --sort last", rank_,
+                                       volume.seat.keeper, error.what()));
+    }
+  }
   return volume;
+}
+
+Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
+  return {sort_, machines_, stored_bytes(description)};
 }
 
 // Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
@@ -156,11 +201,11 @@ void RankRenderer::keep_limits(VolumeKey key, const VolumeDescription& descripti
   std::uint64_t of_client = 0;
   for (const auto& [held, volume] : volumes_) {
     if (held == key) continue;  // makes room for this one
-    const std::uint64_t share = share_of(volume->bricks.description(), volume->members());
+    const std::uint64_t share = share_of(volume->bricks.description(), volume->arrangement, rank_);
     in_all += share;
     if (held.client == key.client) of_client += share;
   }
-  const std::uint64_t share = share_of(description, members_of_group(sort_, ranks_, stored_bytes(description)));
+  const std::uint64_t share = share_of(description, arranged(description), rank_);
   if (of_client + share > limits_.bytes_of_client)
     throw RequestRefused(
         fmt::format("a node's share of volume {} is {} MiB, and of this client it holds {} MiB and may hold {} "
@@ -184,9 +229,8 @@ void RankRenderer::begin(std::uint64_t client, const VolumeDescription& descript
     throw RequestRefused(fmt::format("{} volumes are held already: forget one first", held));
   // The old one goes first: two versions of a large volume need not fit side by side.
   volumes_.erase(key);
-  const int members = members_of_group(sort_, ranks_, stored_bytes(description));
   refusing([&] {
-    volumes_.emplace(key, std::make_unique<Volume>(description, rank_ % members, members, make_renderer_));
+    volumes_.emplace(key, std::make_unique<Volume>(description, rank_, arranged(description), make_renderer_));
   });
 }
 
@@ -221,10 +265,11 @@ void RankRenderer::check_texels(VolumeKey key, std::span<const TexelBox> boxes, 
 
 std::vector<TexelBox> RankRenderer::shares(VolumeKey key, std::span<const TexelBox> boxes, int rank) const {
   const Volume& volume = find(key);
+  const Arrangement::Seat& seat = volume.arrangement.seat(rank);
   std::vector<TexelBox> shares;
+  if (seat.keeper != rank) return shares;
   for (const TexelBox& box : boxes)
-    if (const TexelBox share = intersection(box, volume.shown[std::size_t(volume.member(rank))]);
-        !is_empty(share))
+    if (const TexelBox share = intersection(box, volume.shown[std::size_t(seat.member)]); !is_empty(share))
       shares.push_back(share);
   return shares;
 }
@@ -244,6 +289,16 @@ void RankRenderer::add_texels(VolumeKey key, std::span<const TexelBox> shares,
   });
 }
 
+void RankRenderer::texels_change(VolumeKey key, std::span<const TexelBox> boxes) {
+  Volume& volume = find(key);
+  // Whoever keeps the bricks finds the blocks when it writes them.
+  if (volume.keeps_bricks || volume.state != Volume::State::changing) return;
+  for (const TexelBox& box : boxes) {
+    const std::vector<std::size_t> blocks = volume.bricks.blocks_that_show(box);
+    volume.changed_blocks.insert(volume.changed_blocks.end(), blocks.begin(), blocks.end());
+  }
+}
+
 std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
   return volume::bytes_per_texel(find(key).bricks.description().type);
 }
@@ -258,30 +313,32 @@ std::size_t RankRenderer::bytes(VolumeKey key) const {
 
 const TexelBox& RankRenderer::cells(VolumeKey key) const {
   const Volume& volume = find(key);
-  return volume.tree.box(volume.member(rank_));
+  return volume.tree.box(volume.seat.member);
 }
 
-int RankRenderer::members(VolumeKey key) const {
-  return find(key).members();
+const Arrangement& RankRenderer::arrangement(VolumeKey key) const {
+  return find(key).arrangement;
+}
+
+int RankRenderer::shared_descriptor(VolumeKey key) const {
+  return find(key).bricks.shared_descriptor();
+}
+
+void RankRenderer::find_bricks_at(VolumeKey key, const std::string& path) {
+  find(key).bricks_path = path;
 }
 
 std::vector<std::uint64_t> RankRenderer::histogram(VolumeKey key, const HistogramBins& bins) const {
   const Volume& volume = find(key);
   if (volume.state != Volume::State::complete)
     throw RequestRefused(fmt::format("volume {} is not complete yet", key.volume));
-  return refusing([&] {
-    std::vector<std::uint64_t> counts = volume::histogram(volume.bricks, bins);
-    if (volume.group(rank_) > 0) std::ranges::fill(counts, 0);
-    return counts;
-  });
+  if (volume.seat.group > 0) return std::vector<std::uint64_t>(std::size_t(bins.count));
+  return refusing([&] { return volume::histogram(volume.bricks, bins); });
 }
 
 void RankRenderer::end(VolumeKey key) {
   Volume& volume = find(key);
-  if (volume.state == Volume::State::filling) refusing([&] { volume.bricks.finish(); });
-  volume.renderer->blocks_changed(volume.changed_blocks);
-  volume.changed_blocks.clear();
-  volume.state = Volume::State::complete;
+  refusing([&] { volume.complete(); });
 }
 
 void RankRenderer::forget(VolumeKey key) {
@@ -322,7 +379,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     // Before memory is asked for.
     if (image_until_) refuse_excess(request);
     const Rect everything = request.optimizations.footprints
-                                ? footprint(request, description, volume.tree.box(volume.member(rank_)))
+                                ? footprint(request, description, volume.tree.box(volume.seat.member))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
     draw(volume, request, result, counts, occlusion);
@@ -359,12 +416,12 @@ std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const Re
     const Medium medium = Medium::of_samples(*function, 1);
     std::vector<IntegralPart> parts(pixels.size());
     std::size_t done = 0;
-    const std::size_t groups = std::size_t(ranks_ / volume.members());
+    const auto groups = std::size_t(volume.arrangement.groups());
     const std::size_t at_once = groups * std::size_t(std::max(1, tbb::this_task_arena::max_concurrency()));
     while (done < pixels.size()) {
       const std::size_t end = std::min(done + at_once, pixels.size());
       tbb::parallel_for(done, end, [&](std::size_t i) {
-        if (i % groups != std::size_t(volume.group(rank_))) return;
+        if (i % groups != std::size_t(volume.seat.group)) return;
         const RayIntegral seen =
             stored_pixel_integral(volume.bricks, request, medium, pixels[i].x, pixels[i].y, integral_tolerance);
         parts[i] = {seen.colour, seen.optical_depth};
@@ -382,12 +439,13 @@ std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderReq
   const Volume& volume = find_complete(client, request);
   return refusing([&] {
     validate(volume.bricks.description(), request);
+    std::vector<Rect> of_member;
+    for (int member = 0; member < volume.arrangement.members(); ++member)
+      of_member.push_back(footprint(request, volume.bricks.description(), volume.tree.box(member)));
     std::vector<Rect> result;
-    result.reserve(std::size_t(ranks_));
-    for (int member = 0; member < volume.members(); ++member)
-      result.push_back(footprint(request, volume.bricks.description(), volume.tree.box(member)));
-    for (int rank = volume.members(); rank < ranks_; ++rank)
-      result.push_back(result[std::size_t(volume.member(rank))]);
+    result.reserve(machines_.size());
+    for (int rank = 0; rank < ranks(); ++rank)
+      result.push_back(of_member[std::size_t(volume.arrangement.seat(rank).member)]);
     return result;
   });
 }
@@ -423,10 +481,12 @@ void RankRenderer::divide(
 std::vector<int> RankRenderer::visibility_order(std::uint64_t client, const RenderRequest& request) const {
   const Volume& volume = find_complete(client, request);
   return refusing([&] {
-    std::vector<int> order = volume.tree.visibility_order(request);
+    const std::vector<int> members = volume.tree.visibility_order(request);
     // Groups show other pixels: in any order.
-    for (int rank = volume.members(); rank < ranks_; ++rank)
-      order.push_back(order[std::size_t(volume.member(rank))] + volume.members() * volume.group(rank));
+    std::vector<int> order;
+    order.reserve(machines_.size());
+    for (int group = 0; group < volume.arrangement.groups(); ++group)
+      for (const int member : members) order.push_back(volume.arrangement.rank_at(group, member));
     return order;
   });
 }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "compositor/service/client_limits.h"
@@ -49,25 +50,34 @@ class RankRenderer {
  public:
   /// Rank `rank` of `ranks`, whose bricks are drawn by what `make_renderer` makes, within `limits`.
   RankRenderer(int rank, int ranks, volume::BrickRendererFactory make_renderer = volume::cpu_renderer,
-               const ClientLimits& limits = client_limits(1, {}), const SortSettings& sort = {});
+               const ClientLimits& limits = client_limits(1, {}));
+  /// The same, with ranks that stand as `sort` says, on these machines, by rank.
+  RankRenderer(int rank, std::vector<int> machines, volume::BrickRendererFactory make_renderer,
+               const ClientLimits& limits, const SortSettings& sort);
   ~RankRenderer();
 
   void begin(std::uint64_t client, const volume::VolumeDescription& description);
   void begin_change(VolumeKey key, std::uint64_t version);
   /// Refuses texels that no rank may take: all ranks, asked the same, answer the same.
   void check_texels(VolumeKey key, std::span<const volume::TexelBox> boxes, std::size_t bytes) const;
-  /// What of these boxes `rank` shows; the others' texels need not come there.
+  /// What of these boxes `rank` keeps; the others' texels need not come there.
   std::vector<volume::TexelBox> shares(VolumeKey key, std::span<const volume::TexelBox> boxes, int rank) const;
   /// Texels of this rank's share, one box after the other.
   void add_texels(VolumeKey key, std::span<const volume::TexelBox> shares, std::span<const std::byte> texels);
+  /// Texels of these boxes change, whoever keeps them.
+  void texels_change(VolumeKey key, std::span<const volume::TexelBox> boxes);
   std::size_t bytes_per_texel(VolumeKey key) const;
   const volume::VolumeDescription& description(VolumeKey key) const;
   /// What the bricks of this rank take.
   std::size_t bytes(VolumeKey key) const;
   /// This rank's own cells.
   const volume::TexelBox& cells(VolumeKey key) const;
-  /// How many ranks hold a copy of the volume together.
-  int members(VolumeKey key) const;
+  const Arrangement& arrangement(VolumeKey key) const;
+  /// The descriptor, of this process, of bricks that this rank keeps for others; -1: it does not.
+  int shared_descriptor(VolumeKey key) const;
+  /// Where another rank keeps the bricks that this one shows: a path to its descriptor. They are read once the
+  /// volume is complete.
+  void find_bricks_at(VolumeKey key, const std::string& path);
   /// How many texels of a complete volume, those of this rank's own cells, each bin has; none in all groups but
   /// the first.
   std::vector<std::uint64_t> histogram(VolumeKey key, const volume::HistogramBins& bins) const;
@@ -107,6 +117,8 @@ class RankRenderer {
  private:
   struct Volume;
 
+  int ranks() const { return int(machines_.size()); }
+  Arrangement arranged(const volume::VolumeDescription& description) const;
   void keep_limits(VolumeKey key, const volume::VolumeDescription& description) const;
   void draw(Volume& volume, const volume::RenderRequest& request, volume::Image& image,
             volume::FrameCounts& counts, volume::Occlusion* occlusion);
@@ -114,7 +126,7 @@ class RankRenderer {
   Volume& find_complete(std::uint64_t client, const volume::RenderRequest& request) const;
 
   int rank_;
-  int ranks_;
+  std::vector<int> machines_;  // by rank
   volume::BrickRendererFactory make_renderer_;
   ClientLimits limits_;
   SortSettings sort_;

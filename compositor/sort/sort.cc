@@ -1,10 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compositor/sort/sort.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace understudy::compositor {
+
+namespace {
+
+/// Ranks by their machines, machines in the order of their first ranks; nothing where some have more ranks than
+/// others.
+std::optional<std::vector<std::vector<int>>> equal_machines(const std::vector<int>& machines) {
+  std::vector<std::vector<int>> ranks;
+  std::vector<int> known;
+  for (std::size_t rank = 0; rank < machines.size(); ++rank) {
+    const auto machine = std::ranges::find(known, machines[rank]) - known.begin();
+    if (machine == std::ptrdiff_t(known.size())) {
+      known.push_back(machines[rank]);
+      ranks.emplace_back();
+    }
+    ranks[std::size_t(machine)].push_back(int(rank));
+  }
+  if (std::ranges::any_of(ranks, [&](const auto& of) { return of.size() != ranks.front().size(); }))
+    return std::nullopt;
+  return ranks;
+}
+
+/// How many of `all` hold a copy together: the least divisor that is enough.
+template <class IsEnough>
+int least_divisor(int all, IsEnough is_enough) {
+  for (int divisor = 1; divisor < all; ++divisor)
+    if (all % divisor == 0 && is_enough(divisor)) return divisor;
+  return all;
+}
+
+/// Whether a copy that so many hold, of `all`, is one of those that are asked for.
+bool is_enough(const SortSettings& settings, int members, int all, std::uint64_t bytes) {
+  switch (settings.sort) {
+    case Sort::automatic:
+      return bytes <= settings.bytes_of_machine * std::uint64_t(members);
+    case Sort::first:
+      return true;
+    case Sort::last:
+      return members == all;
+    case Sort::hybrid:
+      return members * members >= all;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool set_sort(SortSettings& settings, std::string_view name) {
   constexpr std::array<std::pair<std::string_view, Sort>, 4> names{
@@ -17,23 +64,39 @@ bool set_sort(SortSettings& settings, std::string_view name) {
   return false;
 }
 
-int members_of_group(const SortSettings& settings, int ranks, std::uint64_t bytes) {
-  const auto is_enough = [&](int members) {
-    switch (settings.sort) {
-      case Sort::automatic:
-        return bytes <= settings.bytes_of_copy * std::uint64_t(members);
-      case Sort::first:
-        return true;
-      case Sort::last:
-        return members == ranks;
-      case Sort::hybrid:
-        return members * members >= ranks;
-    }
-    return false;
+Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& machines, std::uint64_t bytes)
+    : seats_(machines.size()), ranks_(machines.size()) {
+  const auto by_machine = equal_machines(machines);
+  const int count = by_machine ? int(by_machine->size()) : 0;
+  // Machines hold copies together, and the ranks of each divide its part of the image; where ranks hold their
+  // own, as all do that divide one volume, they are machines to this.
+  const bool of_machines =
+      count > 0 && settings.sort != Sort::last && (settings.sort != Sort::hybrid || count > 1);
+  const int all = of_machines ? count : ranks();
+  members_ = least_divisor(all, [&](int members) { return is_enough(settings, members, all, bytes); });
+  const auto sit = [&](int rank, int group, int member) {
+    seats_[std::size_t(rank)] = {group, member, rank};
+    ranks_[std::size_t(group * members_ + member)] = rank;
   };
-  for (int members = 1; members < ranks; ++members)
-    if (ranks % members == 0 && is_enough(members)) return members;
-  return ranks;
+  if (of_machines) {
+    const int on_each = ranks() / count;
+    for (int machine = 0; machine < count; ++machine)
+      for (int i = 0; i < on_each; ++i)
+        sit((*by_machine)[std::size_t(machine)][std::size_t(i)], machine / members_ * on_each + i,
+            machine % members_);
+  } else {
+    for (int rank = 0; rank < ranks(); ++rank) sit(rank, rank / members_, rank % members_);
+  }
+  for (std::size_t rank = 0; rank < seats_.size(); ++rank)
+    for (std::size_t other = 0; other < rank; ++other)
+      if (machines[other] == machines[rank] && seats_[other].member == seats_[rank].member) {
+        seats_[rank].keeper = int(other);
+        break;
+      }
+}
+
+int Arrangement::readers(int rank) const {
+  return int(std::ranges::count(seats_, rank, &Seat::keeper));
 }
 
 }  // namespace understudy::compositor

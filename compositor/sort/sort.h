@@ -3,31 +3,56 @@
 // Molnar, Cox, Ellsworth, Fuchs 1994.
 //
 // Ranks stand in groups of as many members. A group holds a copy of the volume, which its members divide; the
-// groups divide the image. Rank r is member r % members of group r / members.
+// groups divide the image. Ranks of one machine that are the same member of their groups need the same bricks:
+// one of them keeps these for all.
 #pragma once
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace understudy::compositor {
 
 enum class Sort : std::uint8_t {
-  automatic,  ///< as few ranks hold a copy as have room for it
-  first,      ///< every rank holds a copy
+  automatic,  ///< as few machines hold a copy together as have room for it
+  first,      ///< every machine holds a copy
   last,       ///< all ranks hold one copy together
   hybrid,     ///< about as many groups as members
 };
 
 struct SortSettings {
   Sort sort = Sort::last;
-  /// What copies of one volume's texels may take on a rank, the same on all ranks; for Sort::automatic.
-  std::uint64_t bytes_of_copy = 0;
+  /// What a machine may keep of one volume's texels, the same on all ranks; for Sort::automatic.
+  std::uint64_t bytes_of_machine = 0;
 };
 
 /// "auto", "first", "last" or "hybrid". False, with `settings` unchanged, for any other.
 bool set_sort(SortSettings& settings, std::string_view name);
 
-/// How many of `ranks` >= 1 ranks hold a copy of `bytes` of texels together: a divisor of `ranks`.
-int members_of_group(const SortSettings& settings, int ranks, std::uint64_t bytes);
+/// Where ranks stand while they show one volume.
+class Arrangement {
+ public:
+  struct Seat {
+    int group = 0;
+    int member = 0;
+    int keeper = 0;  ///< the rank that keeps this one's bricks
+  };
+
+  /// Of a volume with `bytes` of texels. `machines`, by rank: as Communicator::machines().
+  Arrangement(const SortSettings& settings, const std::vector<int>& machines, std::uint64_t bytes);
+
+  int ranks() const { return int(seats_.size()); }
+  int members() const { return members_; }
+  int groups() const { return ranks() / members_; }
+  const Seat& seat(int rank) const { return seats_[std::size_t(rank)]; }
+  int rank_at(int group, int member) const { return ranks_[std::size_t(group * members_ + member)]; }
+  /// How many ranks read the bricks that `rank` keeps, this one too; 0: it keeps none.
+  int readers(int rank) const;
+
+ private:
+  int members_ = 1;
+  std::vector<Seat> seats_;  ///< by rank
+  std::vector<int> ranks_;   ///< by group, and there by member
+};
 
 }  // namespace understudy::compositor

@@ -40,7 +40,7 @@ const std::array cases{
     Case{Optimization::empty_bricks, {"--orbit", "10"}},
     Case{Optimization::hidden_samples, {"--orbit", "10", "--preset", "step"}},
     Case{Optimization::dominated_samples, {"--orbit", "10", "--operator", "max", "--table", "rising.json"}},
-    Case{Optimization::footprints, {"--orbit", "10", "--preset", "sparse"}, {"-n", "3"}},
+    Case{Optimization::footprints, {"--orbit", "10", "--preset", "sparse"}, {"-n", "3", "--sort", "last"}},
     Case{Optimization::unchanged_images, {}},
     Case{Optimization::unchanged_images, {"--second"}},
     Case{Optimization::unchanged_texels, {"--orbit", "10"}},
@@ -127,8 +127,8 @@ class Explained : public CommandTest {};
 TEST_F(Explained, FrameByFrameAndInTheEnd) {
   if (const std::string lacking = missing({Need::engine, Need::mpi}); !lacking.empty()) GTEST_SKIP() << lacking;
   // For whole windows `auto` may choose another exchange, with fewer messages.
-  const Outcome outcome = run_well(under({"-n", "2", "--exchange", "direct-send", "--overlap", "off",
-                                          "--explain", "--report", file("report.json")}) +
+  const Outcome outcome = run_well(under({"-n", "2", "--sort", "last", "--exchange", "direct-send", "--overlap",
+                                          "off", "--explain", "--report", file("report.json")}) +
                                    engine_viewer("core", {"--frames", "3", "--orbit", "5", "--no-frame"}));
   for (const char* const said :
        {"frame 1: ", "frame 3: ", "left out: empty-bricks (", "not looked for: ", "the camera moved (2x)",

@@ -11,6 +11,7 @@ class ForwardingCommunicator : public Communicator {
   explicit ForwardingCommunicator(Communicator& communicator) : communicator_(communicator) {}
   Rank rank() const override { return communicator_.rank(); }
   int size() const override { return communicator_.size(); }
+  std::vector<int> machines() const override { return communicator_.machines(); }
   void transfer(std::span<const Outgoing> outgoing, std::span<const Incoming> incoming) override {
     communicator_.transfer(outgoing, incoming);
   }

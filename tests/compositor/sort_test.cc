@@ -16,26 +16,80 @@ namespace {
 
 using volume::Rect;
 
-TEST(Sort, GroupsHaveAsManyMembersAsTheSortSays) {
-  for (int ranks = 1; ranks <= 64; ++ranks) {
-    EXPECT_EQ(members_of_group({Sort::first}, ranks, 1000), 1);
-    EXPECT_EQ(members_of_group({Sort::last}, ranks, 1000), ranks);
-    const int members = members_of_group({Sort::hybrid}, ranks, 1000);
-    EXPECT_EQ(ranks % members, 0);
-    EXPECT_GE(members * members, ranks);
-  }
-  EXPECT_EQ(members_of_group({Sort::hybrid}, 16, 1000), 4);
-  EXPECT_EQ(members_of_group({Sort::hybrid}, 8, 1000), 4);
+/// `count` machines with as many ranks each, which MPI has spread one after the other.
+std::vector<int> spread_over(int count, int ranks) {
+  std::vector<int> machines;
+  for (int rank = 0; rank < ranks; ++rank) machines.push_back(rank % count);
+  return machines;
 }
 
-TEST(Sort, AutomaticallyAsFewRanksHoldACopyAsHaveRoomForIt) {
+std::vector<int> on_one_machine(int ranks) {
+  return std::vector<int>(std::size_t(ranks));
+}
+
+TEST(Arrangement, OfSortLastHasOneGroupWhoseMembersKeepTheirOwnBricks) {
+  for (int ranks = 1; ranks <= 20; ++ranks)
+    for (const int machines : {1, 2, ranks}) {
+      const Arrangement arrangement({Sort::last}, spread_over(machines, ranks), 1000);
+      EXPECT_EQ(arrangement.members(), ranks);
+      EXPECT_EQ(arrangement.groups(), 1);
+      for (int rank = 0; rank < ranks; ++rank) {
+        EXPECT_EQ(arrangement.seat(rank).keeper, rank);
+        EXPECT_EQ(arrangement.readers(rank), 1);
+      }
+    }
+}
+
+TEST(Arrangement, OfSortFirstKeepsACopyOnEachMachine) {
+  for (const int machines : {1, 2, 4}) {
+    const Arrangement arrangement({Sort::first}, spread_over(machines, 8), 1000);
+    EXPECT_EQ(arrangement.members(), 1);
+    EXPECT_EQ(arrangement.groups(), 8);
+    for (int rank = 0; rank < 8; ++rank) {
+      EXPECT_EQ(arrangement.seat(rank).keeper, rank % machines);
+      EXPECT_EQ(arrangement.readers(rank), rank < machines ? 8 / machines : 0);
+    }
+  }
+}
+
+TEST(Arrangement, OfHybridHasAboutAsManyGroupsAsMembers) {
+  EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(16), 1000).members(), 4);
+  EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(8), 1000).members(), 4);
+  EXPECT_EQ(Arrangement({Sort::hybrid}, on_one_machine(7), 1000).members(), 7);
+  // Of machines, whose ranks divide an image further.
+  const Arrangement machines({Sort::hybrid}, spread_over(4, 16), 1000);
+  EXPECT_EQ(machines.members(), 2);
+  EXPECT_EQ(machines.groups(), 8);
+}
+
+TEST(Arrangement, AutomaticallyAsFewMachinesHoldACopyAsHaveRoomForIt) {
   const SortSettings settings{Sort::automatic, 300};
-  EXPECT_EQ(members_of_group(settings, 8, 300), 1);
-  EXPECT_EQ(members_of_group(settings, 8, 600), 2);
-  EXPECT_EQ(members_of_group(settings, 8, 1000), 4);
-  EXPECT_EQ(members_of_group(settings, 6, 1000), 6);  // no four of six
-  EXPECT_EQ(members_of_group(settings, 8, 100'000), 8);
-  EXPECT_EQ(members_of_group({Sort::automatic, 0}, 8, 1), 8);
+  EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 300).members(), 1);
+  EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 600).members(), 2);
+  EXPECT_EQ(Arrangement(settings, spread_over(8, 16), 1000).members(), 4);
+  EXPECT_EQ(Arrangement(settings, spread_over(6, 6), 1000).members(), 6);  // no four of six
+  EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 100'000).members(), 8);
+  // However little room there is, one machine has to do.
+  EXPECT_EQ(Arrangement(settings, on_one_machine(8), 100'000).members(), 1);
+}
+
+TEST(Arrangement, HasASeatForEveryRankAndARankOnEverySeat) {
+  for (const Sort sort : {Sort::automatic, Sort::first, Sort::last, Sort::hybrid})
+    for (const std::vector<int>& machines :
+         {on_one_machine(12), spread_over(3, 12), spread_over(12, 12), std::vector{0, 0, 0, 5, 5, 9}}) {
+      const Arrangement arrangement({sort, 100}, machines, 250);
+      int readers = 0;
+      for (int rank = 0; rank < arrangement.ranks(); ++rank) {
+        const Arrangement::Seat& seat = arrangement.seat(rank);
+        EXPECT_EQ(arrangement.rank_at(seat.group, seat.member), rank);
+        // Whose bricks a rank reads is the same member, on the same machine, and reads its own.
+        EXPECT_EQ(arrangement.seat(seat.keeper).member, seat.member);
+        EXPECT_EQ(arrangement.seat(seat.keeper).keeper, seat.keeper);
+        EXPECT_EQ(machines[std::size_t(seat.keeper)], machines[std::size_t(rank)]);
+        readers += arrangement.readers(rank);
+      }
+      EXPECT_EQ(readers, arrangement.ranks());
+    }
 }
 
 TEST(Sort, HasNames) {

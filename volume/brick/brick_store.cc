@@ -284,6 +284,21 @@ std::vector<std::vector<BrickStore::Point>> BrickStore::points_in(const TexelBox
   return points;
 }
 
+std::vector<std::size_t> BrickStore::blocks_that_show(const TexelBox& box) const {
+  std::vector<std::size_t> shown;
+  if (blocks_.empty()) return shown;
+  const std::array<std::vector<std::vector<Point>>, 3> points{points_in(box, 0), points_in(box, 1),
+                                                              points_in(box, 2)};
+  std::size_t block = 0;
+  for (const auto& z : points[2])
+    for (const auto& y : points[1])
+      for (const auto& x : points[0]) {
+        if (!x.empty() && !y.empty() && !z.empty()) shown.push_back(block);
+        ++block;
+      }
+  return shown;
+}
+
 void BrickStore::change(const TexelBox& box, std::span<const std::byte> texels,
                         std::vector<std::size_t>& changed) {
   if (!finished_)
@@ -437,6 +452,7 @@ std::byte* BrickStore::allocate_block() {
     free_blocks_.pop_back();
     return place;
   }
+  if (shared_) return shared_.bytes().data() + shared_blocks_at() + shared_used_++ * block_bytes_;
   if (chunks_.empty() || chunk_used_ == blocks_per_chunk) {
     chunks_.push_back(std::make_unique<std::byte[]>(blocks_per_chunk * block_bytes_));
     chunk_used_ = 0;
@@ -454,7 +470,7 @@ void BrickStore::finish() {
 }
 
 std::size_t BrickStore::bytes() const {
-  std::size_t sum = sizeof *this + chunks_.size() * blocks_per_chunk * block_bytes_ +
+  std::size_t sum = sizeof *this + (chunks_.size() * blocks_per_chunk + shared_used_) * block_bytes_ +
                     blocks_.capacity() * sizeof(blocks_[0]) + ranges_.capacity() * sizeof(Range);
   for (const Layer& layer : layers_) sum += layer.texels.capacity();
   return sum;

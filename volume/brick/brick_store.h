@@ -12,9 +12,11 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "volume/brick/shared_blocks.h"
 #include "volume/cell_lattice.h"
 #include "volume/description.h"
 
@@ -51,6 +53,20 @@ class BrickStore {
   /// that show one of them to `changed`.
   void change(const TexelBox& box, std::span<const std::byte> texels, std::vector<std::size_t>& changed);
   bool finished() const { return finished_; }
+  /// The blocks that show a texel of `box`, as change() finds them.
+  std::vector<std::size_t> blocks_that_show(const TexelBox& box) const;
+
+  /// Keeps blocks from now on where stores of other processes can read them. Before any texels; the store is
+  /// never reshaped then. Throws std::system_error.
+  void share();
+  /// The descriptor of the memory that is shared, of this process; -1: there is none.
+  int shared_descriptor() const { return shared_.descriptor(); }
+  /// Of a shared store that is finished: its readers may read what it holds now.
+  void publish();
+  /// Instead of texels, and again after each publish(): shows the blocks of a store with the same cells, whose
+  /// descriptor is at `path`. That store outlives this one's use, and does not change meanwhile. Throws
+  /// std::system_error and std::invalid_argument.
+  void read_blocks_of(const std::string& path);
 
   /// A block's place, counted in blocks from the lattice's low corner.
   using BlockPlace = std::array<int, 3>;
@@ -138,6 +154,9 @@ class BrickStore {
   template <class Call>
   void with_texel(Call call) const;
   std::byte* allocate_block();
+  std::size_t shared_ranges_at() const;
+  std::size_t shared_blocks_at() const;
+  std::size_t shared_bytes() const;
 
   VolumeDescription volume_;
   CellLattice lattice_;
@@ -152,6 +171,8 @@ class BrickStore {
   std::vector<Range> ranges_;
   std::vector<std::unique_ptr<std::byte[]>> chunks_;
   std::size_t chunk_used_ = 0;
+  SharedBlocks shared_;                  // instead of chunks: made here, or read
+  std::size_t shared_used_ = 0;          // blocks of it
   std::vector<std::byte*> free_blocks_;  // given up by changes
   struct Shared {
     std::byte* place = nullptr;

@@ -15,7 +15,7 @@ struct NodeChoices {
   std::string packed = "auto";    ///< whether pixels are packed for their way
   std::string backend = "cpu";    ///< who casts rays
   std::string gpu_memory = "auto";
-  std::string sort = "last";      ///< whether ranks divide volumes or images
+  std::string sort = "auto";      ///< whether ranks divide volumes or images
   std::string balance = "off";    ///< who gets how much of a volume
   std::vector<std::string> data;  ///< folders that clients may load volumes from
   bool any_file = false;          ///< clients are this user's own commands

@@ -319,7 +319,7 @@ void tell_options_without_effect(const RunArguments& arguments, const RunPlan& p
         "--backend {} is for nodes of this run (-n N), or give it to understudy serve; here rays are cast by "
         "the CPU, as the viewer's own process has OpenGL to itself",
         arguments.backend));
-  if (!has_nodes && arguments.sort != "last")
+  if (!has_nodes && arguments.sort != "auto")
     say(fmt::format("--sort {} is for nodes of this run (-n N), or give it to understudy serve",
                     arguments.sort));
   if (!has_nodes && arguments.balance != "off")

@@ -38,7 +38,7 @@ const std::array shows{
     Show{Optimization::empty_bricks, {"--orbit", "3"}},
     Show{Optimization::hidden_samples, {"--orbit", "3"}},
     Show{Optimization::dominated_samples, {"--orbit", "3", "--operator", "max"}, {}, true},
-    Show{Optimization::footprints, {"--orbit", "3"}, {"-n", "3"}},
+    Show{Optimization::footprints, {"--orbit", "3"}, {"-n", "3", "--sort", "last"}},
     Show{Optimization::unchanged_images, {}},
     Show{Optimization::unchanged_texels, {"--orbit", "3"}},
     Show{Optimization::known_colours, {"--orbit", "3"}},

@@ -153,7 +153,7 @@ TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
   ASSERT_EQ(render(common).status, 0);
   const RgbaImage expected = read_image(folder_.file("f.pfm"));
   for (const int nodes : {1, 2, 4}) {
-    const Result result = render(common + " -n " + std::to_string(nodes));
+    const Result result = render(common + " --sort last -n " + std::to_string(nodes));
     ASSERT_EQ(result.status, 0) << result.output;
     const Difference apart = difference(read_image(folder_.file("f.pfm")), expected);
     std::printf("%d nodes: at most %.1e apart\n", nodes, apart.max);
@@ -168,6 +168,28 @@ TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
       sum += double(rank["bytes_read"]);
     }
     EXPECT_GE(sum, all);
+  }
+}
+
+TEST_F(Render, NodesThatDivideTheImageReadTheFileOnce) {
+  const std::string common = ball(48) + " --transfer-function rainbow --size 90x80 --save-float " +
+                             folder_.file("f.pfm") + " --report " + folder_.file("r.json");
+  ASSERT_EQ(render(common).status, 0);
+  const RgbaImage expected = read_image(folder_.file("f.pfm"));
+  const std::uint64_t samples = report()["samples_taken"];
+  for (const char* sort : {"", " --sort first"}) {
+    const Result result = render(common + " -n 4" + sort);
+    ASSERT_EQ(result.status, 0) << result.output;
+    EXPECT_EQ(difference(read_image(folder_.file("f.pfm")), expected).max, 0);
+    const Json json = report();
+    EXPECT_EQ(json["samples_taken"], samples);
+    ASSERT_EQ(json["ranks"].size(), 4U);
+    EXPECT_GE(json["ranks"][0]["bytes_read"], 48 * 48 * 48 * 8);
+    for (std::size_t rank = 1; rank < 4; ++rank) {
+      EXPECT_LT(json["ranks"][rank]["bytes_read"], 4096);
+      EXPECT_LT(10 * json["ranks"][rank]["brick_bytes"].get<std::uint64_t>(), json["ranks"][0]["brick_bytes"]);
+      EXPECT_GT(json["ranks"][rank]["samples_taken"], 0);
+    }
   }
 }
 

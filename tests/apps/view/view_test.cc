@@ -89,7 +89,7 @@ TEST_F(View, AtRestABrowserHasTheImageOfRender) {
 }
 
 TEST_F(View, TheVolumeSaysItsValuesAndEveryTexelOnce) {
-  const ViewProcess process({volume_name, "-n", "3"});
+  const ViewProcess process({volume_name, "-n", "3", "--sort", "last"});
   WebClient client(process.port());
   const Json volume = greeted(client, process);
   EXPECT_EQ(volume.at("size"), (Json{40, 36, 32}));

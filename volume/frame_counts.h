@@ -23,7 +23,7 @@ struct FrameCounts {
   std::uint64_t bytes_of_whole_windows = 0;
   std::uint64_t messages = 0;
   std::uint64_t messages_of_whole_windows = 0;
-  double division_ms = 0;   ///< slowest node: which part of the image is whose (sort-first)
+  double division_ms = 0;   ///< slowest node: time to divide the image (sort-first)
   double render_ms = 0;     ///< likewise
   double processor_ms = 0;  ///< of all threads that estimated costs and cast rays
   double composite_ms = 0;

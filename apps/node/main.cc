@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // understudy-node: one rank of a node group, started by mpirun on behalf of the launcher.
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
@@ -33,6 +34,24 @@ std::size_t available_memory() {
     if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10) << 10;
   }
   return 0;
+}
+
+/// For texels of one client on what counts as a machine: the ranks that share bricks with this one.
+std::uint64_t room_on_machine(const compositor::Communicator& communicator,
+                              const compositor::ClientLimits& limits, int neighbours) {
+  const std::vector<int> machines = communicator.machines();
+  const auto sharing = std::uint64_t(std::ranges::count(machines, machines[std::size_t(communicator.rank())]));
+  // Bricks take half as much again as texels.
+  const std::uint64_t available = available_memory() / 2 * sharing / std::uint64_t(neighbours);
+  return std::min(available, limits.bytes_of_client * sharing);
+}
+
+/// As many descriptors as the system allows: each volume whose bricks are shared takes one.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 std::uint64_t least_over_ranks(compositor::Communicator& communicator, std::uint64_t mine) {
@@ -118,6 +137,7 @@ void print_move(const compositor::MoveFigures& move) {
 
 int run_rank(NodeOptions& options, int argc, char** argv) {
   using namespace compositor;
+  raise_descriptor_limit();
   MpiCommunicator communicator(argc, argv);
   const int neighbours = communicator.ranks_on_this_machine();
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
@@ -143,14 +163,16 @@ int run_rank(NodeOptions& options, int argc, char** argv) {
   // Blocks move between ranks that divide one copy of a volume.
   if (options.balance.balance != Balance::off) options.sort.sort = Sort::last;
   try {
-    options.sort.bytes_of_machine = least_over_ranks(communicator, available_memory() / 2);
+    const ClientLimits limits = client_limits(neighbours, std::chrono::milliseconds(options.image_ms));
+    options.sort.bytes_of_machine =
+        least_over_ranks(communicator, room_on_machine(communicator, limits, neighbours));
     return run_node(communicator, options.control,
                     {.exchange = options.exchange,
                      .make_renderer = chooser.factory(),
                      .sort = options.sort,
                      .balance = options.balance,
                      .files = options.files(),
-                     .limits = client_limits(neighbours, std::chrono::milliseconds(options.image_ms))})
+                     .limits = limits})
                ? 0
                : 1;
   } catch (const std::exception& error) {

@@ -6,11 +6,13 @@
 #include <malloc.h>
 #include <mpi.h>
 #include <sched.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <system_error>
@@ -40,22 +42,34 @@ void in_pieces(Span bytes, Call call) {
     call(bytes.subspan(from, std::min(max_bytes_per_message, bytes.size() - from)));
 }
 
+// Another container has other processes under the same numbers, whose files must not so much as be opened.
+FileDescriptor opened_if_same(const std::array<std::int64_t, 4>& where) {
+  const auto [process, number, device, file] = where;
+  if (number < 0) return {};
+  const FileDescriptor found(
+      ::open(fmt::format("/proc/{}/fd/{}", process, number).c_str(), O_PATH | O_CLOEXEC));
+  struct stat status {};
+  if (!found || ::fstat(found.get(), &status) != 0 || std::int64_t(status.st_dev) != device ||
+      std::int64_t(status.st_ino) != file)
+    return {};
+  return FileDescriptor(::open(fmt::format("/proc/self/fd/{}", found.get()).c_str(), O_RDWR | O_CLOEXEC));
+}
+
 // What every rank of this machine has made for the others, by rank; nothing, on all of them, when one has none
 // or cannot have another's.
 std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescriptor made) {
   int ranks = 0;
   MPI_Comm_size(machine, &ranks);
-  using Where = std::array<int, 2>;
-  const Where here{::getpid(), made.get()};
+  using Where = std::array<std::int64_t, 4>;  // process, descriptor, device, file
+  struct stat status {};
+  const bool known = made && ::fstat(made.get(), &status) == 0;
+  const Where here{::getpid(), known ? made.get() : -1, std::int64_t(status.st_dev),
+                   std::int64_t(status.st_ino)};
   std::vector<Where> all(static_cast<std::size_t>(ranks));
-  MPI_Allgather(here.data(), 2, MPI_INT, all.data(), 2, MPI_INT, machine);
+  MPI_Allgather(here.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, machine);
   std::vector<FileDescriptor> opened;
-  for (Rank rank = 0; rank < ranks; ++rank) {
-    const auto [process, number] = all[std::size_t(rank)];
-    opened.emplace_back(rank != mine && number >= 0
-                            ? ::open(fmt::format("/proc/{}/fd/{}", process, number).c_str(), O_RDWR | O_CLOEXEC)
-                            : -1);
-  }
+  for (Rank rank = 0; rank < ranks; ++rank)
+    opened.push_back(rank == mine ? FileDescriptor() : opened_if_same(all[std::size_t(rank)]));
   opened[std::size_t(mine)] = std::move(made);
   int complete = std::ranges::count_if(opened, &FileDescriptor::operator bool) == ranks ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &complete, 1, MPI_INT, MPI_MIN, machine);
@@ -169,9 +183,10 @@ void MpiCommunicator::meet_machine() {
   // Whether descriptors can be opened is tried, wherever ranks share a machine.
   int local_rank = 0;
   MPI_Comm_rank(machine, &local_rank);
-  const bool open = !shared_by_all(machine, local_rank, made_or_nothing(SharedSegments::make_memory)).empty();
+  const bool can_open =
+      !shared_by_all(machine, local_rank, made_or_nothing(SharedSegments::make_memory)).empty();
   int mine = rank_;
-  if (open) MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_INT, MPI_MIN, machine);
+  if (can_open) MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_INT, MPI_MIN, machine);
   machines_.resize(std::size_t(size_));
   MPI_Allgather(&mine, 1, MPI_INT, machines_.data(), 1, MPI_INT, MPI_COMM_WORLD);
   MPI_Comm_free(&machine);

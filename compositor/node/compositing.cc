@@ -8,17 +8,6 @@
 
 namespace understudy::compositor {
 
-namespace {
-
-bool lie_apart(std::span<const volume::Rect> rects) {
-  for (auto rect = rects.begin(); rect != rects.end(); ++rect)
-    for (auto other = rects.begin(); other != rect; ++other)
-      if (!intersection(*rect, *other).empty()) return false;
-  return true;
-}
-
-}  // namespace
-
 Layout Compositing::layout(bool may_travel_as_halves) const {
   return may_travel_as_halves && settings_.layout == Layout::rgba32f ? Layout::rgba16f : settings_.layout;
 }
@@ -29,8 +18,7 @@ void Compositing::prepare() {
 
 Schedule Compositing::schedule_of(const ImageTask& task, std::span<const volume::Rect> footprints,
                                   const std::vector<bool>& reached_by) const {
-  if (lie_apart(footprints)) {
-    // Nothing to blend: sort-first.
+  if (task.divided) {
     Schedule gathered = schedule(Algorithm::serial, task.order, footprints);
     write_gathered(gathered, reached_by);
     return gathered;

@@ -27,6 +27,7 @@ struct ImageTask {
   Layout layout{};              ///< that its parts travel in
   bool only_footprints = true;  ///< travel
   std::vector<Rank> order;      ///< all ranks, front first
+  bool divided = false;         ///< each rank draws a leaf of its own: there is nothing to blend
 };
 
 class Compositing {

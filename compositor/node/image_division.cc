@@ -27,7 +27,7 @@ std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& rendere
   const auto groups = std::size_t(arrangement.groups());
   const auto mine = std::size_t(arrangement.seat(communicator.rank()).group);
   const std::vector<Rect> tiles = tiles_of(pixels);
-  // Of neighbouring tiles each is another group's, so that none estimates all that is dear.
+  // Neighbouring tiles are estimated by different groups, so that none estimates all expensive tiles.
   std::vector<Rect> own;
   for (std::size_t tile = mine; tile < tiles.size(); tile += groups) own.push_back(tiles[tile]);
   const std::size_t most = (tiles.size() + groups - 1) / groups;

@@ -39,7 +39,7 @@ struct Outcome {
   volume::FrameCounts counts;
   std::uint32_t control_messages = 0;  ///< of opaque tiles, to every rank behind
   std::uint64_t control_message_count = 0, control_bytes = 0;
-  int process = 0, descriptor = -1;  ///< of bricks that begin to be kept for others
+  int process = 0, descriptor = -1;  ///< where this rank keeps the begun volume, if others read it
   RankLoad load;
 };
 

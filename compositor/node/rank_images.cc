@@ -2,6 +2,7 @@
 // How a rank draws its part of an image, and how the parts become one.
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "compositor/crop.h"
@@ -41,7 +42,11 @@ void RankLoop::begin_divided_image(std::uint64_t client, const std::function<vol
   }
   const ProcessorClock processors;
   const auto start = std::chrono::steady_clock::now();
-  divide_image(client);
+  try {
+    divide_image(client);
+  } catch (const std::bad_alloc&) {
+    communicator_.abandon("no memory is left to divide an image: use fewer nodes on a machine, or --sort last");
+  }
   mine.counts.division_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   mine.counts.processor_ms += processors.ms();
@@ -54,6 +59,7 @@ void RankLoop::divide_image(std::uint64_t client) {
       compositor::divide_image(communicator_, renderer_, client, request_, whole_);
   const auto leaf_of = [&](Rank rank) { return leaves[std::size_t(arrangement.seat(rank).group)]; };
   leaf_ = leaf_of(communicator_.rank());
+  task_.divided = arrangement.members() == 1;
   for (std::size_t rank = 0; rank < footprints_.size(); ++rank)
     footprints_[rank] = intersection(footprints_[rank], leaf_of(Rank(rank)));
 }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "compositor/logging/log.h"
+#include "compositor/node/image_division.h"
 #include "compositor/service.h"
 #include "compositor/service/request_message.h"
 
@@ -173,7 +174,10 @@ std::vector<Outcome> RankLoop::perform(const Order& order, Bytes payload) {
   const bool begins = order.type == NodeMessage::begin_volume || order.type == LoadMessage::load_volume;
   if (begins && !first_refusal(outcomes)) find_bricks(*mine.filling, outcomes);
   const auto done = [](const Outcome& outcome) { return !outcome.refused && outcome.load.done(); };
-  if (is_load(order.type) && std::ranges::all_of(outcomes, done)) loads_.complete(*mine.filling);
+  if (is_load(order.type) && std::ranges::all_of(outcomes, done)) {
+    loads_.complete(*mine.filling);
+    all_agree(communicator_, true);  // from here on ranks may read bricks that others keep
+  }
   return outcomes;
 }
 

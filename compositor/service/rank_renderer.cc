@@ -192,7 +192,15 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
 }
 
 Arrangement RankRenderer::arranged(const VolumeDescription& description) const {
-  return {sort_, machines_, stored_bytes(description)};
+  // What other volumes take of a machine; all ranks come to the same.
+  SortSettings sort = sort_;
+  for (const auto& [key, volume] : volumes_) {
+    const VolumeDescription& held = volume->bricks.description();
+    if (held.id == description.id) continue;
+    const std::uint64_t of_machine = stored_bytes(held) / std::uint64_t(volume->arrangement.members());
+    sort.bytes_of_machine -= std::min(sort.bytes_of_machine, of_machine);
+  }
+  return {sort, machines_, stored_bytes(description)};
 }
 
 // Asked for early: memory that is promised but not there ends in a killed process, not in an exception.
@@ -277,6 +285,8 @@ std::vector<TexelBox> RankRenderer::shares(VolumeKey key, std::span<const TexelB
 void RankRenderer::add_texels(VolumeKey key, std::span<const TexelBox> shares,
                               std::span<const std::byte> texels) {
   Volume& volume = find(key);
+  if (volume.state == Volume::State::complete)
+    throw RequestRefused(fmt::format("volume {} is complete: begin a change", key.volume));
   refusing([&] {
     for (const TexelBox& share : shares) {
       const std::size_t bytes = texels_in(share) * bytes_per_texel(key);
@@ -293,10 +303,16 @@ void RankRenderer::texels_change(VolumeKey key, std::span<const TexelBox> boxes)
   Volume& volume = find(key);
   // Whoever keeps the bricks finds the blocks when it writes them.
   if (volume.keeps_bricks || volume.state != Volume::State::changing) return;
-  for (const TexelBox& box : boxes) {
-    const std::vector<std::size_t> blocks = volume.bricks.blocks_that_show(box);
-    volume.changed_blocks.insert(volume.changed_blocks.end(), blocks.begin(), blocks.end());
-  }
+  refusing([&] {
+    std::vector<std::size_t>& changed = volume.changed_blocks;
+    for (const TexelBox& box : boxes) {
+      const std::vector<std::size_t> blocks = volume.bricks.blocks_that_show(box);
+      changed.insert(changed.end(), blocks.begin(), blocks.end());
+      if (changed.size() <= volume.bricks.blocks()) continue;
+      std::ranges::sort(changed);
+      changed.erase(std::ranges::unique(changed).begin(), changed.end());
+    }
+  });
 }
 
 std::size_t RankRenderer::bytes_per_texel(VolumeKey key) const {
@@ -353,17 +369,22 @@ void RankRenderer::begin_image() {
   if (limits_.image_time.count() > 0) image_until_ = Clock::now() + limits_.image_time;
 }
 
-void RankRenderer::draw(Volume& volume, const RenderRequest& request, Image& image, FrameCounts& counts,
-                        Occlusion* occlusion) {
-  const auto draws = [&] { volume.renderer->render(request, image, counts, occlusion); };
-  if (!image_until_) return draws();
-  if (done_until(*image_until_, draws)) return;
+void RankRenderer::within_time(Volume& volume, const std::function<void()>& work) {
+  if (!image_until_) return work();
+  if (done_until(*image_until_, work)) return;
   // What it keeps of a classification may be half made.
   volume.renderer = make_renderer_(volume.bricks);
   throw RequestRefused(
       fmt::format("an image took longer than {} ms, the limit of these nodes: ask for fewer pixels or samples, "
                   "or use more nodes",
                   limits_.image_time.count()));
+}
+
+void RankRenderer::keep_image_limits(const RenderRequest& request) const {
+  if (request.window.pixels() > limits::max_window_pixels)
+    throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", request.window.pixels(),
+                                     limits::max_window_pixels));
+  if (image_until_) refuse_excess(request);
 }
 
 Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, FrameCounts& counts,
@@ -373,16 +394,12 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
   Image image = refusing([&] {
     const VolumeDescription& description = volume.bricks.description();
     validate(description, request);
-    if (request.window.pixels() > limits::max_window_pixels)
-      throw RequestRefused(fmt::format("an image of {} pixels is over the limit of {}", request.window.pixels(),
-                                       limits::max_window_pixels));
-    // Before memory is asked for.
-    if (image_until_) refuse_excess(request);
+    keep_image_limits(request);  // before memory is asked for
     const Rect everything = request.optimizations.footprints
                                 ? footprint(request, description, volume.tree.box(volume.seat.member))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
-    draw(volume, request, result, counts, occlusion);
+    within_time(volume, [&] { volume.renderer->render(request, result, counts, occlusion); });
     return result;
   });
   if (request.optimizations.footprints) crop_to_content(image, request.op);
@@ -395,8 +412,9 @@ std::vector<float> RankRenderer::estimated_costs(std::uint64_t client, const Ren
                                                  std::span<const Rect> tiles) {
   Volume& volume = find_complete(client, request);
   return refusing([&] {
+    keep_image_limits(request);
     std::vector<float> costs(tiles.size());
-    volume.renderer->estimate_costs(request, tiles, costs);
+    within_time(volume, [&] { volume.renderer->estimate_costs(request, tiles, costs); });
     return costs;
   });
 }

@@ -120,8 +120,9 @@ class RankRenderer {
   int ranks() const { return int(machines_.size()); }
   Arrangement arranged(const volume::VolumeDescription& description) const;
   void keep_limits(VolumeKey key, const volume::VolumeDescription& description) const;
-  void draw(Volume& volume, const volume::RenderRequest& request, volume::Image& image,
-            volume::FrameCounts& counts, volume::Occlusion* occlusion);
+  void keep_image_limits(const volume::RenderRequest& request) const;
+  /// Of the image that is begun. Throws RequestRefused where that is over its limit.
+  void within_time(Volume& volume, const std::function<void()>& work);
   Volume& find(VolumeKey key) const;
   Volume& find_complete(std::uint64_t client, const volume::RenderRequest& request) const;
 

@@ -10,7 +10,7 @@
 
 namespace understudy::compositor {
 
-/// Cuts lie at multiples of so many pixels: a packet of rays is as wide.
+/// Cuts lie at multiples of so many pixels: rays are cast four by four.
 constexpr int leaf_alignment = 4;
 
 /// `count` >= 1 rectangles that tile `costs.pixels()`; some are empty where there are more leaves than pixels.

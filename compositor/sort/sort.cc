@@ -23,7 +23,7 @@ std::optional<std::vector<std::vector<int>>> equal_machines(const std::vector<in
     }
     ranks[std::size_t(machine)].push_back(int(rank));
   }
-  if (std::ranges::any_of(ranks, [&](const auto& of) { return of.size() != ranks.front().size(); }))
+  if (std::ranges::any_of(ranks, [&](const auto& local) { return local.size() != ranks.front().size(); }))
     return std::nullopt;
   return ranks;
 }
@@ -68,12 +68,16 @@ Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& m
     : seats_(machines.size()), ranks_(machines.size()) {
   const auto by_machine = equal_machines(machines);
   const int count = by_machine ? int(by_machine->size()) : 0;
-  // Machines hold copies together, and the ranks of each divide its part of the image; where ranks hold their
-  // own, as all do that divide one volume, they are machines to this.
+  // Machines hold copies together, and the ranks of each divide its part of the image. Where all ranks divide
+  // one volume, or machines differ, each rank counts as a machine.
   const bool of_machines =
       count > 0 && settings.sort != Sort::last && (settings.sort != Sort::hybrid || count > 1);
   const int all = of_machines ? count : ranks();
-  members_ = least_divisor(all, [&](int members) { return is_enough(settings, members, all, bytes); });
+  members_ = least_divisor(all, [&](int members) {
+    // Which ranks of unequal machines would hold a copy together cannot be said: one, or all.
+    if (settings.sort == Sort::automatic && !of_machines && members > 1) return false;
+    return is_enough(settings, members, all, bytes);
+  });
   const auto sit = [&](int rank, int group, int member) {
     seats_[std::size_t(rank)] = {group, member, rank};
     ranks_[std::size_t(group * members_ + member)] = rank;
@@ -87,7 +91,7 @@ Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& m
   } else {
     for (int rank = 0; rank < ranks(); ++rank) sit(rank, rank / members_, rank % members_);
   }
-  for (std::size_t rank = 0; rank < seats_.size(); ++rank)
+  for (std::size_t rank = 0; rank < seats_.size() && bytes >= settings.least_shared_bytes; ++rank)
     for (std::size_t other = 0; other < rank; ++other)
       if (machines[other] == machines[rank] && seats_[other].member == seats_[rank].member) {
         seats_[rank].keeper = int(other);

@@ -22,8 +22,10 @@ enum class Sort : std::uint8_t {
 
 struct SortSettings {
   Sort sort = Sort::last;
-  /// What a machine may keep of one volume's texels, the same on all ranks; for Sort::automatic.
+  /// What a machine may keep of texels, the same on all ranks; for Sort::automatic.
   std::uint64_t bytes_of_machine = 0;
+  /// Of smaller volumes each rank keeps its own bricks: whoever shares them holds a descriptor open for each.
+  std::uint64_t least_shared_bytes = std::uint64_t(1) << 20;
 };
 
 /// "auto", "first", "last" or "hybrid". False, with `settings` unchanged, for any other.

@@ -37,10 +37,12 @@ class LoadTest : public ::testing::Test {
   }
 
   /// 0: in this process.
-  std::unique_ptr<LoadingService> service(int ranks) {
+  std::unique_ptr<LoadingService> service(int ranks, const SortSettings& sort = {}) {
     if (ranks == 0) return embedded_loading_service();
-    group_ = std::jthread([this, ranks] {
-      run_ranks(ranks, [&](Communicator& communicator) { run_node(communicator, socket_of_nodes(path_)); });
+    group_ = std::jthread([this, ranks, sort] {
+      run_ranks(ranks, [&](Communicator& communicator) {
+        run_node(communicator, socket_of_nodes(path_), {.sort = sort});
+      });
     });
     EXPECT_TRUE(launcher_->wait_for_group());
     return remote_loading_service(path_, {});
@@ -78,6 +80,24 @@ std::vector<RankLoad> load(LoadingService& service, const LoadRequest& request) 
     }
   }
   return ranks;
+}
+
+TEST_F(LoadTest, RanksThatReadTheBricksOfOthersShowEveryVolumeAsSoonAsItIsThere) {
+  const Texture lobes = some_texture(7), flat = some_texture(8, TexelType::u16);
+  const auto sent = embedded_service();
+  for (const Texture* texture : {&lobes, &flat}) upload(*sent, *texture);
+  for (const Sort sort : {Sort::first, Sort::hybrid}) {
+    const auto loading = service(4, {sort, 0, 0});
+    for (int again = 0; again < 10; ++again)
+      for (const Texture* texture : {&lobes, &flat}) {
+        const TexelType type = texture->description.type;
+        const std::string file = write("v_41x37x29_" + std::string(name_of(type)) + ".raw", texture->texels);
+        load(*loading, {texture->description, file, {}, {}});
+        const volume::RenderRequest request = some_request(*texture);
+        EXPECT_LE(largest_difference(image_of(*loading, request), image_of(*sent, request)), 1e-5);
+      }
+    dismiss();
+  }
 }
 
 TEST_F(LoadTest, WhatRanksReadGivesTheImageOfWhatIsSentAndEachReadsItsShare) {

@@ -23,7 +23,7 @@ using volume::TexelType;
 class NodeGroupSort : public NodeGroupTest {
  protected:
   Group& start_sorted(int ranks, Sort sort, const ExchangeSettings& exchange = drawn_first) {
-    return start(ranks, limits::stall_patience, {}, exchange, {sort, std::uint64_t(1) << 40});
+    return start(ranks, limits::stall_patience, {}, exchange, {sort, std::uint64_t(1) << 40, 0});
   }
   void dismiss(const Group& group) {
     launcher_->ask([](Broker& b) { b.dismiss_node_group(); });

@@ -42,7 +42,7 @@ TEST(Arrangement, OfSortLastHasOneGroupWhoseMembersKeepTheirOwnBricks) {
 
 TEST(Arrangement, OfSortFirstKeepsACopyOnEachMachine) {
   for (const int machines : {1, 2, 4}) {
-    const Arrangement arrangement({Sort::first}, spread_over(machines, 8), 1000);
+    const Arrangement arrangement({Sort::first, 0, 1000}, spread_over(machines, 8), 1000);
     EXPECT_EQ(arrangement.members(), 1);
     EXPECT_EQ(arrangement.groups(), 8);
     for (int rank = 0; rank < 8; ++rank) {
@@ -50,6 +50,11 @@ TEST(Arrangement, OfSortFirstKeepsACopyOnEachMachine) {
       EXPECT_EQ(arrangement.readers(rank), rank < machines ? 8 / machines : 0);
     }
   }
+}
+
+TEST(Arrangement, KeepsSmallVolumesOnEveryRank) {
+  const Arrangement arrangement({Sort::first, 0, 1000}, on_one_machine(4), 999);
+  for (int rank = 0; rank < 4; ++rank) EXPECT_EQ(arrangement.readers(rank), 1);
 }
 
 TEST(Arrangement, OfHybridHasAboutAsManyGroupsAsMembers) {
@@ -69,6 +74,9 @@ TEST(Arrangement, AutomaticallyAsFewMachinesHoldACopyAsHaveRoomForIt) {
   EXPECT_EQ(Arrangement(settings, spread_over(8, 16), 1000).members(), 4);
   EXPECT_EQ(Arrangement(settings, spread_over(6, 6), 1000).members(), 6);  // no four of six
   EXPECT_EQ(Arrangement(settings, spread_over(8, 8), 100'000).members(), 8);
+  // Of machines with different numbers of ranks each rank has room for all of it, or all divide it.
+  EXPECT_EQ(Arrangement(settings, {0, 0, 0, 1}, 300).members(), 1);
+  EXPECT_EQ(Arrangement(settings, {0, 0, 0, 1}, 301).members(), 4);
   // However little room there is, one machine has to do.
   EXPECT_EQ(Arrangement(settings, on_one_machine(8), 100'000).members(), 1);
 }
@@ -77,7 +85,7 @@ TEST(Arrangement, HasASeatForEveryRankAndARankOnEverySeat) {
   for (const Sort sort : {Sort::automatic, Sort::first, Sort::last, Sort::hybrid})
     for (const std::vector<int>& machines :
          {on_one_machine(12), spread_over(3, 12), spread_over(12, 12), std::vector{0, 0, 0, 5, 5, 9}}) {
-      const Arrangement arrangement({sort, 100}, machines, 250);
+      const Arrangement arrangement({sort, 100, 0}, machines, 250);
       int readers = 0;
       for (int rank = 0; rank < arrangement.ranks(); ++rank) {
         const Arrangement::Seat& seat = arrangement.seat(rank);

@@ -452,7 +452,7 @@ std::byte* BrickStore::allocate_block() {
     free_blocks_.pop_back();
     return place;
   }
-  if (shared_) return shared_.bytes().data() + shared_blocks_at() + shared_used_++ * block_bytes_;
+  if (shared_) return allocate_shared_block();
   if (chunks_.empty() || chunk_used_ == blocks_per_chunk) {
     chunks_.push_back(std::make_unique<std::byte[]>(blocks_per_chunk * block_bytes_));
     chunk_used_ = 0;

@@ -154,6 +154,7 @@ class BrickStore {
   template <class Call>
   void with_texel(Call call) const;
   std::byte* allocate_block();
+  std::byte* allocate_shared_block();
   std::size_t shared_ranges_at() const;
   std::size_t shared_blocks_at() const;
   std::size_t shared_bytes() const;

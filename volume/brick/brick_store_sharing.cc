@@ -34,13 +34,23 @@ std::size_t BrickStore::shared_blocks_at() const {
 }
 
 std::size_t BrickStore::shared_bytes() const {
-  // No two blocks that differ share a place, and none has two.
+  // There are never more places than blocks.
   return shared_blocks_at() + blocks_.size() * block_bytes_ + read_beyond;
 }
 
 void BrickStore::share() {
   if (finished_ || !chunks_.empty()) throw std::logic_error("a store is shared before texels come");
-  if (!blocks_.empty()) shared_ = SharedBlocks(shared_bytes());
+  if (blocks_.empty()) return;
+  shared_ = SharedBlocks(shared_bytes());
+  shared_.reserve(0, shared_blocks_at());
+}
+
+std::byte* BrickStore::allocate_shared_block() {
+  const std::size_t first = shared_blocks_at() + shared_used_ * block_bytes_;
+  if (shared_used_ % blocks_per_chunk == 0)
+    shared_.reserve(first, std::min(blocks_per_chunk * block_bytes_, shared_bytes() - first));
+  ++shared_used_;
+  return shared_.bytes().data() + first;
 }
 
 void BrickStore::publish() {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -54,6 +55,10 @@ SharedBlocks::SharedBlocks(const std::string& path) {
     throw;
   }
   ::close(descriptor);
+}
+
+void SharedBlocks::reserve(std::size_t first, std::size_t bytes) const {
+  if (::fallocate(descriptor_, 0, off_t(first), off_t(bytes)) != 0) throw std::bad_alloc();
 }
 
 SharedBlocks::~SharedBlocks() {

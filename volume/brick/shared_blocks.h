@@ -24,6 +24,9 @@ class SharedBlocks {
   /// Of what was made here; -1 otherwise.
   int descriptor() const { return descriptor_; }
   std::span<std::byte> bytes() const { return bytes_; }
+  /// Takes pages for these bytes now, of what was made here: without, writing to memory that is not there ends
+  /// the process. Throws std::bad_alloc.
+  void reserve(std::size_t first, std::size_t bytes) const;
 
  private:
   int descriptor_ = -1;

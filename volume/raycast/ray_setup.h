@@ -46,7 +46,7 @@ struct RaySetup {
   RaySetup(const RenderRequest& request, const BrickStore& store, const TexelBox& owned);
 
   /// From now on ray (x, y) is that of a pixel in the middle of the square of `pixels` x `pixels` whose lowest
-  /// one is pixels * (x, y): few rays stand for all. Once.
+  /// one is pixels * (x, y): few rays stand for all. Call it once.
   void spread(int pixels);
   /// The pixel of ray `at` along an axis.
   int pixel_of(int at) const { return at * pixels_apart + pixels_apart / 2; }

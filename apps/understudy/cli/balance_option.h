@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `--balance` of `run`, `replay` and `serve`: who of the nodes gets how much of a volume.
+// `--balance` of `run`, `replay`, `render`, `study`, `view` and `serve`: who of the nodes gets how much of a
+// volume.
 #pragma once
 
 #include <CLI/CLI.hpp>

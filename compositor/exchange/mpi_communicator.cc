@@ -68,6 +68,7 @@ std::vector<FileDescriptor> shared_by_all(MPI_Comm machine, Rank mine, FileDescr
   std::vector<Where> all(static_cast<std::size_t>(ranks));
   MPI_Allgather(here.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, machine);
   std::vector<FileDescriptor> opened;
+  opened.reserve(all.size());
   for (Rank rank = 0; rank < ranks; ++rank)
     opened.push_back(rank == mine ? FileDescriptor() : opened_if_same(all[std::size_t(rank)]));
   opened[std::size_t(mine)] = std::move(made);

@@ -25,7 +25,7 @@ std::vector<Rect> divide_image(Communicator& communicator, RankRenderer& rendere
                                const volume::RenderRequest& request, const Rect& pixels) {
   const Arrangement& arrangement = renderer.arrangement({client, request.volume});
   const auto groups = std::size_t(arrangement.groups());
-  const auto mine = std::size_t(arrangement.seat(communicator.rank()).group);
+  const auto mine = std::size_t(arrangement.place(communicator.rank()).group);
   const std::vector<Rect> tiles = tiles_of(pixels);
   // Neighbouring tiles are estimated by different groups, so that none estimates all expensive tiles.
   std::vector<Rect> own;

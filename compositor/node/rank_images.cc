@@ -57,7 +57,7 @@ void RankLoop::divide_image(std::uint64_t client) {
   if (arrangement.groups() == 1) return;
   const std::vector<volume::Rect> leaves =
       compositor::divide_image(communicator_, renderer_, client, request_, whole_);
-  const auto leaf_of = [&](Rank rank) { return leaves[std::size_t(arrangement.seat(rank).group)]; };
+  const auto leaf_of = [&](Rank rank) { return leaves[std::size_t(arrangement.place(rank).group)]; };
   leaf_ = leaf_of(communicator_.rank());
   task_.divided = arrangement.members() == 1;
   for (std::size_t rank = 0; rank < footprints_.size(); ++rank)

@@ -93,8 +93,8 @@ void RankLoop::tell_where_bricks_are(VolumeKey key, OwnOutcome& mine) const {
 }
 
 void RankLoop::find_bricks(VolumeKey key, const std::vector<Outcome>& outcomes) {
-  const Arrangement::Seat& seat = renderer_.arrangement(key).seat(communicator_.rank());
-  const Outcome& keeper = outcomes[std::size_t(seat.keeper)];
+  const Arrangement::Place& place = renderer_.arrangement(key).place(communicator_.rank());
+  const Outcome& keeper = outcomes[std::size_t(place.keeper)];
   if (keeper.descriptor < 0) return;
   renderer_.find_bricks_at(key, fmt::format("/proc/{}/fd/{}", keeper.process, keeper.descriptor));
 }

@@ -35,7 +35,7 @@ using namespace volume;
 
 struct RankRenderer::Volume {
   Arrangement arrangement;
-  Arrangement::Seat seat;
+  Arrangement::Place place;
   KdTree tree;  ///< of the members of a group
   BrickStore bricks;
   std::unique_ptr<BrickRenderer> renderer;
@@ -50,12 +50,12 @@ struct RankRenderer::Volume {
   Volume(const VolumeDescription& description, int rank, const Arrangement& arranged,
          const BrickRendererFactory& make_renderer)
       : arrangement(arranged),
-        seat(arrangement.seat(rank)),
+        place(arrangement.place(rank)),
         tree(description, arrangement.members()),
-        bricks(description, tree.box(seat.member)),
+        bricks(description, tree.box(place.member)),
         renderer(make_renderer(bricks)),
         version(description.version),
-        keeps_bricks(seat.keeper == rank) {
+        keeps_bricks(place.keeper == rank) {
     if (keeps_bricks && arrangement.readers(rank) > 1) bricks.share();
     find_shown();
   }
@@ -113,7 +113,7 @@ std::uint64_t stored_bytes(const VolumeDescription& description) {
 
 /// What a rank has of the stored texels; of what ranks of one machine share, its part.
 std::uint64_t share_of(const VolumeDescription& description, const Arrangement& arrangement, int rank) {
-  const int readers = arrangement.readers(arrangement.seat(rank).keeper);
+  const int readers = arrangement.readers(arrangement.place(rank).keeper);
   return stored_bytes(description) / std::uint64_t(arrangement.members()) / std::uint64_t(readers);
 }
 
@@ -185,7 +185,7 @@ RankRenderer::Volume& RankRenderer::find_complete(std::uint64_t client, const Re
       volume.read_bricks();
     } catch (const std::exception& error) {
       throw RequestRefused(fmt::format("rank {} cannot read the bricks of rank {}: {}; use --sort last", rank_,
-                                       volume.seat.keeper, error.what()));
+                                       volume.place.keeper, error.what()));
     }
   }
   return volume;
@@ -273,11 +273,11 @@ void RankRenderer::check_texels(VolumeKey key, std::span<const TexelBox> boxes, 
 
 std::vector<TexelBox> RankRenderer::shares(VolumeKey key, std::span<const TexelBox> boxes, int rank) const {
   const Volume& volume = find(key);
-  const Arrangement::Seat& seat = volume.arrangement.seat(rank);
+  const Arrangement::Place& place = volume.arrangement.place(rank);
   std::vector<TexelBox> shares;
-  if (seat.keeper != rank) return shares;
+  if (place.keeper != rank) return shares;
   for (const TexelBox& box : boxes)
-    if (const TexelBox share = intersection(box, volume.shown[std::size_t(seat.member)]); !is_empty(share))
+    if (const TexelBox share = intersection(box, volume.shown[std::size_t(place.member)]); !is_empty(share))
       shares.push_back(share);
   return shares;
 }
@@ -310,7 +310,7 @@ void RankRenderer::texels_change(VolumeKey key, std::span<const TexelBox> boxes)
       changed.insert(changed.end(), blocks.begin(), blocks.end());
       if (changed.size() <= volume.bricks.blocks()) continue;
       std::ranges::sort(changed);
-      changed.erase(std::ranges::unique(changed).begin(), changed.end());
+      changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     }
   });
 }
@@ -329,7 +329,7 @@ std::size_t RankRenderer::bytes(VolumeKey key) const {
 
 const TexelBox& RankRenderer::cells(VolumeKey key) const {
   const Volume& volume = find(key);
-  return volume.tree.box(volume.seat.member);
+  return volume.tree.box(volume.place.member);
 }
 
 const Arrangement& RankRenderer::arrangement(VolumeKey key) const {
@@ -348,7 +348,7 @@ std::vector<std::uint64_t> RankRenderer::histogram(VolumeKey key, const Histogra
   const Volume& volume = find(key);
   if (volume.state != Volume::State::complete)
     throw RequestRefused(fmt::format("volume {} is not complete yet", key.volume));
-  if (volume.seat.group > 0) return std::vector<std::uint64_t>(std::size_t(bins.count));
+  if (volume.place.group > 0) return std::vector<std::uint64_t>(std::size_t(bins.count));
   return refusing([&] { return volume::histogram(volume.bricks, bins); });
 }
 
@@ -396,7 +396,7 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
     validate(description, request);
     keep_image_limits(request);  // before memory is asked for
     const Rect everything = request.optimizations.footprints
-                                ? footprint(request, description, volume.tree.box(volume.seat.member))
+                                ? footprint(request, description, volume.tree.box(volume.place.member))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
     within_time(volume, [&] { volume.renderer->render(request, result, counts, occlusion); });
@@ -439,7 +439,7 @@ std::vector<IntegralPart> RankRenderer::integrals(std::uint64_t client, const Re
     while (done < pixels.size()) {
       const std::size_t end = std::min(done + at_once, pixels.size());
       tbb::parallel_for(done, end, [&](std::size_t i) {
-        if (i % groups != std::size_t(volume.seat.group)) return;
+        if (i % groups != std::size_t(volume.place.group)) return;
         const RayIntegral seen =
             stored_pixel_integral(volume.bricks, request, medium, pixels[i].x, pixels[i].y, integral_tolerance);
         parts[i] = {seen.colour, seen.optical_depth};
@@ -458,12 +458,13 @@ std::vector<Rect> RankRenderer::footprints(std::uint64_t client, const RenderReq
   return refusing([&] {
     validate(volume.bricks.description(), request);
     std::vector<Rect> of_member;
+    of_member.reserve(std::size_t(volume.arrangement.members()));
     for (int member = 0; member < volume.arrangement.members(); ++member)
       of_member.push_back(footprint(request, volume.bricks.description(), volume.tree.box(member)));
     std::vector<Rect> result;
     result.reserve(machines_.size());
     for (int rank = 0; rank < ranks(); ++rank)
-      result.push_back(of_member[std::size_t(volume.arrangement.seat(rank).member)]);
+      result.push_back(of_member[std::size_t(volume.arrangement.place(rank).member)]);
     return result;
   });
 }

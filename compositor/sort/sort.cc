@@ -33,7 +33,7 @@ template <class IsEnough>
 int least_divisor(int all, IsEnough is_enough) {
   for (int divisor = 1; divisor < all; ++divisor)
     if (all % divisor == 0 && is_enough(divisor)) return divisor;
-  return all;
+  return std::max(all, 1);
 }
 
 /// Whether a copy that so many hold, of `all`, is one of those that are asked for.
@@ -65,7 +65,7 @@ bool set_sort(SortSettings& settings, std::string_view name) {
 }
 
 Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& machines, std::uint64_t bytes)
-    : seats_(machines.size()), ranks_(machines.size()) {
+    : places_(machines.size()), ranks_(machines.size()) {
   const auto by_machine = equal_machines(machines);
   const int count = by_machine ? int(by_machine->size()) : 0;
   // Machines hold copies together, and the ranks of each divide its part of the image. Where all ranks divide
@@ -78,29 +78,29 @@ Arrangement::Arrangement(const SortSettings& settings, const std::vector<int>& m
     if (settings.sort == Sort::automatic && !of_machines && members > 1) return false;
     return is_enough(settings, members, all, bytes);
   });
-  const auto sit = [&](int rank, int group, int member) {
-    seats_[std::size_t(rank)] = {group, member, rank};
-    ranks_[std::size_t(group * members_ + member)] = rank;
+  const auto put = [&](int rank, int group, int member) {
+    places_[std::size_t(rank)] = {group, member, rank};
+    ranks_[index_of(group, member)] = rank;
   };
   if (of_machines) {
-    const int on_each = ranks() / count;
+    const int on_each = int(by_machine->front().size());
     for (int machine = 0; machine < count; ++machine)
       for (int i = 0; i < on_each; ++i)
-        sit((*by_machine)[std::size_t(machine)][std::size_t(i)], machine / members_ * on_each + i,
+        put((*by_machine)[std::size_t(machine)][std::size_t(i)], machine / members_ * on_each + i,
             machine % members_);
   } else {
-    for (int rank = 0; rank < ranks(); ++rank) sit(rank, rank / members_, rank % members_);
+    for (int rank = 0; rank < ranks(); ++rank) put(rank, rank / members_, rank % members_);
   }
-  for (std::size_t rank = 0; rank < seats_.size() && bytes >= settings.least_shared_bytes; ++rank)
+  for (std::size_t rank = 0; rank < places_.size() && bytes >= settings.least_shared_bytes; ++rank)
     for (std::size_t other = 0; other < rank; ++other)
-      if (machines[other] == machines[rank] && seats_[other].member == seats_[rank].member) {
-        seats_[rank].keeper = int(other);
+      if (machines[other] == machines[rank] && places_[other].member == places_[rank].member) {
+        places_[rank].keeper = int(other);
         break;
       }
 }
 
 int Arrangement::readers(int rank) const {
-  return int(std::ranges::count(seats_, rank, &Seat::keeper));
+  return int(std::ranges::count(places_, rank, &Place::keeper));
 }
 
 }  // namespace understudy::compositor

@@ -7,6 +7,7 @@
 // one of them keeps these for all.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -34,7 +35,7 @@ bool set_sort(SortSettings& settings, std::string_view name);
 /// Where ranks stand while they show one volume.
 class Arrangement {
  public:
-  struct Seat {
+  struct Place {
     int group = 0;
     int member = 0;
     int keeper = 0;  ///< the rank that keeps this one's bricks
@@ -43,18 +44,22 @@ class Arrangement {
   /// Of a volume with `bytes` of texels. `machines`, by rank: as Communicator::machines().
   Arrangement(const SortSettings& settings, const std::vector<int>& machines, std::uint64_t bytes);
 
-  int ranks() const { return int(seats_.size()); }
+  int ranks() const { return int(places_.size()); }
   int members() const { return members_; }
   int groups() const { return ranks() / members_; }
-  const Seat& seat(int rank) const { return seats_[std::size_t(rank)]; }
-  int rank_at(int group, int member) const { return ranks_[std::size_t(group * members_ + member)]; }
+  const Place& place(int rank) const { return places_[std::size_t(rank)]; }
+  int rank_at(int group, int member) const { return ranks_[index_of(group, member)]; }
   /// How many ranks read the bricks that `rank` keeps, this one too; 0: it keeps none.
   int readers(int rank) const;
 
  private:
+  std::size_t index_of(int group, int member) const {
+    return std::size_t(group) * std::size_t(members_) + std::size_t(member);
+  }
+
   int members_ = 1;
-  std::vector<Seat> seats_;  ///< by rank
-  std::vector<int> ranks_;   ///< by group, and there by member
+  std::vector<Place> places_;  ///< by rank
+  std::vector<int> ranks_;     ///< by group, and there by member
 };
 
 }  // namespace understudy::compositor

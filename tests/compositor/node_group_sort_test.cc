@@ -48,7 +48,7 @@ TEST(EstimatedCosts, AreWhatPartsOfAnImageTake) {
   renderer.end(key);
   volume::RenderRequest request =
       volume::testing::request_for(texture, volume::testing::usual_camera(640, 480), 640, 480, 300);
-  request.termination = 1e-3F;  // in the middle rays end early
+  request.termination = 1e-3F;  // early ray termination in the middle
   double whole = 0, worst = 0;
   std::vector<std::pair<double, double>> estimated_and_taken;
   for (const volume::Rect& part :

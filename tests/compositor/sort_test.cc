@@ -19,6 +19,7 @@ using volume::Rect;
 /// `count` machines with as many ranks each, which MPI has spread one after the other.
 std::vector<int> spread_over(int count, int ranks) {
   std::vector<int> machines;
+  machines.reserve(std::size_t(ranks));
   for (int rank = 0; rank < ranks; ++rank) machines.push_back(rank % count);
   return machines;
 }
@@ -34,7 +35,7 @@ TEST(Arrangement, OfSortLastHasOneGroupWhoseMembersKeepTheirOwnBricks) {
       EXPECT_EQ(arrangement.members(), ranks);
       EXPECT_EQ(arrangement.groups(), 1);
       for (int rank = 0; rank < ranks; ++rank) {
-        EXPECT_EQ(arrangement.seat(rank).keeper, rank);
+        EXPECT_EQ(arrangement.place(rank).keeper, rank);
         EXPECT_EQ(arrangement.readers(rank), 1);
       }
     }
@@ -46,7 +47,7 @@ TEST(Arrangement, OfSortFirstKeepsACopyOnEachMachine) {
     EXPECT_EQ(arrangement.members(), 1);
     EXPECT_EQ(arrangement.groups(), 8);
     for (int rank = 0; rank < 8; ++rank) {
-      EXPECT_EQ(arrangement.seat(rank).keeper, rank % machines);
+      EXPECT_EQ(arrangement.place(rank).keeper, rank % machines);
       EXPECT_EQ(arrangement.readers(rank), rank < machines ? 8 / machines : 0);
     }
   }
@@ -81,19 +82,19 @@ TEST(Arrangement, AutomaticallyAsFewMachinesHoldACopyAsHaveRoomForIt) {
   EXPECT_EQ(Arrangement(settings, on_one_machine(8), 100'000).members(), 1);
 }
 
-TEST(Arrangement, HasASeatForEveryRankAndARankOnEverySeat) {
+TEST(Arrangement, HasAPlaceForEveryRankAndARankOnEveryPlace) {
   for (const Sort sort : {Sort::automatic, Sort::first, Sort::last, Sort::hybrid})
     for (const std::vector<int>& machines :
          {on_one_machine(12), spread_over(3, 12), spread_over(12, 12), std::vector{0, 0, 0, 5, 5, 9}}) {
       const Arrangement arrangement({sort, 100, 0}, machines, 250);
       int readers = 0;
       for (int rank = 0; rank < arrangement.ranks(); ++rank) {
-        const Arrangement::Seat& seat = arrangement.seat(rank);
-        EXPECT_EQ(arrangement.rank_at(seat.group, seat.member), rank);
+        const Arrangement::Place& place = arrangement.place(rank);
+        EXPECT_EQ(arrangement.rank_at(place.group, place.member), rank);
         // Whose bricks a rank reads is the same member, on the same machine, and reads its own.
-        EXPECT_EQ(arrangement.seat(seat.keeper).member, seat.member);
-        EXPECT_EQ(arrangement.seat(seat.keeper).keeper, seat.keeper);
-        EXPECT_EQ(machines[std::size_t(seat.keeper)], machines[std::size_t(rank)]);
+        EXPECT_EQ(arrangement.place(place.keeper).member, place.member);
+        EXPECT_EQ(arrangement.place(place.keeper).keeper, place.keeper);
+        EXPECT_EQ(machines[std::size_t(place.keeper)], machines[std::size_t(rank)]);
         readers += arrangement.readers(rank);
       }
       EXPECT_EQ(readers, arrangement.ranks());

@@ -19,8 +19,6 @@ namespace {
 constexpr int block_row = BrickStore::block_row;
 constexpr int block_texels = BrickStore::block_texels;
 
-constexpr std::size_t blocks_per_chunk = 256;
-
 float as_value(std::uint8_t v) {
   return v;
 }

@@ -114,6 +114,8 @@ class BrickStore {
   static constexpr float largest_value = 4.2535296e37F;  // 2^125
 
  private:
+  static constexpr std::size_t blocks_per_chunk = 256;  ///< of memory that is taken at once
+
   /// The blocks of one block layer (equal z) while its slices arrive: uncompressed, dense.
   struct Layer {
     std::vector<std::byte> texels;

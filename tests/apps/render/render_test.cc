@@ -172,7 +172,7 @@ TEST_F(Render, NodesGiveTheImageOfOneProcessAndReadTheirSharesAlone) {
 }
 
 TEST_F(Render, NodesThatDivideTheImageReadTheFileOnce) {
-  const std::string common = ball(48) + " --transfer-function rainbow --size 90x80 --save-float " +
+  const std::string common = ball(128) + " --transfer-function rainbow --size 90x80 --save-float " +
                              folder_.file("f.pfm") + " --report " + folder_.file("r.json");
   ASSERT_EQ(render(common).status, 0);
   const RgbaImage expected = read_image(folder_.file("f.pfm"));
@@ -184,7 +184,7 @@ TEST_F(Render, NodesThatDivideTheImageReadTheFileOnce) {
     const Json json = report();
     EXPECT_EQ(json["samples_taken"], samples);
     ASSERT_EQ(json["ranks"].size(), 4U);
-    EXPECT_GE(json["ranks"][0]["bytes_read"], 48 * 48 * 48 * 8);
+    EXPECT_GE(json["ranks"][0]["bytes_read"], 128 * 128 * 128 * 8);
     for (std::size_t rank = 1; rank < 4; ++rank) {
       EXPECT_LT(json["ranks"][rank]["bytes_read"], 4096);
       EXPECT_LT(10 * json["ranks"][rank]["brick_bytes"].get<std::uint64_t>(), json["ranks"][0]["brick_bytes"]);

@@ -50,6 +50,12 @@ std::optional<volume::Rect> Compositing::composite(const ImageTask& task, volume
 
 void Compositing::add_cost_of_whole_windows(const ImageTask& task, const ImageBuffers::Memory& memory,
                                             volume::FrameCounts& counts) {
+  if (task.divided) {
+    // Leaves leave nothing out: outside of them there is nothing of a rank's.
+    counts.bytes_of_whole_windows += counts.bytes_exchanged;
+    counts.messages_of_whole_windows += counts.messages;
+    return;
+  }
   if (task.window != priced_window_ || task.layout != priced_layout_ ||
       memory.reached_by != priced_reached_by_) {
     const std::vector<volume::Rect> windows(task.order.size(), task.window);

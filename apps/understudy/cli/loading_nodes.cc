@@ -34,7 +34,7 @@ ServiceMaker linked_to(const std::string& address) {
 void add_loading_nodes(CLI::App& subcommand, LoadingNodes& arguments) {
   CLI::Option* nodes = subcommand
                            .add_option("-n,--nodes", arguments.nodes,
-                                       "number of MPI ranks, each of which reads its own part; default: what a "
+                                       "number of MPI ranks, which read the file themselves; default: what a "
                                        "hostfile or a Slurm allocation says, else this process")
                            ->check(CLI::Range(1, spu::max_nodes));
   add_hostfile_option(subcommand, arguments.hostfile);

@@ -267,8 +267,8 @@ std::variant<volume::Light, Refusal> light_on(const SlopeProbe& slopes, const Li
     if (!(fit.worst <= same * std::max(1.0, brightest(inside)))) return another_colour;
     by_angle.push_back(fit.response);
   }
-  // Light that is hardly seen may be one that wakes on steeper slopes, and a neighbour's value that colours show
-  // a little is none: what a fit may be off by tells them from each other only beyond twice of it.
+  // Light that is hardly seen may be one that wakes on steeper slopes, and a neighbour's value that colours
+  // show a little is none: what a fit may be off by tells them from each other only beyond twice of it.
   constexpr float visible = 2 * same;
   if (light.even[0] > 0 && std::ranges::all_of(by_angle, [&](const volume::LightResponse& at) {
         return std::abs(at.diffuse - 1) < visible && std::abs(at.specular) < visible;

@@ -6,8 +6,10 @@ import ctypes
 import hashlib
 import hmac
 import os
+import re
 import socket
 import struct
+from pathlib import Path
 
 HELLO = b"UNDERLNK"
 LINK_VERSION = 5
@@ -17,9 +19,21 @@ MESSAGE_HEAD = struct.Struct("<IBBHQQ")
 BLOCK_BYTES = 1 << 18
 RECORD_BYTES = 1 << 16
 STREAM_HEAD_BYTES, SEAL_BYTES = 24, 17
-# Protocol, version, number: compositor/service/launcher_protocol.h, spu/remote/gl_server_protocol.h, line_protocol.h.
-TYPES = {"hello_client": (1, 13, 1), "hello_nodes": (1, 13, 2), "accepted": (1, 13, 4), "refused": (1, 13, 5),
-         "calls": (4, 12, 1), "answered": (4, 12, 2), "image": (4, 12, 3), "line_alive": (5, 1, 1)}
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def protocol(header):
+    """(number, version), as the header says them."""
+    found = re.search(r"return \{(\d+), (\d+), ", (ROOT / header).read_text(encoding="utf-8"))
+    return int(found[1]), int(found[2])
+
+
+LAUNCHER = protocol("compositor/service/launcher_protocol.h")
+GL_SERVER = protocol("spu/remote/gl_server_protocol.h")
+LINE = protocol("compositor/transport/tcp/line_protocol.h")
+# Protocol, version, number.
+TYPES = {"hello_client": (*LAUNCHER, 1), "hello_nodes": (*LAUNCHER, 2), "accepted": (*LAUNCHER, 4), "refused": (*LAUNCHER, 5),
+         "calls": (*GL_SERVER, 1), "answered": (*GL_SERVER, 2), "image": (*GL_SERVER, 3), "line_alive": (*LINE, 1)}
 NAMES = {number: name for name, number in TYPES.items()}
 
 SODIUM = ctypes.CDLL("libsodium.so.23")

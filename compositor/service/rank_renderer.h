@@ -94,7 +94,8 @@ class RankRenderer {
   volume::Image render(std::uint64_t client, const volume::RenderRequest& request, volume::FrameCounts& counts,
                        volume::Occlusion* occlusion = nullptr,
                        const std::optional<volume::Rect>& part = std::nullopt);
-  /// What each of `tiles` is expected to cost this rank, in a unit that all ranks with the same renderer share.
+  /// The estimated cost of each of `tiles` for this rank, in a unit that all ranks with the same renderer
+  /// share.
   std::vector<float> estimated_costs(std::uint64_t client, const volume::RenderRequest& request,
                                      std::span<const volume::Rect> tiles);
   /// By rank: outside it a rank's image is clear whatever its texels.

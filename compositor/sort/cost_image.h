@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an image is expected to cost, tile by tile, as a summed-area table: the cost of any rectangle is four
+// The estimated cost of an image, tile by tile, as a summed-area table: the cost of any rectangle is four
 // lookups. (Crow 1984; for sort-first balance Moloney, Weiskopf, Moeller, Strengert 2007.)
 #pragma once
 

@@ -305,28 +305,27 @@ void BrickStore::change(const TexelBox& box, std::span<const std::byte> texels,
   if (blocks_.empty()) return;
   const std::array<std::vector<std::vector<Point>>, 3> points{points_in(box, 0), points_in(box, 1),
                                                               points_in(box, 2)};
-  std::size_t block = 0;
-  for (const auto& z : points[2])
-    for (const auto& y : points[1])
-      for (const auto& x : points[0]) {
-        const std::size_t here = block++;
-        if (x.empty() || y.empty() || z.empty()) continue;
-        switch (volume_.type) {
-          case TexelType::u8:
-            change_block<std::uint8_t>(here, {x, y, z}, box, texels.data());
-            break;
-          case TexelType::u16:
-            change_block<std::uint16_t>(here, {x, y, z}, box, texels.data());
-            break;
-          case TexelType::f32:
-            change_block<float>(here, {x, y, z}, box, texels.data());
-            break;
-          case TexelType::rgba8:
-            change_block<std::uint32_t>(here, {x, y, z}, box, texels.data());
-            break;
-        }
-        changed.push_back(here);
-      }
+  const auto columns = std::size_t(block_counts_[0]), rows = std::size_t(block_counts_[1]);
+  for (const std::size_t here : blocks_that_show(box)) {
+    const std::vector<Point>& x = points[0][here % columns];
+    const std::vector<Point>& y = points[1][here / columns % rows];
+    const std::vector<Point>& z = points[2][here / (columns * rows)];
+    switch (volume_.type) {
+      case TexelType::u8:
+        change_block<std::uint8_t>(here, {x, y, z}, box, texels.data());
+        break;
+      case TexelType::u16:
+        change_block<std::uint16_t>(here, {x, y, z}, box, texels.data());
+        break;
+      case TexelType::f32:
+        change_block<float>(here, {x, y, z}, box, texels.data());
+        break;
+      case TexelType::rgba8:
+        change_block<std::uint32_t>(here, {x, y, z}, box, texels.data());
+        break;
+    }
+    changed.push_back(here);
+  }
 }
 
 template <class Call>

@@ -30,7 +30,7 @@ class BrickRenderer {
     draw(request, out, counts, occlusion);
   }
 
-  /// What render() may be expected to cost in each of `tiles`, in a unit of its own; `costs` has a number for
+  /// The estimated cost of render() in each of `tiles`, in a unit of its own; `costs` has a number for
   /// each tile. Where a renderer cannot tell, their pixels.
   virtual void estimate_costs(const RenderRequest& request, std::span<const Rect> tiles,
                               std::span<float> costs);

@@ -312,6 +312,51 @@ TEST(Proxies, AreNotMeasuredAgainWhenOpaqueGeometryMoves) {
   EXPECT_EQ(scene.app->substituted(), 5U) << scene.app->last_reason();
 }
 
+/// A table of few entries, whose corners lie between the values that are measured.
+void upload_coarse_table(GlApplication& app) {
+  constexpr int entries = 16;
+  std::vector<float> table;
+  for (int i = 0; i < entries; ++i) {
+    const float s = float(i) / (entries - 1);
+    table.insert(table.end(), {0.5F + 0.5F * std::sin(20 * s), s, 1 - s, 0.9F * s * s});
+  }
+  app.gl().TexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, entries, 0, GL_RGBA, GL_FLOAT, table.data());
+}
+
+TEST(Proxies, AreNotMeasuredAgainWhereTwoTablesTakeTurns) {
+  RayCasterScene scene(MarchStyle{});
+  if (!scene.app) GTEST_SKIP() << "no EGL context here";
+  constexpr std::uint64_t draws_to_check = 300;  // a table takes a thousand
+  scene.app->use_chain(true);
+  const DispatchTable& gl = scene.app->gl();
+  gl.ActiveTexture(GL_TEXTURE1);
+  GLint first = 0;
+  gl.GetIntegerv(GL_TEXTURE_BINDING_1D, &first);
+  GLuint second = 0;
+  gl.GenTextures(1, &second);
+  gl.BindTexture(GL_TEXTURE_1D, second);
+  gl.TexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  gl.TexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  upload_coarse_table(*scene.app);
+  double angle = 30;
+  for (int turn = 0; turn < 4; ++turn) {
+    for (const GLuint table : {GLuint(first), second}) {
+      scene.app->use_chain(true);
+      gl.ActiveTexture(GL_TEXTURE1);
+      gl.BindTexture(GL_TEXTURE_1D, table);
+      gl.ActiveTexture(GL_TEXTURE0);
+      const std::uint64_t before = GlApplication::draws_of_arrays();
+      const auto under = scene.frame(true, angle);
+      if (turn > 0) {
+        EXPECT_LT(GlApplication::draws_of_arrays() - before, draws_to_check) << "turn " << turn;
+      }
+      EXPECT_GE(psnr(under, scene.frame(false, angle)), 38) << "turn " << turn << ", table " << table;
+      angle += 7;
+    }
+  }
+  EXPECT_EQ(scene.app->substituted(), 8U) << scene.app->last_reason();
+}
+
 TEST(Proxies, RaysThatDoNotEndAtGeometryInTheBoxAreLeft) {
   for (const bool replaces : {false, true}) {
     RayCasterScene scene({.replaces = replaces, .discards = !replaces});

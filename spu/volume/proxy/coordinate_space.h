@@ -22,6 +22,7 @@ struct CoordinateSpace {
   volume::Vec3 scale{1, 1, 1};
   volume::Vec3 offset{};
   bool of_whole_box = false;  ///< so that the box that was drawn is the whole texture
+  bool operator==(const CoordinateSpace&) const = default;
 };
 
 /// The box of one draw, in texture space.

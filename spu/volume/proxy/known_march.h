@@ -24,9 +24,9 @@ struct KnownMarch {
   std::optional<March> march;
   int box_changes = 0;  ///< so often another box was drawn than the one that was taken for the whole texture
   MarchInputs inputs;   ///< what the march was found under
-  /// What the march is derived from, by a factor of its steps, or equals. (From march to march, opacities that
-  /// long steps make nearly 1 would be lost.)
-  std::optional<MeasuredMarch> measured;
+  /// The last few. The march is derived from the last one, by a factor of its steps, or
+  /// equals it. (From march to march, opacities that long steps make nearly 1 would be lost.)
+  std::vector<MeasuredMarch> measured;
   volume::Matrix4 camera{};  ///< of its last image, from texture to clip coordinates
   /// Where its program keeps fragments, where it discards any by their place; the last one measured last.
   std::vector<KeptWindow> kept;

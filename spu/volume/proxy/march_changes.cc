@@ -127,8 +127,12 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   std::vector<float> values;
   values.reserve(std::size_t(looked_at.values));
-  for (int i = 0; i < looked_at.values; ++i)
-    values.push_back(value_at({march.table.low, march.table.high}, (i + looked_at.offset) / looked_at.values));
+  // Of entries: between two of them colours may have a corner, which a table that was measured does not have.
+  const double last_entry = double(march.table.entries.size()) - 1;
+  for (int i = 0; i < looked_at.values; ++i) {
+    const double entry = std::round((i + looked_at.offset) / looked_at.values * last_entry);
+    values.push_back(value_at({march.table.low, march.table.high}, entry / last_entry));
+  }
   const auto expected = [&](const Rgba& fragment, float value, double n) {
     const Rgba sample = even_sample(march, value);
     const Rgba got = premultiplied(fragment, already);

@@ -106,6 +106,13 @@ RaysLookedAt rays_looked_at(const March& march, bool turned, std::uint64_t frame
   return {.values = values ? 3 : 0, .offset = offset_of_values(frame), .long_ray = !values};
 }
 
+/// As the last one.
+void remember(MeasuredMarch march, std::vector<MeasuredMarch>& measured) {
+  constexpr std::size_t most_remembered = 4;  // two boxes of one program, each with and without a setting
+  if (measured.size() == most_remembered) measured.erase(measured.begin());
+  measured.push_back(std::move(march));
+}
+
 /// How little a march explains an image, smaller being better: by its worst tile, as verification judges it;
 /// where that is no more than a driver's rounding, what was seen of samples is believed before what was
 /// guessed; and then the mean tells, in which a few rays that graze the box weigh much.
@@ -274,8 +281,8 @@ void RayCasterStage::follow_inside(Draw& draw, const ProxyBox& box, const MarchI
   auto again = with_new_steps(draw.measured(), *march, box);
   if (const auto* refusal = std::get_if<Refusal>(&again)) throw *refusal;
   march = std::get<March>(std::move(again));
-  std::optional<MeasuredMarch>& base = draw.known.march.measured;
-  if (base && base->inputs.fixed == inputs.fixed) base->march = *march;
+  std::vector<MeasuredMarch>& measured = draw.known.march.measured;
+  if (!measured.empty() && measured.back().inputs.fixed == inputs.fixed) measured.back().march = *march;
 }
 
 void RayCasterStage::refuse_again(const Draw& draw) const {
@@ -301,8 +308,8 @@ std::optional<March> RayCasterStage::with_other_steps(const Draw& draw, const Pr
                                                       std::span<const TableContents> tables) const {
   const KnownMarch& known = draw.known.march;
   // Where neither steps nor tables are other ones, something else is new.
-  if (!known.march || !known.measured || inputs.fixed == known.inputs.fixed) return std::nullopt;
-  const MeasuredMarch& base = *known.measured;
+  if (!known.march || known.measured.empty() || inputs.fixed == known.inputs.fixed) return std::nullopt;
+  const MeasuredMarch& base = known.measured.back();
   if (base.march.from_inside != known.march->from_inside || base.march.clipped != known.march->clipped)
     return std::nullopt;
   for (const double factor : step_factors(base.inputs, inputs)) {
@@ -315,11 +322,29 @@ std::optional<March> RayCasterStage::with_other_steps(const Draw& draw, const Pr
   return std::nullopt;
 }
 
+std::optional<March> RayCasterStage::measured_before(const Draw& draw, const ProxyBox& box,
+                                                     const MarchInputs& inputs) const {
+  KnownMarch& known = draw.known.march;
+  if (!known.march || session_.disabled_optimizations(Optimization::known_colours)) return std::nullopt;
+  const auto before = std::ranges::find_if(known.measured, [&](const MeasuredMarch& one) {
+    return one.inputs.fixed == inputs.fixed && one.march.space == known.march->space &&
+           one.march.clipped == known.march->clipped && one.march.from_inside == known.march->from_inside &&
+           still_marches(draw.measured(), one.march, box, {});
+  });
+  if (before == known.measured.end()) return std::nullopt;
+  std::rotate(before, before + 1, known.measured.end());
+  return known.measured.back().march;
+}
+
 ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                  compositor::RenderService& service) {
   // Another table is usual while somebody edits one; where samples lie is not tried again for that.
   KnownMarch& known = draw.known.march;
   std::optional<March>& march = known.march;
+  if (auto before = measured_before(draw, box, inputs)) {
+    march = std::move(before);
+    return box;
+  }
   std::vector<TableContents> tables = table_contents(context_, draw.run, draw.tables_of_samples);
   std::optional<March> again = with_other_steps(draw, box, inputs, tables);
   const bool derived = again.has_value();
@@ -340,7 +365,7 @@ ProxyBox RayCasterStage::measure(Draw& draw, const ProxyBox& box, const MarchInp
     march = choose_march(draw, service, std::get<std::vector<March>>(finding));
     draw.known.frames = 0;  // looked at again, as a new volume is
   }
-  if (!again || !derived) known.measured = MeasuredMarch{*march, inputs, std::move(tables)};
+  if (!again || !derived) remember({*march, inputs, std::move(tables)}, known.measured);
   ProxyBox found = box_in(draw.measured(), march->space);
   draw.cuts = read_cuts(context_, draw.run.pipeline().program, found.camera.texture_to_clip);
   return found;

@@ -75,6 +75,9 @@ class RayCasterStage {
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                 bool turned) const;
+  /// A march that was measured before the last one, where a viewer takes turns between a few, and holds again;
+  /// it becomes the last one measured.
+  std::optional<March> measured_before(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs) const;
   /// The march whose table was measured, with the steps that the program has now; null where more is new.
   std::optional<March> with_other_steps(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                         std::span<const TableContents> tables) const;

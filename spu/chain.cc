@@ -24,8 +24,10 @@ constinit thread_local Chain* Chain::current_ = nullptr;
 /// What stands between the application and the units of the chain that is current.
 struct Chain::Guard {
   static const DispatchTable& guarded() { return *current_->guarded_; }
-  static void failed() noexcept { current_->give_up_for_exception(); }
-  static const DispatchTable& after_failure() noexcept { return current_->without_units(); }
+  [[gnu::cold, gnu::noinline]] static void failed() noexcept { current_->give_up_for_exception(); }
+  [[gnu::cold, gnu::noinline]] static const DispatchTable& after_failure() noexcept {
+    return current_->without_units();
+  }
 };
 
 template <class Told>

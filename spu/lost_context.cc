@@ -9,7 +9,7 @@ namespace understudy::spu {
 namespace {
 
 struct Lost {
-  static std::uint64_t call(CallId call, const std::uint64_t*) {
+  [[gnu::noinline]] static std::uint64_t call(CallId call, const std::uint64_t*) {
     static constinit thread_local bool told = false;
     if (call == CallId::GetError) return std::exchange(told, true) ? GL_NO_ERROR : GL_OUT_OF_MEMORY;
     const bool asks_for_reset =

@@ -184,6 +184,17 @@ std::optional<CallId> find_call(std::string_view name) noexcept {{
 """
 
 
+def every_slot(commands):
+    functions = ",\n".join(f"      &{c.name}" for c in commands)
+    return f"""\
+  /// As data: thousands of assignments take the compiler half a minute, and each their instructions.
+  static constexpr DispatchTable all{{
+{functions}}};
+
+  /// Sets every slot.
+  static void fill(DispatchTable& table) {{ table = all; }}"""
+
+
 def pass_through(commands):
     functions = "\n".join(
         f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
@@ -191,7 +202,7 @@ def pass_through(commands):
         f"  }}"
         for c in commands
     )
-    slots = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
+    slots = every_slot(commands)
     chosen = "\n".join(f'    if constexpr (Before::chooses("{c.name}")) table.{c.member} = &{c.name};' for c in commands)
     return f"""\
 #pragma once
@@ -208,10 +219,7 @@ template <class Before>
 struct PassThrough {{
 {functions}
 
-  /// Sets every slot.
-  static void fill(DispatchTable& table) {{
 {slots}
-  }}
 
   /// Sets the slots of the commands whose names `static constexpr bool Before::chooses(std::string_view)` chooses, and
   /// leaves the others alone.
@@ -248,7 +256,7 @@ def shell(commands):
         f"  }}"
         for c in commands
     )
-    slots = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
+    slots = every_slot(commands)
     return f"""\
 #pragma once
 
@@ -267,10 +275,7 @@ template <class Guard>
 struct Shell {{
 {functions}
 
-  /// Sets every slot.
-  static void fill(DispatchTable& table) {{
 {slots}
-  }}
 }};
 
 }}  // namespace understudy::spu

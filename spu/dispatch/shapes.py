@@ -325,8 +325,9 @@ def words_header(commands):
         array = f"    const std::uint64_t words[] = {{{', '.join(f'word({p.name})' for p in c.parameters)}}};\n" if c.parameters else ""
         end = f"    {handed_on};\n" if c.result == "void" else f"    return argument<{c.result}>({handed_on});\n"
         functions.append(f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n{array}{end}  }}")
-    fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands)
-    plain_fills = "\n".join(f"    table.{c.member} = &{c.name};" for c in commands if is_plain(c))
+    fills = ",\n".join(f"      &{c.name}" for c in commands)
+    plain_fills = "\n".join(
+        f'    if constexpr (Handler::chooses("{c.name}")) table.{c.member} = &{c.name};' for c in commands if is_plain(c))
     return f"""\
 #pragma once
 
@@ -386,20 +387,21 @@ template <class Handler>
 struct AsWords {{
 {chr(10).join(functions)}
 
-  /// Sets every slot.
-  static void fill(DispatchTable& table) {{
-{fills}
-  }}
+  /// As data: see dispatch/pass_through.h.
+  static constexpr DispatchTable all{{
+{fills}}};
 
-  /// Sets the slots of the plain commands, leaves the others alone.
-  static void fill_plain(DispatchTable& table) {{
+  /// Sets every slot.
+  static void fill(DispatchTable& table) {{ table = all; }}
+
+  /// Sets the slots of those plain commands whose names `static constexpr bool Handler::chooses(std::string_view)`
+  /// chooses, and leaves the others alone.
+  static void fill_chosen(DispatchTable& table) {{
 {plain_fills}
   }}
 
   /// Sets the slots that are not null in `table`: a command that the next unit lacks stays lacking.
   static void fill_present(DispatchTable& table) {{
-    DispatchTable all{{}};
-    fill(all);
     for (std::size_t call = 0; call < call_count; ++call) {{
       if (slot(table, static_cast<CallId>(call)) != nullptr) {{
         set_slot(table, static_cast<CallId>(call), slot(all, static_cast<CallId>(call)));

@@ -105,7 +105,7 @@ constexpr T unwritten() {
 }
 
 struct NoteChange {
-  static const DispatchTable& before(CallId call) {
+  [[gnu::noinline]] static const DispatchTable& before(CallId call) {
     Track& track = Track::current();
     Answers& answers = *track.answers();
     answers.changed(topics_changed_by(call));

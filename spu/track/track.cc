@@ -15,7 +15,7 @@ namespace {
 
 /// Inside glNewList: notes what kind of command the list takes up, then lets the driver compile it.
 struct NoteListContent {
-  static const DispatchTable& before(CallId call) {
+  [[gnu::noinline]] static const DispatchTable& before(CallId call) {
     Track& track = Track::current();
     ListRecord& list = track.open_list();
     switch (kind_of(call)) {

@@ -7,10 +7,12 @@
 #include <exception>
 #include <numeric>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "dispatch/pass_through.h"
 #include "spu/stream/plain_calls.h"
+#include "spu/track/call_names.h"
 #include "spu/track/calls.h"
 #include "spu/track/share_group.h"
 #include "spu/volume/observation/array_calls.h"
@@ -27,7 +29,7 @@ namespace {
 constexpr GLsizei most_elements = 1 << 22;
 
 struct CloseRun {
-  static const DispatchTable& before(CallId call) {
+  [[gnu::noinline]] static const DispatchTable& before(CallId call) {
     DrawObserver& observer = DrawObserver::current();
     observer.close_run();
     if (!passes_held_runs(call)) observer.settle_held();
@@ -46,7 +48,8 @@ void APIENTRY switch_capability(GLenum capability) {
 }
 
 struct IntoRun {
-  static std::uint64_t call(CallId call, const std::uint64_t* words) {
+  static constexpr bool chooses(std::string_view name) { return kind_of_name(name) == CallKind::vertex; }
+  [[gnu::noinline]] static std::uint64_t call(CallId call, const std::uint64_t* words) {
     DrawObserver& observer = DrawObserver::current();
     if (observer.run_open()) {
       observer.run().set_attribute(call, words);
@@ -499,12 +502,7 @@ void fill_watching_slots(DispatchTable& table) {
 
 void fill_deferring_slots(DispatchTable& table) {
   PassThrough<CloseRun>::fill(table);
-  DispatchTable appending{};
-  AsWords<IntoRun>::fill_plain(appending);
-  for (std::size_t i = 0; i < call_count; ++i) {
-    if (kind_of(CallId(i)) != CallKind::vertex) continue;
-    if (const AnyFunction append = slot(appending, CallId(i))) set_slot(table, CallId(i), append);
-  }
+  AsWords<IntoRun>::fill_chosen(table);
   table.End = end_in_run;
   table.BindTexture = bind_texture_in_run;
   table.BindTextureEXT = bind_texture_in_run;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "dispatch/call_shape.h"
@@ -14,6 +15,7 @@ namespace {
 
 Records sink;
 struct IntoSink {
+  static constexpr bool chooses(std::string_view) { return true; }
   static std::uint64_t call(CallId call, const std::uint64_t* words) {
     append_plain_call(sink, call, words);
     return 0;
@@ -24,7 +26,7 @@ struct IntoSink {
 const DispatchTable& appending_table() {
   static const DispatchTable table = [] {
     DispatchTable filled{};
-    AsWords<IntoSink>::fill_plain(filled);
+    AsWords<IntoSink>::fill_chosen(filled);
     return filled;
   }();
   return table;

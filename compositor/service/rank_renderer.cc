@@ -399,7 +399,11 @@ Image RankRenderer::render(std::uint64_t client, const RenderRequest& request, F
                                 ? footprint(request, description, volume.tree.box(volume.place.member))
                                 : intersection(request.window, request.viewport);
     Image result(part ? intersection(everything, *part) : everything);
-    within_time(volume, [&] { volume.renderer->render(request, result, counts, occlusion); });
+    FrameCounts here;
+    within_time(volume, [&] { volume.renderer->render(request, result, here, occlusion); });
+    // The first group's bricks are the volume once.
+    if (volume.place.group > 0) here.blocks = here.blocks_empty = 0;
+    counts += here;
     return result;
   });
   if (request.optimizations.footprints) crop_to_content(image, request.op);

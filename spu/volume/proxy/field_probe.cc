@@ -292,9 +292,9 @@ void FieldProbe::clear() {
   gl_.ClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
-std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, float value) {
+std::vector<volume::Rgba> FieldProbe::pixels(const volume::Rect& part, float value) {
   show({value, value, value, value, value, value, value, value});
-  std::vector<volume::Rgba> fragments = in_place(0, first_row, viewport_[2], rows);
+  std::vector<volume::Rgba> fragments = in_place(part.x, part.y, part.width, part.height);
   if (background_) remove_from(fragments, value, value);
   return fragments;
 }
@@ -308,9 +308,9 @@ void FieldProbe::show(const SplitField& field) {
   show(texels, size, GL_NEAREST);
 }
 
-std::vector<volume::Rgba> FieldProbe::rows(int first_row, int rows, const SplitField& field) {
+std::vector<volume::Rgba> FieldProbe::pixels(const volume::Rect& part, const SplitField& field) {
   show(field);
-  std::vector<volume::Rgba> fragments = in_place(0, first_row, viewport_[2], rows);
+  std::vector<volume::Rgba> fragments = in_place(part.x, part.y, part.width, part.height);
   if (background_) remove_from(fragments, field.before, field.behind);
   return fragments;
 }

@@ -39,7 +39,7 @@ class FieldProbe {
   /// Whether the driver offers a float framebuffer. Nothing may be drawn otherwise.
   bool complete() const { return complete_; }
 
-  /// From now on at(), at_slope(), pixel() and rows(), but for ramps and layers, give what a fragment's samples
+  /// From now on at(), at_slope(), pixel() and pixels() give what a fragment's samples
   /// show without `background`, premultiplied. Contrasts are measured on `rays`, where they are not known yet.
   /// Where those of a split field's two values cannot be told apart, it is as if there were no fragments.
   void remove(const ShaderBackground& background, std::vector<CountedPlace> rays);
@@ -77,8 +77,8 @@ class FieldProbe {
   /// As at(), the sum of all fragments of a pixel instead of the nearest one; nothing where faces are culled.
   std::vector<volume::Rgba> sums_at(double x, double y, std::span<const float> values);
 
-  /// The fragments of `rows` rows of the application's viewport from `first_row` on, over the field of `value`.
-  std::vector<volume::Rgba> rows(int first_row, int rows, float value);
+  /// The fragments of these pixels of the application's viewport, row by row, over the field of `value`.
+  std::vector<volume::Rgba> pixels(const volume::Rect& part, float value);
 
   /// The same over a field that is `before` where the texture coordinate `axis` is less than `plane`, and
   /// `behind` beyond.
@@ -90,10 +90,10 @@ class FieldProbe {
   };
   static constexpr int field_texels = 256;  ///< along the axis; OpenGL promises as many
   static constexpr double split_unit = 1.0 / field_texels;
-  std::vector<volume::Rgba> rows(int first_row, int rows, const SplitField& field);
+  std::vector<volume::Rgba> pixels(const volume::Rect& part, const SplitField& field);
 
-  /// The same over a field that goes from one value to another where the texture coordinate `axis` does so from
-  /// 0 to 1.
+  /// The fragments of `rows` rows from `first_row` on over a field that goes from one value to another where the
+  /// texture coordinate `axis` does so from 0 to 1.
   struct RampField {
     std::size_t axis = 0;
     float from = 0;

@@ -38,11 +38,11 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
 
 /// How closely the places of samples are looked at.
 struct PlacesLookedAt {
-  int values = 32;          ///< of which two that tell are chosen
-  int bands = split_bands;  ///< of rows
+  int values = 32;  ///< of which two that tell are chosen
+  SplitBands bands{};
 };
 /// Where steps have another length, and nothing else is known to be new.
-constexpr PlacesLookedAt few_places{.values = 8, .bands = 2};
+constexpr PlacesLookedAt few_places{.values = 8, .bands = {.number = 2, .halves = true}};
 
 /// Whether samples still lie on rays where `march` says, as far as fields tell.
 bool still_placed(const MarchContext& measured, const March& march, const ProxyBox& box,

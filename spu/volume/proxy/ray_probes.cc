@@ -122,7 +122,7 @@ std::variant<std::vector<CountedRay>, std::string> counted_rays(const MarchConte
   std::vector<Rgba> colours;
   for (int band = 0; band < bands; ++band) {
     const int y = std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2));
-    const auto fragments = probe.rows(y, 2, march.translucent);
+    const auto fragments = probe.pixels({0, y, probe.width(), 2}, march.translucent);
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!reached(fragments[i])) continue;
       const int column = int(i) % probe.width();

@@ -109,8 +109,8 @@ class SplitCounting {
     for (const FieldProbe::SplitField& field : fields) all_.push_back({field, {}});
   }
 
-  /// The rays of two rows.
-  void add_rows(int first_row);
+  /// The rays of these pixels of the viewport.
+  void add(const volume::Rect& pixels);
   /// None where samples cannot be counted.
   std::vector<SplitRays> counted();
 
@@ -133,12 +133,12 @@ class SplitCounting {
   std::vector<Amounts> amounts_;  ///< ray by ray
 };
 
-void SplitCounting::add_rows(int first_row) {
-  const auto before = probe_.rows(first_row, 2, all_.front().field.before);
-  const auto behind = probe_.rows(first_row, 2, all_.front().field.behind);
+void SplitCounting::add(const volume::Rect& pixels) {
+  const auto before = probe_.pixels(pixels, all_.front().field.before);
+  const auto behind = probe_.pixels(pixels, all_.front().field.behind);
   std::vector<std::vector<Rgba>> split;
   split.reserve(all_.size());
-  for (const SplitRays& rays : all_) split.push_back(probe_.rows(first_row, 2, rays.field));
+  for (const SplitRays& rays : all_) split.push_back(probe_.pixels(pixels, rays.field));
   for (std::size_t i = 0; i < behind.size(); ++i) {
     const auto of_first = amount_of(before[i]), of_second = amount_of(behind[i]);
     if (!of_first || !of_second) continue;
@@ -148,8 +148,8 @@ void SplitCounting::add_rows(int first_row) {
     }
     if (amounts.split.size() < all_.size()) continue;
     amounts_.push_back(std::move(amounts));
-    const int column = int(i) % probe_.width();
-    const int row = first_row + int(i) / probe_.width();
+    const int column = pixels.x + int(i) % pixels.width;
+    const int row = pixels.y + int(i) / pixels.width;
     for (SplitRays& rays : all_)
       rays.rays.push_back(
           {{probe_.x_of(column), probe_.y_of(row)}, probe_.left() + column, probe_.bottom() + row});
@@ -200,7 +200,8 @@ std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const v
 }
 
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
-                                  const ProxyBox& box, const std::vector<SeenValue>& values, int bands) {
+                                  const ProxyBox& box, const std::vector<SeenValue>& values,
+                                  const SplitBands& bands) {
   const RaysThroughBox rays(box.camera.texture_to_clip, box.region, box.cuts);
   const auto middle = rays.middle();
   const auto way = rays.way(middle[0], middle[1]);
@@ -211,9 +212,12 @@ std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& prob
   const auto fields = split_fields(box.region, *way, contrast->value, march.translucent);
   if (fields.empty()) return {};
   SplitCounting counting(probe, contrast->amount, premultiplied_already(measured, march), fields);
-  for (int band = 0; band < bands; ++band)
-    counting.add_rows(
-        std::clamp((2 * band + 1) * probe.height() / (2 * bands), 0, std::max(0, probe.height() - 2)));
+  const int columns = bands.halves ? (probe.width() + 1) / 2 : probe.width();
+  for (int band = 0; band < bands.number; ++band) {
+    const int row =
+        std::clamp((2 * band + 1) * probe.height() / (2 * bands.number), 0, std::max(0, probe.height() - 2));
+    counting.add({band % 2 == 0 ? 0 : probe.width() - columns, row, columns, 2});
+  }
   return counting.counted();
 }
 

@@ -34,7 +34,11 @@ struct SeenValue {
   volume::Rgba ray{};
 };
 
-constexpr int split_bands = 12;
+/// Bands of two rows each.
+struct SplitBands {
+  int number = 12;
+  bool halves = false;  ///< of rows, left and right in turn: rays of all lengths, half as many
+};
 
 std::vector<SeenValue> seen_values(const std::vector<float>& values, const std::vector<volume::Rgba>& rays);
 
@@ -44,10 +48,9 @@ std::vector<FieldProbe::SplitField> split_fields(const volume::Box& box, const v
                                                  float behind);
 
 /// Under fields of march.translucent and another of `values`. None where no other value tells, or too few rays.
-/// On so many bands of two rows each.
 std::vector<SplitRays> split_rays(const MarchContext& measured, FieldProbe& probe, const March& march,
                                   const ProxyBox& box, const std::vector<SeenValue>& values,
-                                  int bands = split_bands);
+                                  const SplitBands& bands = {});
 
 /// The part of the rays whose samples lie elsewhere than `steps` says; rays that tell nothing do not count.
 double misplaced_part(const std::vector<SplitRays>& split, const RaysThroughBox& rays,

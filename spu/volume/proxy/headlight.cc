@@ -236,12 +236,18 @@ bool is_explained(const SlopeProbe& slopes, const LitRay& ray, const volume::Ray
   return true;
 }
 
-/// Whether `ray` shows the light at these angles.
+/// A slope whose normal has this angle to the eye, and is turned so far about the ray.
+struct LookedAt {
+  double angle = 0;
+  double turn = 0;
+};
+
+/// Whether `ray` shows the light on these slopes.
 bool shows_light(SlopeProbe& slopes, const LitRay& ray, const volume::RaySteps& steps,
-                 const volume::Light& light, std::span<const double> looked_at, int texels) {
+                 const volume::Light& light, std::span<const LookedAt> looked_at, int texels) {
   const LightSpace directions(light, ray.way.way);
-  return std::ranges::all_of(looked_at, [&](double angle) {
-    const auto seen = seen_slope(slopes, ray, directions, angle, 1 + 3 * angle, texels);
+  return std::ranges::all_of(looked_at, [&](const LookedAt& slope) {
+    const auto seen = seen_slope(slopes, ray, directions, slope.angle, slope.turn, texels);
     return seen && is_explained(slopes, ray, steps, light, *seen, texels);
   });
 }
@@ -375,7 +381,7 @@ std::variant<std::vector<volume::Light>, Refusal> measure_headlight(const MarchC
     found = light_that_explains(slopes, ray, march.steps, likely[i]);
   if (auto* const refusal = std::get_if<Refusal>(&found)) return std::move(*refusal);
   light = std::get<volume::Light>(std::move(found));
-  constexpr std::array<double, 4> looked_at{0.2, 0.9, 1.5, 2.6};
+  constexpr std::array<LookedAt, 4> looked_at{{{0.2, 1.6}, {0.9, 3.7}, {1.5, 5.5}, {2.6, 8.8}}};
   for (const LitRay& other : std::span(seen).subspan(1)) {
     if (!shows_light(slopes, other, march.steps, light, looked_at, slope_texels))
       return Refusal{"the light does not shine along every ray"};
@@ -390,7 +396,8 @@ bool still_lit(const MarchContext& measured, FieldProbe& probe, const ProxyBox& 
   SlopeProbe slopes(measured, probe, march);
   const auto ray = ray_of_half_seen_value(slopes, rays, march);
   if (!ray) return !rays.way(rays.middle()[0], rays.middle()[1]);
-  constexpr std::array looked_at{0.3, 1.2};
+  // A light that has moved aside shows where slopes lean towards it: two of these are at right angles.
+  constexpr std::array<LookedAt, 3> looked_at{{{0.3, 1.9}, {1.2, 4.6}, {1.2, 4.6 + M_PI / 2}}};
   return is_translucent(ray->base.front()) &&
          shows_light(slopes, *ray, march.steps, *march.light, looked_at, coarse_texels);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "spu/volume/proxy/camera_followers.h"
 #include "spu/volume/proxy/kept_window.h"
 #include "spu/volume/proxy/march.h"
 #include "spu/volume/proxy/march_inputs.h"
@@ -27,6 +28,7 @@ struct KnownMarch {
   /// The last few. The march is derived from the last one, by a factor of its steps, or
   /// equals it. (From march to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
+  CameraFollowers followers;
   volume::Matrix4 camera{};  ///< of its last image, from texture to clip coordinates
   /// Where its program keeps fragments, where it discards any by their place; the last one measured last.
   std::vector<KeptWindow> kept;

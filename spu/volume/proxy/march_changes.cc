@@ -155,14 +155,20 @@ bool still_marches(const MarchContext& measured, const March& march, const Proxy
     }
     return true;
   };
-  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample.
-  constexpr std::array short_lengths{2.5, 4.5, 7.5};
+  // At the box's silhouette, where short rays are, one may just miss its pixel, or a sample. Two that agree
+  // have not both a sample less of what is denser by just that much.
+  constexpr std::array short_lengths{2.5, 4.5, 7.5, 3.5};
+  const std::ptrdiff_t enough = march.shows_one_colour() ? 1 : 2;
   const double first = march.steps.divided ? 0.5 : march.steps.first;
-  if (looked_at.values > 0 && std::ranges::none_of(short_lengths, [&](double length) {
-        return shows_table(
-            ray_of_length(rays, march.steps, march.shows_one_colour() ? length + 1 : length + first));
-      }))
-    return false;
+  std::ptrdiff_t agreeing = 0;
+  for (const double length : short_lengths) {
+    if (looked_at.values == 0 || agreeing == enough) break;
+    agreeing +=
+        shows_table(ray_of_length(rays, march.steps, march.shows_one_colour() ? length + 1 : length + first))
+            ? 1
+            : 0;
+  }
+  if (looked_at.values > 0 && agreeing < enough) return false;
   if (march.light && !still_lit(measured, probe, box, march)) return false;
   if (is_black_where_even(march) && !values.empty() &&
       !shows_facing_colours(measured, probe, box, march, values))

@@ -96,24 +96,30 @@ MarchInputs march_inputs(const MarchContext& measured, const ShareGroup& group, 
   GLint front = 0;
   gl.GetIntegerv(GL_CULL_FACE_MODE, &culled);
   gl.GetIntegerv(GL_FRONT_FACE, &front);
-  inputs.varying.push_back(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
-  inputs.varying.push_back(float(front));
+  const auto varies = [&](float value) {
+    inputs.varying_begins.push_back(inputs.varying.size());
+    inputs.varying.push_back(value);
+  };
+  varies(gl.IsEnabled(GL_CULL_FACE) ? float(culled) : 0.0F);
+  varies(float(front));
   for (const int extent : measured.texture.size) inputs.fixed.push_back(float(extent));
   for (const GLint swizzle : measured.texture.swizzle) inputs.fixed.push_back(float(swizzle));
-  if (measured.stages.uniform_blocks) inputs.varying.push_back(never_equal);
+  if (measured.stages.uniform_blocks) varies(never_equal);
   const auto record = group.programs().program(pipeline.program);
   inputs.fixed.push_back(record ? float(record->link) : 0.0F);
   for (const StageUniform& uniform : measured.stages.uniforms) {
     if (tells_cuts(uniform.name)) continue;  // measured without
     const std::size_t before = inputs.fixed.size();
+    const std::size_t begin = inputs.varying.size();
     append_value(measured, uniform, is_scalar(uniform.type) ? inputs.fixed : inputs.varying);
+    if (inputs.varying.size() > begin) inputs.varying_begins.push_back(begin);
     const bool in_use = inputs.fixed.size() > before;
     if (in_use && uniform.type == GL_FLOAT && moves_samples_only(says, uniform.name))
       inputs.steps.push_back(before);
   }
   for (const SampledTexture& other : pipeline.others) {
     if (group.is_rendered_to(other.texture)) {  // the opaque geometry's depth, or a table that is drawn
-      inputs.varying.push_back(never_equal);
+      varies(never_equal);
       continue;
     }
     if (is_depth_texture(gl, other)) {

@@ -21,6 +21,8 @@ struct MarchInputs {
   /// Of `fixed`, uniforms that move samples, and decide about no fragment or colour.
   std::vector<std::size_t> steps;
   std::vector<float> varying;
+  /// Where each vector, matrix or number of `varying` begins.
+  std::vector<std::size_t> varying_begins;
   /// Depth textures and their contents, instead of which probes show the far plane: opaque geometry's may be
   /// copied in every frame.
   std::vector<float> depths;

@@ -74,8 +74,9 @@ std::vector<volume::HalfSpace> ends_of(const ProxyBox& box, const Cuts& cuts) {
   return planes;
 }
 
-/// Vectors and matrices move with the camera where it has `turned`; one that changes alone may cut the volume.
-VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march, bool turned) {
+/// `follows`: which of the numbers that vary move with the camera; one that changes alone may cut the volume.
+VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& march,
+                                       const std::vector<bool>& follows) {
   using Effect = VerificationSchedule::Effect;
   VerificationSchedule::Inputs all;
   for (const float value : inputs.fixed) all.push_back({value});
@@ -83,9 +84,10 @@ VerificationSchedule::Inputs inputs_of(const MarchInputs& inputs, const March& m
   // Steps that were only likely are likely to be others now.
   for (const std::size_t step : inputs.steps)
     all[step].effect = march.steps_seen ? Effect::predicted : Effect::unknown;
-  for (const float value : inputs.varying) {
+  for (std::size_t i = 0; i < inputs.varying.size(); ++i) {
     // Not a number: the depth of opaque geometry, which is drawn in every frame.
-    all.push_back({std::isnan(value) ? 0.0F : value, turned ? Effect::followed : Effect::unknown});
+    const float value = inputs.varying[i];
+    all.push_back({std::isnan(value) ? 0.0F : value, follows[i] ? Effect::followed : Effect::unknown});
   }
   for (const float value : inputs.depths) all.push_back({value});
   return all;
@@ -405,7 +407,8 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
-  VerificationSchedule::Inputs depends_on = inputs_of(inputs, *known.march.march, turned);
+  VerificationSchedule::Inputs depends_on =
+      inputs_of(inputs, *known.march.march, known.march.followers.look(known.march.inputs, inputs, turned));
   known.march.inputs = std::move(inputs);
   if (const auto& background = known.march.march->background) {
     if (!hides_what_was_there(pipeline, background->alpha))

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/camera_followers.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace understudy::spu {
+
+std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchInputs& now, bool turned) {
+  // A camera that moves along one axis, or turns about another, leaves some of its vectors as they are for a
+  // while.
+  constexpr int most_stayed = 4;
+  constexpr int doubted_for = 3;
+  const std::vector<std::size_t>& begins = now.varying_begins;
+  std::vector<bool> follow(now.varying.size(), turned);
+  const std::vector<float> earlier = std::exchange(earlier_, before.varying);
+  if (before.varying_begins != begins || vectors_.size() != begins.size()) {
+    vectors_.assign(begins.size(), {});
+    return follow;
+  }
+  if (!turned) return follow;
+  for (std::size_t k = 0; k < begins.size(); ++k) {
+    const std::size_t end = k + 1 < begins.size() ? begins[k + 1] : now.varying.size();
+    const auto is_as_in = [&](const std::vector<float>& other) {
+      return other.size() == now.varying.size() &&
+             std::equal(now.varying.begin() + std::ptrdiff_t(begins[k]),
+                        now.varying.begin() + std::ptrdiff_t(end), other.begin() + std::ptrdiff_t(begins[k]));
+    };
+    Moves& vector = vectors_[k];
+    const bool same = is_as_in(before.varying);
+    if (!same && (vector.stayed == most_stayed || is_as_in(earlier))) vector.doubted = doubted_for + 1;
+    if (!same && vector.doubted > 0) --vector.doubted;
+    std::fill(follow.begin() + std::ptrdiff_t(begins[k]), follow.begin() + std::ptrdiff_t(end),
+              same || vector.doubted == 0);
+    vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;
+  }
+  return follow;
+}
+
+}  // namespace understudy::spu

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spu/volume/proxy/camera_followers.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace understudy::spu::testing {
+namespace {
+
+/// An eye of three numbers, which moves on in every image, and a light of two.
+struct Moving {
+  CameraFollowers followers;
+  MarchInputs before{};
+  float eye = 0;
+
+  /// Whether the light counts as a follower in the next image.
+  bool light_follows(float light, bool turned = true) {
+    MarchInputs now;
+    now.varying = {eye, 1, 2, light, 5};
+    now.varying_begins = {0, 3};
+    const std::vector<bool> follow = followers.look(before, now, turned);
+    EXPECT_EQ(follow.size(), now.varying.size());
+    EXPECT_EQ(follow[0], turned) << "the eye itself";
+    EXPECT_EQ(follow[1], follow[0]) << "a vector is a whole";
+    EXPECT_EQ(follow[3], follow[4]) << "a vector is a whole";
+    before = now;
+    eye += 1;
+    return follow[3];
+  }
+};
+
+TEST(CameraFollowers, AreWhatChangesWheneverTheCameraMoves) {
+  Moving scene;
+  for (int image = 0; image < 20; ++image) EXPECT_TRUE(scene.light_follows(float(image))) << image;
+}
+
+TEST(CameraFollowers, AreNoneWhereTheCameraStays) {
+  Moving scene;
+  scene.light_follows(1);
+  EXPECT_FALSE(scene.light_follows(2, false));
+}
+
+TEST(CameraFollowers, MayRestForAShortWhile) {
+  Moving scene;
+  for (int image = 0; image < 10; ++image) scene.light_follows(float(image));
+  for (int image = 0; image < 3; ++image) EXPECT_TRUE(scene.light_follows(9));
+  EXPECT_TRUE(scene.light_follows(10));
+}
+
+TEST(CameraFollowers, AreNotWhatStayedWhileTheCameraMoved) {
+  Moving scene;
+  for (int image = 0; image < 10; ++image) EXPECT_TRUE(scene.light_follows(1)) << "nothing has changed";
+  EXPECT_FALSE(scene.light_follows(2));
+  EXPECT_TRUE(scene.light_follows(2)) << "nothing has changed";
+  EXPECT_FALSE(scene.light_follows(3));
+  EXPECT_FALSE(scene.light_follows(4));
+  EXPECT_TRUE(scene.light_follows(5)) << "it has moved with the camera for a while";
+}
+
+TEST(CameraFollowers, AreNotWhatComesBackToWhatItWas) {
+  Moving scene;
+  scene.light_follows(1);
+  scene.light_follows(2);
+  for (int turn = 0; turn < 8; ++turn) {
+    EXPECT_FALSE(scene.light_follows(1)) << turn;
+    EXPECT_FALSE(scene.light_follows(2)) << turn;
+  }
+}
+
+TEST(CameraFollowers, AreForgottenWhereTheProgramHasOtherUniforms) {
+  Moving scene;
+  for (int image = 0; image < 10; ++image) scene.light_follows(1);
+  scene.before.varying_begins = {0};
+  EXPECT_TRUE(scene.light_follows(2));
+}
+
+}  // namespace
+}  // namespace understudy::spu::testing

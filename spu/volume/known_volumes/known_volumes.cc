@@ -142,6 +142,7 @@ void take_comparison(const std::optional<Comparison>& comparison, KnownVolume& v
   volume.colours.probed.reset();
   volume.march.march.reset();
   volume.march.measured.clear();
+  volume.march.followers.was_wrong();
   volume.march.kept.clear();
   const auto in_a_row = std::min(std::size_t(schedule.lost_in_a_row()), pauses.size());
   volume.refusals.pause(frame, pauses[in_a_row - 1]);

@@ -7,11 +7,13 @@
 
 namespace understudy::spu {
 
-std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchInputs& now, bool turned) {
+std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchInputs& now, Camera camera) {
   // A camera that moves along one axis, or turns about another, leaves some of its vectors as they are for a
   // while.
   constexpr int most_stayed = 4;
-  constexpr int doubted_for = 3;
+  constexpr int changes_until_trusted = 3;
+  constexpr int most_returns = 4;
+  const bool turned = camera != Camera::stayed;
   const std::vector<std::size_t>& begins = now.varying_begins;
   std::vector<bool> follow(now.varying.size(), turned);
   const std::vector<float> earlier = std::exchange(earlier_, before.varying);
@@ -29,13 +31,20 @@ std::vector<bool> CameraFollowers::look(const MarchInputs& before, const MarchIn
     };
     Moves& vector = vectors_[k];
     const bool same = is_as_in(before.varying);
-    if (!same && (vector.stayed == most_stayed || is_as_in(earlier))) vector.doubted = doubted_for + 1;
-    if (!same && vector.doubted > 0) --vector.doubted;
+    const bool returns = !same && camera == Camera::moved_on && is_as_in(earlier);
+    if (returns) vector.returned = std::min(vector.returned + 1, most_returns);
+    if (!same && (vector.stayed == most_stayed || (returns && vector.returned < most_returns)))
+      vector.until_trusted = changes_until_trusted + 1;
+    if (!same && vector.until_trusted > 0) --vector.until_trusted;
     std::fill(follow.begin() + std::ptrdiff_t(begins[k]), follow.begin() + std::ptrdiff_t(end),
-              same || vector.doubted == 0);
+              same || vector.until_trusted == 0);
     vector.stayed = same ? std::min(vector.stayed + 1, most_stayed) : 0;
   }
   return follow;
+}
+
+void CameraFollowers::was_wrong() {
+  for (Moves& vector : vectors_) vector.returned = 0;
 }
 
 }  // namespace understudy::spu

@@ -92,8 +92,8 @@ class FieldProbe {
   static constexpr double split_unit = 1.0 / field_texels;
   std::vector<volume::Rgba> pixels(const volume::Rect& part, const SplitField& field);
 
-  /// The fragments of `rows` rows from `first_row` on over a field that goes from one value to another where the
-  /// texture coordinate `axis` does so from 0 to 1.
+  /// The fragments of `rows` rows from `first_row` on over a field that goes from one value to another where
+  /// the texture coordinate `axis` does so from 0 to 1.
   struct RampField {
     std::size_t axis = 0;
     float from = 0;

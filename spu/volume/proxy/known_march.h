@@ -29,7 +29,8 @@ struct KnownMarch {
   /// equals it. (From march to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
   CameraFollowers followers;
-  volume::Matrix4 camera{};  ///< of its last image, from texture to clip coordinates
+  volume::Matrix4 camera{};          ///< of its last image, from texture to clip coordinates
+  volume::Matrix4 earlier_camera{};  ///< of the one before
   /// Where its program keeps fragments, where it discards any by their place; the last one measured last.
   std::vector<KeptWindow> kept;
 };

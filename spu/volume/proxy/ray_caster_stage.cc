@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <utility>
 
 #include "compositor/blend.h"
 #include "compositor/rendered.h"
@@ -401,14 +402,18 @@ RayCasterRequest RayCasterStage::request(const Run& run, const RecognisedRun& se
 
   MarchInputs inputs = march_inputs(draw.measured(), group_, says);
   const bool turned = known.march.camera != box.camera.texture_to_clip;
-  known.march.camera = box.camera.texture_to_clip;
+  using Camera = CameraFollowers::Camera;
+  const Camera camera = !turned                                                    ? Camera::stayed
+                        : known.march.earlier_camera == box.camera.texture_to_clip ? Camera::came_back
+                                                                                   : Camera::moved_on;
+  known.march.earlier_camera = std::exchange(known.march.camera, box.camera.texture_to_clip);
   if (says.ray->discards_by_place) draw.kept = kept_window(draw, box, inputs, says);
   follow_inside(draw, box, inputs);
   const std::string_view why = why_measured(draw, box, inputs, turned);
   classifier_.count_probe(why);
   if (!why.empty()) box = measure(draw, box, inputs, service);
   VerificationSchedule::Inputs depends_on =
-      inputs_of(inputs, *known.march.march, known.march.followers.look(known.march.inputs, inputs, turned));
+      inputs_of(inputs, *known.march.march, known.march.followers.look(known.march.inputs, inputs, camera));
   known.march.inputs = std::move(inputs);
   if (const auto& background = known.march.march->background) {
     if (!hides_what_was_there(pipeline, background->alpha))

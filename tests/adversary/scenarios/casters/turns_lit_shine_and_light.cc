@@ -31,11 +31,11 @@ Scenario turns_lit_shine_and_light() {
               float aside = 0;
               if (!even && frame >= 10 && frame < 20) aside = 25;
               if (even && frame >= 20) aside = 12;
-              Orbit lamp = scene->settings.orbit;
-              lamp.azimuth += aside;
+              Orbit of_light = scene->settings.orbit;
+              of_light.azimuth += aside;
               scene->program.use();
               scene->program.set("shininess", even ? 40.0F : 8.0F);
-              scene->program.set("light", camera_at(lamp, frame).eye);
+              scene->program.set("light", camera_at(of_light, frame).eye);
               scene->draw(frame);
             };
           }};

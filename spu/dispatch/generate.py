@@ -184,17 +184,6 @@ std::optional<CallId> find_call(std::string_view name) noexcept {{
 """
 
 
-def every_slot(commands):
-    functions = ",\n".join(f"      &{c.name}" for c in commands)
-    return f"""\
-  /// As data: thousands of assignments take the compiler half a minute, and each their instructions.
-  static constexpr DispatchTable all{{
-{functions}}};
-
-  /// Sets every slot.
-  static void fill(DispatchTable& table) {{ table = all; }}"""
-
-
 def pass_through(commands):
     functions = "\n".join(
         f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n"
@@ -202,7 +191,7 @@ def pass_through(commands):
         f"  }}"
         for c in commands
     )
-    slots = every_slot(commands)
+    slots = shapes.every_slot(commands)
     chosen = "\n".join(f'    if constexpr (Before::chooses("{c.name}")) table.{c.member} = &{c.name};' for c in commands)
     return f"""\
 #pragma once
@@ -256,7 +245,7 @@ def shell(commands):
         f"  }}"
         for c in commands
     )
-    slots = every_slot(commands)
+    slots = shapes.every_slot(commands)
     return f"""\
 #pragma once
 

@@ -318,6 +318,18 @@ SIZES = {
 }
 
 
+def every_slot(commands):
+    """The table of a class that has a function for each command, and fill(), which sets every slot to it."""
+    functions = ",\n".join(f"      &{c.name}" for c in commands)
+    return f"""\
+  /// As data: thousands of assignments take the compiler up to 20 s, and each of them instructions.
+  static constexpr DispatchTable all{{
+{functions}}};
+
+  /// Sets every slot.
+  static void fill(DispatchTable& table) {{ table = all; }}"""
+
+
 def words_header(commands):
     functions = []
     for c in commands:
@@ -325,7 +337,6 @@ def words_header(commands):
         array = f"    const std::uint64_t words[] = {{{', '.join(f'word({p.name})' for p in c.parameters)}}};\n" if c.parameters else ""
         end = f"    {handed_on};\n" if c.result == "void" else f"    return argument<{c.result}>({handed_on});\n"
         functions.append(f"  static UNDERSTUDY_FORWARDING {c.result} APIENTRY {c.name}({c.parameter_list}) {{\n{array}{end}  }}")
-    fills = ",\n".join(f"      &{c.name}" for c in commands)
     plain_fills = "\n".join(
         f'    if constexpr (Handler::chooses("{c.name}")) table.{c.member} = &{c.name};' for c in commands if is_plain(c))
     return f"""\
@@ -387,12 +398,7 @@ template <class Handler>
 struct AsWords {{
 {chr(10).join(functions)}
 
-  /// As data: see dispatch/pass_through.h.
-  static constexpr DispatchTable all{{
-{fills}}};
-
-  /// Sets every slot.
-  static void fill(DispatchTable& table) {{ table = all; }}
+{every_slot(commands)}
 
   /// Sets the slots of those plain commands whose names `static constexpr bool Handler::chooses(std::string_view)`
   /// chooses, and leaves the others alone.

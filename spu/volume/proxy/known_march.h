@@ -25,8 +25,8 @@ struct KnownMarch {
   std::optional<March> march;
   int box_changes = 0;  ///< so often another box was drawn than the one that was taken for the whole texture
   MarchInputs inputs;   ///< what the march was found under
-  /// The last few. The march is derived from the last one, by a factor of its steps, or
-  /// equals it. (From march to march, opacities that long steps make nearly 1 would be lost.)
+  /// The last few. The march is derived from the last one, by a factor of its steps, or equals it. (From march
+  /// to march, opacities that long steps make nearly 1 would be lost.)
   std::vector<MeasuredMarch> measured;
   CameraFollowers followers;
   volume::Matrix4 camera{};          ///< of its last image, from texture to clip coordinates

@@ -71,6 +71,7 @@ struct VolumeCounters {
 
 /// Parts of a frame, in milliseconds. They do not overlap; what is left of the frame is the application's.
 struct FrameShares {
+  double waiting;  ///< until the driver has drawn what the application drew before, where a probe is read back
   double recognition;   ///< what a run means: geometry, colours
   double depth;         ///< reading what opaque geometry left, which waits until the driver has drawn it
   double upload;        ///< texels to the nodes
@@ -80,6 +81,7 @@ struct FrameShares {
   double budget;        ///< choosing samples, and integrating rays to see how wrong they are
 
   FrameShares& operator+=(const FrameShares& other) {
+    waiting += other.waiting;
     recognition += other.recognition;
     depth += other.depth;
     upload += other.upload;

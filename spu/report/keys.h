@@ -56,7 +56,8 @@ constexpr const char* calls = "calls";
 constexpr const char* frame_median = "frame_median";
 constexpr const char* substituted_median = "substituted_median";
 constexpr const char* application_median = "application_median";
-constexpr const char* recognition_median = "recognition_median";  ///< of substituted frames, as the next
+constexpr const char* waiting_median = "waiting_median";  ///< of substituted frames, as the next
+constexpr const char* recognition_median = "recognition_median";
 constexpr const char* depth_median = "depth_median";
 constexpr const char* budget_median = "budget_median";
 
@@ -81,6 +82,7 @@ constexpr const char* messages_of_whole_windows = "messages_of_whole_windows";  
 // frames_detail[]
 constexpr const char* frame = "frame";
 constexpr const char* time = "time_ms";
+constexpr const char* waiting_time = "waiting_ms";
 constexpr const char* recognition_time = "recognition_ms";
 constexpr const char* depth_time = "depth_ms";
 constexpr const char* upload_time = "upload_ms";

@@ -62,6 +62,7 @@ Json median_times(Processes processes) {
   std::vector<double> all;
   std::vector<double> substituted;
   std::vector<double> application;
+  std::vector<double> waiting;
   std::vector<double> recognition;
   std::vector<double> depth;
   std::vector<double> budget;
@@ -70,6 +71,7 @@ Json median_times(Processes processes) {
       all.push_back(frame.time_ms);
       if (frame.substituted > 0) {
         substituted.push_back(frame.time_ms);
+        waiting.push_back(frame.spent_ms.waiting);
         recognition.push_back(frame.spent_ms.recognition);
         depth.push_back(frame.spent_ms.depth);
         budget.push_back(frame.spent_ms.budget);
@@ -80,6 +82,7 @@ Json median_times(Processes processes) {
   return {{report_key::frame_median, median(std::move(all))},
           {report_key::substituted_median, median(std::move(substituted))},
           {report_key::application_median, median(std::move(application))},
+          {report_key::waiting_median, median(std::move(waiting))},
           {report_key::recognition_median, median(std::move(recognition))},
           {report_key::depth_median, median(std::move(depth))},
           {report_key::budget_median, median(std::move(budget))}};
@@ -117,6 +120,7 @@ Json detail_of(std::uint64_t number, std::int32_t pid, const FrameRecord& frame)
   Json detail{{report_key::frame, number},
               {report_key::pid, pid},
               {report_key::time, frame.time_ms},
+              {report_key::waiting_time, frame.spent_ms.waiting},
               {report_key::recognition_time, frame.spent_ms.recognition},
               {report_key::depth_time, frame.spent_ms.depth},
               {report_key::upload_time, frame.spent_ms.upload},

@@ -17,7 +17,7 @@ data; of these the last image alone is compared.
 
 With --watch each row runs once under Understudy, with the speed guard off, and once bare: the table says how many images
 were compared and lost, and what recognition and sentinels took of a bare frame, on average over all frames but the
-first.
+first; and how long Understudy waited for what the viewer itself had drawn before, as the viewer would have done.
 
 An image is held against the bare viewer's of the same round in tiles of 16 × 16 pixels, as docs/verification.md says:
 the worst tile's difference as a multiple of the bound.
@@ -215,21 +215,22 @@ def watched(row, arguments):
             "left": run.draws("left"), "reason": run.reason(),
             "compared": [sum(volume["verify"][kind] or 0 for volume in run.report["volumes"])
                          for kind in ("frames", "tiles", "lost")],
+            "waiting_ms": mean([frame["waiting_ms"] for frame in frames]),
             "recognition_ms": mean([frame["recognition_ms"] for frame in frames]),
             "sentinels_ms": mean([frame["verification_ms"] for frame in frames])}
 
 
 def watched_markdown(rows):
     lines = ["| viewer | data | modes | frames | substituted, left | images, tiles compared, lost | ms bare | recognition "
-             "| sentinels | left because |", "|---|---|---|---|---|---|---|---|---|---|"]
+             "| sentinels | waiting | left because |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         name = " | ".join(row["row"])
         if "trouble" in row:
-            lines.append(f"| {name} | – | – | – | – | – | – | {row['trouble']} |")
+            lines.append(f"| {name} | – | – | – | – | – | – | – | {row['trouble']} |")
             continue
         bare = row["bare_ms"]
         costs = [f"{row[kind]:.2f} ms" + (f" ({100 * row[kind] / bare:.1f} %)" if bare else "")
-                 for kind in ("recognition_ms", "sentinels_ms")]
+                 for kind in ("recognition_ms", "sentinels_ms", "waiting_ms")]
         compared = ", ".join(str(count) for count in row["compared"])
         lines.append(f"| {name} | {row['frames']} | {row['substituted']}, {row['left']} | {compared} "
                      f"| {f'{bare:.1f}' if bare else '–'} | {' | '.join(costs)} | {row['reason'] or '–'} |")

@@ -294,11 +294,18 @@ void RayCasterStage::refuse_again(const Draw& draw) const {
     throw Refusal{refusals.last_reason};
 }
 
+void RayCasterStage::wait_for_earlier_drawing() const {
+  // The first probe that is read back would wait for it, and what a probe takes could not be told.
+  const TimedShare timed(account_.clock(), &FrameShares::waiting);
+  context_.gl->Finish();
+}
+
 std::string_view RayCasterStage::why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                               bool turned) const {
   const KnownMarch& known = draw.known.march;
   if (!known.march) return "the first of the volume";
   const bool same = inputs == known.inputs;
+  if (!same) wait_for_earlier_drawing();
   const bool holds = same || (inputs.fixed == known.inputs.fixed &&
                               still_marches(draw.measured(), *known.march, box,
                                             rays_looked_at(*known.march, turned, account_.frames())));

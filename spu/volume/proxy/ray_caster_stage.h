@@ -73,6 +73,7 @@ class RayCasterStage {
   /// Throws the last refusal before what was refused several times is measured once more, but in some frames.
   void refuse_again(const Draw& draw) const;
   void follow_inside(Draw& draw, const ProxyBox& box, const MarchInputs& inputs);
+  void wait_for_earlier_drawing() const;
   std::string_view why_measured(const Draw& draw, const ProxyBox& box, const MarchInputs& inputs,
                                 bool turned) const;
   /// A march that was measured before the last one, where a viewer takes turns between a few, and holds again;

@@ -39,12 +39,12 @@ std::unique_ptr<ProcessCounters> example() {
   counters->total.blocks_empty = 9;
   counters->frame[0] = {.time_ms = 40, .substituted = 0, .left = 1, .error_rms = -1};
   counters->frame[1] = {.time_ms = 10,
-                        .spent_ms = {.recognition = 1, .depth = 3, .render = 5},
+                        .spent_ms = {.waiting = 0.5, .recognition = 1, .depth = 3, .render = 5},
                         .substituted = 1,
                         .left = 0,
                         .error_rms = 0.01};
   counters->frame[2] = {.time_ms = 20,
-                        .spent_ms = {.recognition = 2, .depth = 4, .render = 6},
+                        .spent_ms = {.waiting = 1.5, .recognition = 2, .depth = 4, .render = 6},
                         .substituted = 1,
                         .left = 0,
                         .error_rms = -1};
@@ -85,6 +85,7 @@ TEST(Report, HasEveryKeyThatReadersRelyOn) {
   EXPECT_EQ(report["time_ms"]["frame_median"], 20);
   EXPECT_EQ(report["time_ms"]["substituted_median"], 15);
   EXPECT_EQ(report["time_ms"]["application_median"], 40);
+  EXPECT_EQ(report["time_ms"]["waiting_median"], 1) << "of substituted frames";
   EXPECT_EQ(report["time_ms"]["recognition_median"], 1.5) << "of substituted frames";
   EXPECT_EQ(report["time_ms"]["depth_median"], 3.5) << "of substituted frames";
   EXPECT_EQ(report["left_out"]["samples_skipped"], 380);

@@ -8,7 +8,9 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "tests/adversary/command.h"
 #include "tests/adversary/verdict.h"
@@ -85,8 +87,22 @@ TEST_P(Adversary, ShowsNoWrongImage) {
   if (!HasFailure() && !keeps_images()) fs::remove_all(folder_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Adversary, testing::ValuesIn(all_scenarios()),
-                         [](const auto& info) { return info.param.name; });
+/// Those that full_only.txt names, or the others.
+std::vector<NamedScenario> scenarios(bool full_only) {
+  std::set<std::string> named;
+  std::ifstream file(ADVERSARY_FULL_ONLY);
+  for (std::string line; std::getline(file, line);) named.insert(line);
+  std::vector<NamedScenario> all = all_scenarios();
+  std::erase_if(all, [&](const NamedScenario& one) { return named.contains(one.name) != full_only; });
+  return all;
+}
+
+std::string name_of(const testing::TestParamInfo<NamedScenario>& info) {
+  return info.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Adversary, testing::ValuesIn(scenarios(false)), name_of);
+INSTANTIATE_TEST_SUITE_P(FullOnly, Adversary, testing::ValuesIn(scenarios(true)), name_of);
 
 }  // namespace
 }  // namespace adversary
